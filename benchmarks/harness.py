@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
 SCENARIOS = ROOT / "scenarios"
+VALIDATION_STUDIES = ROOT / "validation" / "studies"
 PAGES = ROOT / "docs" / "validation"
 Row = dict[str, Any]
 Made = TypeVar("Made")

@@ -2,17 +2,17 @@
 
     python benchmarks/landing_ledger.py BED_FOLDER --landings 16
 
-lands drawn landings of scenarios/mission.toml (soils, places, headings and attitudes) on two beds of GRAINS grains,
-which are poured into BED_FOLDER where they are not there yet, in each of WAYS, and sums the ledger from the touchdown
-to the end. landing_ledger.json gets a row a way: mean of what is missing over the energy of the impact, its error, and
-the largest.
+lands drawn landings of validation/studies/drawn_700.toml (soils, places, headings and attitudes) on two beds of GRAINS
+grains, which are poured into BED_FOLDER where they are not there yet, in each of WAYS, and sums the ledger from the
+touchdown to the end. landing_ledger.json gets a row a way: mean of what is missing over the energy of the impact, its
+error, and the largest.
 """
 
 import json
 from pathlib import Path
 
 import numpy as np
-from harness import SCENARIOS, Row, command_line, origin, timed, write_document
+from harness import VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
 from landing_ensembles import beds_of, drawn_study, draws
 
 from lithobrake.touchdown import Bed, Lander, Landing
@@ -25,7 +25,7 @@ WAYS = [
     (25.0, 0.0, 0.0), (25.0, 0.1, 0.0), (25.0, 0.3, 0.0), (25.0, 0.3, 0.03), (25.0, 0.3, 0.1), (100.0, 0.0, 0.0),
     (100.0, 0.3, 0.0),
 ]  # fmt: skip
-STUDY = SCENARIOS / "mission.toml"
+STUDY = VALIDATION_STUDIES / "drawn_700.toml"
 RESULTS = Path(__file__).with_suffix(".json")
 
 

@@ -1,10 +1,10 @@
 """How right `lithobrake plan` is: CPU times of a bed and of landings, expected and as they come.
 
-    python benchmarks/plan_estimate.py first_bounce mission bounces paper --beds 4 --landings 14
+    python benchmarks/plan_estimate.py first_bounce drawn_700 paper --beds 4 --landings 14
 
-pours beds of each study of scenarios/, makes so many of its landings on the first, with slow grains held and without,
-and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. The constants of
-expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
+pours beds of each study of scenarios/ or validation/studies/, makes so many of its landings on the first, with slow
+grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. The
+constants of expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
 import json
@@ -13,16 +13,18 @@ import statistics
 from dataclasses import replace
 from pathlib import Path
 
-from harness import SCENARIOS, Row, command_line, origin, timed, write_document
+from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import landing_time, pour_time
 from lithobrake.pipeline.planning.pace import REFERENCE, probe
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, land, pour_bed
 
 RESULTS = Path(__file__).with_suffix(".json")
+STUDIES = {path.stem: path for folder in (SCENARIOS, VALIDATION_STUDIES) for path in sorted(folder.glob("*.toml"))}
 HELD = (0.0, 0.03, 0.1)
 COMPILED_BY = 8  # grains
 
@@ -39,7 +41,7 @@ def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, f
 
 def measure(name: str, bed_count: int, count: int) -> Row:
     """Pour beds of a study and make so many of its landings on the first."""
-    study = read_study(SCENARIOS / f"{name}.toml")
+    study = with_site_gravity(read_study(STUDIES[name]))
     soil = ExpectedSoil.of(DrawnDesign(study), len(study.touchdown_values()))
     paces = [probe() / REFERENCE]
     small = max(math.sqrt(COMPILED_BY / soil.recipe.grain_count) * soil.recipe.width[0], 2.0 * soil.recipe.sizes.upper)
@@ -60,7 +62,7 @@ def measure(name: str, bed_count: int, count: int) -> Row:
 def main() -> None:
     """Measure studies, one after the other."""
     parser = command_line(__doc__, beds=4, landings=14)
-    parser.add_argument("studies", nargs="+", choices=sorted(path.stem for path in SCENARIOS.glob("*.toml")))
+    parser.add_argument("studies", nargs="+", choices=STUDIES)
     given = parser.parse_args()
     known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     for name in given.studies:

@@ -55,6 +55,8 @@ class ProgressBars:
             TimeElapsedColumn(),
             _TimeLeft(),
             console=console,
+            # What a command prints goes above the lines where both are one terminal, and else its own way.
+            redirect_stdout=sys.stdout.isatty(),
         )
         self._stages = self._progress.add_task("study", total=None, count="", tells_time_left=False)
         self._work: TaskID | None = None

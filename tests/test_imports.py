@@ -60,7 +60,17 @@ ROOMS = {
         ),
         *("sequential_sampling", "inference", "planning", "study_run", "commands"),
     ),
-    "report": ("content", "page_data", "words", "tables", "figures", "live", "pages", "study_report"),
+    "report": (
+        "content",
+        "page_data",
+        "words",
+        "tables",
+        "figures",
+        "live",
+        "pages",
+        "study_report",
+        "comparison_report",
+    ),
 }
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)

@@ -2,9 +2,9 @@
 
     python validation/keep_results.py STUDY_FOLDER --command "lithobrake run scenarios/paper.toml" --log FILE
 
-Copies study, summary, expansions or emulator, and figures to showcase/NAME, NAME being that of the folder; writes the
-ledger as CSV and a contact sheet of the landing that the study shows; and notes with which command,
-on what machine and in which time it was made (from the log of the run, as bash's `time` ends it).
+Copies study, summary, expansions, emulator or journeys, and figures to showcase/NAME, NAME being that of the folder;
+writes the ledger as CSV and a contact sheet of the landing that the study shows; and notes with which command, on what
+machine and in which time it was made (from the log of the run, as bash's `time` ends it).
 """
 
 import json
@@ -25,7 +25,7 @@ from harness import ROOT, command_line, origin, write_document
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 KEPT = (
     "study.toml", "summary.json", "scores.json", "screening.json", "refined.json", "emulator.json", "estimates.json",
-    "run_flights.csv",
+    "run_flights.csv", "journeys.csv",
 )  # fmt: skip
 
 
@@ -66,10 +66,11 @@ def keep(study: Path, out: Path, motion: bool) -> None:
         shutil.copy(table, out / "runs" / table.name)
     (out / "figures").mkdir(exist_ok=True)
     # The sheet shows the landing in more frames than its figure.
-    for figure in sorted(set((study / "report").glob("*.png")) - {study / "report" / "figure_2_landing.png"}):
+    for figure in sorted(set((study / "report").glob("*.png")) - set((study / "report").glob("*_landing.png"))):
         shutil.copy(figure, out / "figures" / figure.name)
     results = lithobrake.StudyResults(study)
-    write_document(out / "rank_correlations.json", rank_correlations(results))
+    if (study / "samples.h5").exists():
+        write_document(out / "rank_correlations.json", rank_correlations(results))
     export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"], ExportOptions(replaces=True))
 
 

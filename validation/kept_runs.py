@@ -1,7 +1,7 @@
 """Fill the ledger of a study's folder with its kept landings, so that `lithobrake run` makes only what follows them.
 
-    python validation/kept_runs.py showcase/mission runs/mission
-    lithobrake run scenarios/mission.toml --out runs/mission
+    python validation/kept_runs.py showcase/drawn_700 runs/drawn_700
+    lithobrake run validation/studies/drawn_700.toml --out runs/drawn_700
 
 For a change of what comes after the landings: their outputs are taken as they are kept, under the key of today's code,
 so whoever changes the engine makes them anew instead. The inputs of each landing are compared with those that today's

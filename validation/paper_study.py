@@ -1,10 +1,10 @@
-"""The paper's way on ten other beds, and what the numbers of mission.toml depend on in the model of the soil.
+"""The paper's way on ten other beds, and what the numbers of drawn_700.toml depend on in the model of the soil.
 
     python validation/paper_study.py [--work FOLDER] [--kinds twin "other beds" ...] [--out validation]
 
 "twin": scenarios/paper.toml a tenth of a millimetre beside, at order 3: what of its errors no expansion can take away.
 "other beds": scenarios/paper.toml with seeds from 2 on, each with a bed of its own, as deep and wide as those of
-scenarios/mission.toml, at order 3 in both steps. "numerics": RUNS landings of scenarios/mission.toml on BEDS beds, with
+studies/drawn_700.toml, at order 3 in both steps. "numerics": RUNS landings of studies/drawn_700.toml on BEDS beds, with
 one number of the model halved and doubled after the other. "grain sizes": SIZE_RUNS landings on as many beds of smaller
 grains (SIZES), poured under so much more gravity that they overlap as much. paper_study.json gets an entry a study as
 it ends; a study that stands in it is not run again: delete it to start anew. validation/paper_study_figures.py
@@ -23,9 +23,11 @@ from typing import Any
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, command_line, origin, write_document
+from harness import SCENARIOS, VALIDATION_STUDIES, command_line, origin, write_document
 
 Tables = dict[str, Any]
+PAPER = SCENARIOS / "paper.toml"
+DRAWN = VALIDATION_STUDIES / "drawn_700.toml"
 OTHER_SEEDS = range(2, 12)
 RUNS, BEDS = 640, 8
 # Longest edge of the lander over the diameter of a grain: grains of a bed, and its width [m].
@@ -36,9 +38,9 @@ BESIDE = 1e-4  # m
 PAIRED = ("speed_out", "elevation_out", "spin_out")
 
 
-def scenario(name: str) -> Tables:
+def walled(path: Path) -> Tables:
     """The tables of a study of the repository, its beds between walls."""
-    tables = tomllib.loads((SCENARIOS / f"{name}.toml").read_text())
+    tables = tomllib.loads(path.read_text())
     return tables | {"bed": {"sides": "walls"} | tables["bed"]}
 
 
@@ -49,7 +51,7 @@ def changed(tables: Tables, section: str, **values: Any) -> Tables:
 
 def at_order_3() -> Tables:
     """The paper's way with its first step alone, for the second is made of the same runs."""
-    return changed(scenario("paper"), "design", refined_level=3, refined_degree=3, kept_share=1.0, test_count=10)
+    return changed(walled(PAPER), "design", refined_level=3, refined_degree=3, kept_share=1.0, test_count=10)
 
 
 def twin() -> Iterator[tuple[str, Tables]]:
@@ -60,7 +62,7 @@ def twin() -> Iterator[tuple[str, Tables]]:
 
 def other_beds() -> Iterator[tuple[str, Tables]]:
     """The paper's way, bed by bed."""
-    size = {name: scenario("mission")["bed"][name] for name in ("grain_count", "width")}
+    size = {name: walled(DRAWN)["bed"][name] for name in ("grain_count", "width")}
     tables = changed(at_order_3(), "bed", **size)
     for seed in OTHER_SEEDS:
         yield f"seed {seed}", tables | {"seed": seed}
@@ -68,7 +70,7 @@ def other_beds() -> Iterator[tuple[str, Tables]]:
 
 def numerics() -> Iterator[tuple[str, Tables]]:
     """The drawn study with one number halved and doubled after the other; the dearest last."""
-    base = changed(changed(scenario("mission"), "design", run_count=RUNS), "bed", bed_count=BEDS)
+    base = changed(changed(walled(DRAWN), "design", run_count=RUNS), "bed", bed_count=BEDS)
     base = changed(base, "monte_carlo", sample_count=10_000)
     grains, (width, _), points = base["bed"]["grain_count"], base["bed"]["width"], base["bed"]["cloud_point_count"]
     yield "as it is", base
@@ -85,7 +87,7 @@ def numerics() -> Iterator[tuple[str, Tables]]:
 
 def grain_sizes() -> Iterator[tuple[str, Tables]]:
     """The drawn study on smaller grains."""
-    base = changed(scenario("mission"), "monte_carlo", sample_count=10_000)
+    base = changed(walled(DRAWN), "monte_carlo", sample_count=10_000)
     base = changed(base, "design", run_count=SIZE_RUNS)
     coarse, gravity = base["bed"]["diameter"]["value"], base["bed"]["pour_gravity"]
     for ratio, (grains, width) in SIZES.items():

@@ -2,7 +2,7 @@
 
     python validation/paper_study_figures.py
 
-Reads showcase/paper, showcase/mission, showcase/efficient (validation/keep_results.py), paper_study.json and
+Reads showcase/paper, showcase/drawn_700, showcase/drawn_170 (validation/keep_results.py), paper_study.json and
 paper_fits.json; writes paper_study_*.png and paper_study.md to docs/validation.
 """
 
@@ -32,7 +32,10 @@ SYMBOLS = {SPEED: "V+", ELEVATION: "theta+", SPIN: "omega+"}
 UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
 PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
-WAYS = {"paper": "the paper's way, 1500 grains", "efficient": "drawn, few runs", "mission": "drawn"}
+WAYS = {"paper": "the paper's way, 1500 grains", "drawn_170": "drawn, few runs", "drawn_700": "drawn"}
+FILES = {"paper": "scenarios/paper.toml"} | {
+    name: f"validation/studies/{name}.toml" for name in ("drawn_170", "drawn_700")
+}
 Entry = dict[str, Any]
 
 
@@ -77,7 +80,7 @@ def every_study() -> Iterator[tuple[str, Entry]]:
     """All studies that answer the same question."""
     yield WAYS["paper"], kept("paper")
     yield from ((f"the paper's way, {one['name']}", one) for one in entries("other beds"))
-    yield from ((WAYS[name], kept(name)) for name in ("efficient", "mission"))
+    yield from ((WAYS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
 
 
 def answer_table() -> list[str]:
@@ -200,7 +203,7 @@ def grain_size_table() -> list[str]:
     """What decides on smaller grains: outcomes, V+, and the parts of its variance."""
     lines = ["| study | outcomes | V+ [cm/s] | down again [%] | variance of V+ |", "|---" * 5 + "|"]
     for name, one in [
-        ("lander 1.2 grains (drawn)", kept("mission")),
+        ("lander 1.2 grains (drawn)", kept("drawn_700")),
         *((e["name"], e) for e in entries("grain sizes")),
     ]:
         mean, factor = one["outputs"][SPEED]["mean"], UNITS[SPEED][0]
@@ -220,7 +223,7 @@ def time_table() -> list[str]:
         noted |= noted.get("landings", {})
         keys = {row["key"] for path in (SHOWCASE / name / "runs").glob("*.csv") for row in csv.DictReader(path.open())}
         times = f"{noted['wall_s'] / 60.0:.0f} | {noted['cpu_s'] / 60.0:.0f} | {noted['load']:.1f}"
-        lines.append(f"| `{noted['command']}` | {len(keys)} | {times} |")
+        lines.append(f"| `{FILES[name]}` | {len(keys)} | {times} |")
     return lines
 
 

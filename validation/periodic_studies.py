@@ -2,8 +2,9 @@
 
     python validation/periodic_studies.py FOLDER ...
 
-Each folder was made by `lithobrake run` of a file of scenarios/, as it is or with the keys of [bed] that
-periodic_studies.json then tells. Writes periodic_studies.json.
+Each folder was made by `lithobrake run` of a study of the first bounce (scenarios/first_bounce.toml and
+studies/drawn_170.toml), as it is or with the keys of [bed] that periodic_studies.json then tells. Writes
+periodic_studies.json.
 """
 
 import argparse

@@ -23,6 +23,7 @@ from lithobrake.analysis.output_estimates import (
     quantile_estimate,
     quantile_estimates,
 )
+from lithobrake.analysis.paired_difference import PairedDifference, quantile_difference, share_difference
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
@@ -33,12 +34,13 @@ from lithobrake.chaos.design import sample_inputs
 
 __all__ = [
     "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability",
-    "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel", "Posterior",
-    "QuantileEstimate", "ShareEstimate", "SubsetResult", "VarianceShares", "best_choice", "chaos_variance",
-    "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures", "expected_half_width",
-    "expected_half_widths", "failure_inputs", "failure_probability", "half_width_of", "highest_density",
-    "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value", "quantile_estimate",
-    "quantile_estimates", "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width",
-    "sample_inputs", "scatter_of", "share_estimate", "shared_bed_warning", "soil_total_effect", "subset_simulation",
-    "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
+    "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel",
+    "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult", "VarianceShares",
+    "best_choice", "chaos_variance", "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures",
+    "expected_half_width", "expected_half_widths", "failure_inputs", "failure_probability", "half_width_of",
+    "highest_density", "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value",
+    "quantile_difference", "quantile_estimate", "quantile_estimates", "quantile_within", "refit_interval",
+    "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of", "share_difference", "share_estimate",
+    "shared_bed_warning", "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit", "variance_shares",
+    "wilson_interval",
 ]  # fmt: skip

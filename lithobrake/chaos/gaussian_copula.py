@@ -14,6 +14,9 @@ from lithobrake.chaos.threads import one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
+# Probability as near to 0, or to 1, as a point comes.
+LEAST = 2.0**-53
+
 
 class GaussianCopula:
     """Inputs with given distributions and Spearman rank correlations [input_count, input_count].
@@ -47,4 +50,21 @@ class GaussianCopula:
         """Dependent points from a scrambled Sobol sequence, physical units, [count, input_count]."""
         independent = {name: Normal(0.0, 1.0) for name in self.inputs}
         uniforms = special.ndtr(sobol_sequence(independent, count, seed=seed) @ self._factor.T)
+        return self._physical(uniforms)
+
+    def dependent(self, points: ArrayLike) -> Array:
+        """Dependent points from independent ones of the same inputs, both physical, [count, input_count].
+
+        Each column follows from those up to it, the first stays as it is, and a row from that row alone.
+        """
+        independent = numbers("points", points)
+        uniforms = [entry.cdf(independent[:, k]) for k, entry in enumerate(self.inputs.values())]
+        normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST, 1.0 - LEAST))
+        # Not by a matrix product, whose rounding depends on how many rows there are.
+        together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
+        found = self._physical(special.ndtr(together))
+        found[:, 0] = independent[:, 0]
+        return found
+
+    def _physical(self, uniforms: Array) -> Array:
         return np.column_stack([entry.ppf(uniforms[:, k]) for k, entry in enumerate(self.inputs.values())])

@@ -3,7 +3,7 @@
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,6 +13,7 @@ from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
     from lithobrake.pipeline import OneLanding
+    from lithobrake.study import Study
 
 # Exit code of `doctor` where a library is missing without which nothing works.
 INCOMPLETE = 1
@@ -30,34 +31,30 @@ def land(
         typer.Option(
             "--out",
             metavar="FILE",
-            help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4, .webp (films), .png (a sheet).",
+            help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4, .webp (films), .png (a sheet), .html (a journey).",
         ),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Make one landing of a study and tell what came out. Nothing of the study's folder is read or written."""
+    """Make one landing of a study, or one journey of landings to rest, and tell what came out.
+
+    Nothing of the study's folder is read or written.
+    """
     with one_sentence():
         from lithobrake.study import read_study
 
         checked = read_study(study)
-        from lithobrake.pipeline import land_one, landing_inputs
+        from lithobrake.pipeline import landing_inputs
 
         values = landing_inputs(checked, change or (), number)
-        if out is not None:
-            from lithobrake.view import refuse_other_kinds
-
-            if out.suffix != ".h5":
-                refuse_other_kinds(out)
-            refuse_written(out, force)
-        with shown_progress("landing") as progress:
-            found = land_one(checked, values, progress)
-        _keep_motion(found, out, show)
+        found = _landed if checked.journey is None else _followed
+        told, lines = found(checked, values, out, show, force, json)
     if json:
-        tell_json(found.to_json())
+        tell_json(told)
     else:
-        tell([*found.lines(), *([] if out is None else [f"Motion: {out.resolve()}"])])
+        tell(lines)
 
 
 @app.command(epilog="Example: lithobrake serve study.toml --out results --port 4242")
@@ -116,6 +113,41 @@ def doctor(
         tell(found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
+
+
+def _landed(
+    study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Land once; give what came out as JSON values and in lines."""
+    from lithobrake.pipeline import land_one
+    from lithobrake.view import refuse_other_kinds
+
+    if out is not None:
+        if out.suffix != ".h5":
+            refuse_other_kinds(out)
+        refuse_written(out, force)
+    with shown_progress("landing") as progress:
+        found = land_one(study, values, progress)
+    _keep_motion(found, out, shown)
+    return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
+
+
+def _followed(
+    study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
+) -> tuple[dict[str, Any], list[str]]:
+    """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
+    from lithobrake.cli.one_journey import follow, refuse_journey_file, show_touchdowns
+
+    if out is not None:
+        refuse_journey_file(out, force, (".h5",))
+    found, paths = follow(study, values, out, is_told=not json)
+    if shown:
+        show_touchdowns(found.motion())
+    return found.to_json(), _motion_lines(paths)
+
+
+def _motion_lines(paths: list[Path]) -> list[str]:
+    return [f"Motion: {path.resolve()}" for path in paths]
 
 
 def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.one_journey import refuse_journey_file, show_touchdowns
 from lithobrake.cli.terminal import (
     BAD_INPUT,
     leave,
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.study_results import StudyResults
 
+JourneyNumber = Annotated[
+    int | None, typer.Option("--journey", metavar="N", help="All touchdowns of a journey, counted from 0.")
+]
 # What `runs` lists first, in columns with these heads, and the most characters of a line.
 TOLD = {
     "journey": ("", "journey"),
@@ -83,8 +87,12 @@ def view(
     folder: StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Which run --3d shows.")] = None,
+    journey: JourneyNumber = None,
 ) -> None:
-    """Open the report of a study in the browser."""
+    """Open the report of a study, or a page about one journey, in the browser."""
+    if journey is not None:
+        _view_journey(folder, journey, run, solid)
+        return
     if run is not None and not solid:
         leave(
             f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run", BAD_INPUT
@@ -101,10 +109,7 @@ def view(
 
         page, doubt = report_page(folder)
     tell([doubt] if doubt else [])
-    import webbrowser
-
-    if not webbrowser.open(page.as_uri()):
-        tell([f"No browser found; open this file: {page}"])
+    _open(page)
 
 
 @app.command(epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
@@ -119,10 +124,16 @@ def film(
             help="A film, .mp4 or .webp, a sheet of pictures, .png, or .vtkhdf for ParaView; DIR/landing.mp4.",
         ),
     ] = None,
-    seconds: Annotated[float, typer.Option("--seconds", metavar="S", help="How long the film lasts.")] = 8.0,
+    seconds: Annotated[
+        float, typer.Option("--seconds", metavar="S", help="How long the film lasts, or each touchdown.")
+    ] = 8.0,
+    journey: JourneyNumber = None,
     force: Force = False,
 ) -> None:
-    """Make a landing of a study again, and show it as a film."""
+    """Make a landing or a journey of a study again, and show it as a film."""
+    if journey is not None:
+        _film_journey(folder, journey, run, out or folder / f"journey_{journey}.mp4", seconds, force)
+        return
     path = out or folder / "landing.mp4"
     with one_sentence():
         from lithobrake.results import open_study
@@ -215,6 +226,75 @@ def infer(
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
         tell([line for line in (found["statement"], found["warning"], written) if line])
+
+
+@app.command(epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
+    second: Annotated[Path, typer.Argument(metavar="B", help="The folder of another.", show_default=False)],
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = "comparison",
+    json: Json = False,
+    force: Force = False,
+) -> None:
+    """Compare two studies run by run: the difference of every answer with its interval, as a page and as JSON."""
+    place = given_folder(out)
+    with one_sentence():
+        from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
+        from lithobrake.results.json_values import to_json
+
+        for path in comparison_files(place):
+            refuse_written(path, force)
+        comparison = compare_studies(first, second)
+        page, numbers = write_compared(comparison, place)
+    if json:
+        tell_json(to_json(comparison))
+    else:
+        tell([*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"])
+
+
+def _film_journey(folder: Path, number: int, run: str | None, path: Path, seconds: float, force: bool) -> None:
+    """Make all touchdowns of a journey again, and write them as the name of the file says."""
+    with one_sentence():
+        _refuse_both(number, run)
+        from lithobrake.results import open_study
+        from lithobrake.view import write_journey
+
+        refuse_journey_file(path, force)
+        with shown_progress("journey") as progress:
+            motion = open_study(folder).journey(number).motion(progress=progress)
+            paths = write_journey(motion, path, seconds, progress)
+    tell(f"Film: {path.resolve()}" for path in paths)
+
+
+def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
+    """Open a page about a journey in the browser, or windows on its touchdowns."""
+    page = folder / "report" / f"journey_{number}.html"
+    with one_sentence():
+        _refuse_both(number, run)
+        from lithobrake.results import open_study
+        from lithobrake.view import write_journey
+
+        with shown_progress("journey") as progress:
+            motion = open_study(folder).journey(number).motion(progress=progress)
+        if solid:
+            show_touchdowns(motion)
+            return
+        page.parent.mkdir(exist_ok=True)
+        write_journey(motion, page)
+    _open(page.resolve())
+
+
+def _refuse_both(number: int, run: str | None) -> None:
+    if run is not None:
+        raise ValueError(f"--run {run} and --journey {number} are given, and one thing is shown; omit one of them")
+
+
+def _open(page: Path) -> None:
+    """Open a page in the browser, or say where it is."""
+    import webbrowser
+
+    if not webbrowser.open(page.as_uri()):
+        tell([f"No browser found; open this file: {page}"])
 
 
 def _landing(results: "StudyResults", run: str | None, progress: Progress = silent) -> "MovingBodies":

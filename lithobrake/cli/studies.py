@@ -21,19 +21,25 @@ from lithobrake.cli.terminal import BAD_INPUT, command_line, leave, one_sentence
 
 
 @app.command(epilog="Example: lithobrake new bennu")
-def new(name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)]) -> None:
-    """Write a commented study file, NAME.toml."""
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
+    first_bounce: Annotated[
+        bool, typer.Option("--first-bounce", help="Ask for the first bounce and an emulator of it, not for the end.")
+    ] = False,
+) -> None:
+    """Write a commented study file, NAME.toml, that follows landers to rest."""
     with one_sentence():
         path = Path(name if name.endswith(".toml") else f"{name}.toml")
         # The stem also names the folder of the study, and stands in commands that are pasted.
         odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
         if odd or not name.isprintable():
             raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
+        from lithobrake.study.journey_template import journey_template
         from lithobrake.study.template import template
 
         try:
             with path.open("x", encoding="utf-8") as file:
-                file.write(template())
+                file.write(template() if first_bounce else journey_template())
         except FileExistsError:
             raise ValueError(f"{path} exists; choose another name or remove it") from None
         except OSError as error:

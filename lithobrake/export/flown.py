@@ -184,7 +184,8 @@ def _noted(arcs: Table, duration: float) -> dict[str, Any]:
         "mass": arcs["site_mass"],
         "spin_period": arcs["site_spin_period"],
         "end_time": arcs["end_s"] - arcs["begin_s"],
-        "duration": duration - arcs["begin_s"],
+        # Before the first touchdown a lander may fly as long as after it.
+        "duration": duration - np.maximum(arcs["begin_s"], 0.0),
     }
 
 

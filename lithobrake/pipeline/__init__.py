@@ -5,6 +5,12 @@ from typing import TYPE_CHECKING
 from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
+    from lithobrake.pipeline.commands.comparison import compare_studies as compare_studies
+    from lithobrake.pipeline.commands.comparison import comparison_files as comparison_files
+    from lithobrake.pipeline.commands.comparison import comparison_lines as comparison_lines
+    from lithobrake.pipeline.commands.comparison import write_compared as write_compared
+    from lithobrake.pipeline.commands.one_journey import OneJourney as OneJourney
+    from lithobrake.pipeline.commands.one_journey import follow_one as follow_one
     from lithobrake.pipeline.commands.one_landing import OneLanding as OneLanding
     from lithobrake.pipeline.commands.one_landing import land_one as land_one
     from lithobrake.pipeline.commands.one_landing import landing_inputs as landing_inputs

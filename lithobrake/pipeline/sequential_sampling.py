@@ -8,7 +8,7 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of, read_shares
+from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of_design, read_shares
 from lithobrake.pipeline.answer.failing_runs import failing_runs
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -43,14 +43,17 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
 
 
 def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
-    """1 for each journey that ended at rest and 0 for each other, by the key of its first touchdown."""
+    """1 for each journey that ended at rest and 0 for each other, by the key of its first touchdown.
+
+    Journeys without one are left out: `answers_of_design` adds them.
+    """
     key = folder.key_of(JOURNEYS_FILE)
     if key is None or folder.key_of(file_of("drawn")) is None:
         return {}
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
-    if stage_keys(study.with_run_count(max(len(keys), 2)))[JOURNEY_STAGE.name] != key:
+    if stage_keys(study.with_run_count(max(len(table.end), 2)))[JOURNEY_STAGE.name] != key:
         return {}
-    return dict(zip(keys, table.rests.astype(float).tolist(), strict=True))
+    return dict(zip(keys, table.rests[table.numbers["touchdowns"] > 0.0].astype(float).tolist(), strict=True))
 
 
 def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
@@ -74,7 +77,7 @@ def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
         return design
     known, flown = known_runs(study, folder), flown_shares(study, folder)
     while known.keys() & flown.keys() >= set(design.keys):
-        values, bed = answers_of(design.keys, known, flown)
+        values, bed = answers_of_design(design, known, flown)
         count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
         if count is None:
             break
@@ -117,7 +120,7 @@ def _width(job: Job) -> float | None:
     from lithobrake.analysis import half_width_of
 
     known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
-    return half_width_of(*answers_of(job.design.keys, known, flown))
+    return half_width_of(*answers_of_design(job.design, known, flown))
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:

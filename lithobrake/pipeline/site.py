@@ -12,6 +12,7 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
+from lithobrake.study.correlated_keys import drawn_together
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 
 if TYPE_CHECKING:
@@ -88,6 +89,10 @@ class Site:
 
     def sampled(self, count: int) -> dict[str, np.ndarray]:
         """The numbers of each sample or journey by key, [count] each; a larger count changes no earlier one."""
+        return drawn_together(self.study, self.sampled_apart(count))
+
+    def sampled_apart(self, count: int) -> dict[str, np.ndarray]:
+        """The same as if none were correlated with another."""
         from lithobrake.chaos.design import sample_inputs
 
         # The random numbers of an input follow from its name.

@@ -35,7 +35,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     content = _content(data)
     # A figure of which there is nothing to say is left out.
     plots = [plot for plot in content.plots if plot.sentence]
-    panels = _panels(folder, plots, progress)
+    panels = drawn_panels(folder / "report", plots, progress)
     pictures = [
         (_file(number, plot, kind), f"Figure {number}. {plot.title}")
         for number, (plot, panel) in enumerate(zip(plots, panels, strict=True), start=1)
@@ -43,7 +43,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     ]
     title = data.study["title"] or folder.name
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
-    text = page(title, captions.facts(data), content, panels, origin, data.study_text)
+    text = page(title, captions.facts(data), content, panels, origin, {"The study file": data.study_text})
     path = folder / "report" / "index.html"
     with atomic_path(path) as draft:
         draft.write_text(text, encoding="utf-8")
@@ -57,9 +57,9 @@ def _content(data: PaperPage | DrawnPage | JourneyPage) -> Content:
     return drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
 
 
-def _panels(folder: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]) -> list[Panel]:
-    """Draw all figures, and write each as a PNG and an SVG file."""
-    (folder / "report").mkdir(exist_ok=True)
+def drawn_panels(place: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]) -> list[Panel]:
+    """Draw all figures, and write each as a PNG and an SVG file in a folder, which is made."""
+    place.mkdir(parents=True, exist_ok=True)
     panels = []
     for number, plot in enumerate(plots, start=1):
         progress(number - 1, len(plots))
@@ -67,7 +67,7 @@ def _panels(folder: Path, plots: Sequence[Plot], progress: Callable[[int, int], 
             figure = plot.draw()
             made = {} if figure is None else {kind: _saved(figure, kind) for kind in PICTURES}
         for kind, content in made.items():
-            with atomic_path(folder / "report" / _file(number, plot, kind)) as draft:
+            with atomic_path(place / _file(number, plot, kind)) as draft:
                 draft.write_bytes(content)
         panels.append(Panel(plot.title, plot.sentence, made.get("png"), plot.heading, plot.tables))
     return panels

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from lithobrake.results.dispersion import GroundResults
+from lithobrake.results.dispersion import GroundResults, LandingEllipses
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,8 @@ class RestQuantiles:
 
 @dataclass(frozen=True)
 class RestRegion:
-    """The smallest region of the ground (highest density) that holds a share of the landers at rest."""
+    """The smallest region of the ground (highest density) that holds a share of landers: at rest, or at their first
+    impact."""
 
     share: float
     """that it holds, of 1"""
@@ -57,6 +58,28 @@ class RestRegion:
     """largest distance between two of its points"""
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     """latitude and east longitude [deg] along its edges"""
+
+
+@dataclass(frozen=True)
+class DeliveryResults:
+    """Where and how the landers come down first (touchdowns.csv): the delivery, whatever the ground does with it."""
+
+    count: int
+    """landers that touch down"""
+    of: int
+    """journeys"""
+    speed: tuple[float, float, float]
+    """speed of the first impact against the ground: 5, 50 and 95 % of the landers are below [m/s]"""
+    incidence_deg: tuple[float, float, float]
+    """the same of the angle of that velocity from the inward normal [deg]"""
+    descent_s: tuple[float, float, float] | None
+    """the same of the time from the state to the first impact [s]; null where landers are not flown to the ground"""
+    ellipse: LandingEllipses | None
+    """ellipses that hold half and 95 % of the first impacts; null for few, or for places all around the body"""
+    regions: tuple[RestRegion, ...]
+    """smallest regions (highest density) that hold 50 and 95 % of them; empty where why_no_regions says why"""
+    why_no_regions: str | None = None
+    """why there are no regions, in a sentence"""
 
 
 @dataclass(frozen=True)

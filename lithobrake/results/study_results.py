@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from lithobrake.campaign import Record
     from lithobrake.results.explorer_tables import ExplorerTables
+    from lithobrake.results.journey_again import StudyJourney
     from lithobrake.results.limit_state_results import RareLimitState
     from lithobrake.results.moving_bodies import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator
@@ -217,6 +218,18 @@ class StudyResults:
         joined = joined_touchdowns(rows, self._rows(TOUCHDOWN_RUNS, _RUN), self.ledger)
         known = RUN | TOUCHDOWN | JOURNEY_TOUCHDOWN | TOUCHDOWN_COST
         return self._table("touchdown", joined, columns, known)
+
+    def journey(self, number: int) -> "StudyJourney":
+        """One journey: its touchdowns, each of which it makes again, and its end.
+
+        number: of the table `journeys`, from 0. Raises ValueError for one that there is not.
+        """
+        from lithobrake.results.journey_again import StudyJourney
+
+        count = self.journeys.row_count
+        if not 0 <= number < count:
+            raise ValueError(f"journey is {number}; allowed: 0 to {count - 1}, the journeys of {self.folder}")
+        return StudyJourney(self, int(number))
 
     def _journey_rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
         """The rows of a table of journeys. Raises ValueError for a study that has none."""

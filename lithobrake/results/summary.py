@@ -19,7 +19,7 @@ from lithobrake.results.expansions import (
     NodeCounts,
     OutputErrors,
 )
-from lithobrake.results.journey_results import EndShare, JourneyRest
+from lithobrake.results.journey_results import DeliveryResults, EndShare, JourneyRest
 from lithobrake.results.limit_state_results import LimitStateResult
 from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
 from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
@@ -72,6 +72,8 @@ class DrawnResults:
     """the answer, then the most informative numbers, in sentences"""
     ends: Mapping[str, EndShare] | None = None
     """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
+    delivery: DeliveryResults | None = None
+    """with [journey]: where and how the landers come down first"""
     journeys: int | None = None
     """with [journey]: how many were followed"""
     touchdowns: int | None = None

@@ -13,6 +13,8 @@ from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
+# Each takes the error of an orbit's distance down by the part that flattening has in the attraction, a few percent.
+ORBIT_ITERATIONS = 10
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class Body:
         """As orbit, with a G mass [m3/s2] and spin rate [rad/s] in place of the body's own; all 0 without a partner."""
         if self.partner is None:
             return Orbit(*(0.0 * parameter,) * 8)
-        return self.partner.orbit(parameter, spin_rate)
+        return self.partner.orbit(parameter, spin_rate, self.flattening)
 
     @property
     def density(self) -> float:
@@ -67,6 +69,12 @@ class Body:
     def gravitational_parameter(self) -> float:
         """G mass [m3/s2]."""
         return GRAVITATIONAL_CONSTANT * self.mass
+
+    @property
+    def flattening(self) -> float:
+        """(C - (A + B) / 2) / mass [m2] of the moments of inertia, C about the spin axis: J2 times a radius squared."""
+        first, second, third = np.diag(self.shape.inertia_per_density)
+        return float((third - 0.5 * (first + second)) / self.shape.volume)
 
     @property
     def spin_rate(self) -> float:
@@ -217,7 +225,7 @@ class Partner:
     """The other body of a binary, seen from the one that holds this: it orbits in the sense of that one's spin.
 
     body            its shape, mass and spin, about the same direction
-    period          of the mutual orbit [s]; the distance follows from it and both masses (Kepler's third law)
+    period          of the mutual orbit [s]; the distance follows from it, both masses and both flattenings
     longitude_deg   east longitude of its centre at time 0, in the frame of the body that holds it
     facing_deg      the longitude on the partner that faces that body at time 0, and always where it turns once an orbit
     """
@@ -238,11 +246,17 @@ class Partner:
         if self.body.partner is not None:
             raise ValueError(f"{self.body.name}: a partner has no partner of its own; give it partner=None.")
 
-    def orbit(self, parameter: Entry, spin_rate: Entry) -> Orbit[Entry]:
-        """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight."""
+    def orbit(self, parameter: Entry, spin_rate: Entry, flattening: float) -> Orbit[Entry]:
+        """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight.
+
+        flattening: of that body [m2]. Both bodies attract as their second moments do on average over a turn. Source:
+        [Murray-1999], chapter 5 (MacCullagh's formula).
+        """
         total = parameter + self.body.gravitational_parameter
         mean_motion = 2.0 * math.pi / self.period
-        distance = (total / mean_motion**2) ** (1.0 / 3.0)
+        distance = sphere = (total / mean_motion**2) ** (1.0 / 3.0)
+        for _ in range(ORBIT_ITERATIONS):
+            distance = sphere * (1.0 + 1.5 * (flattening + self.body.flattening) / distance**2) ** (1.0 / 3.0)
         angle = 0.0 * parameter + math.radians(self.longitude_deg)
         mass_fraction = self.body.gravitational_parameter / total
         return Orbit(
@@ -251,7 +265,7 @@ class Partner:
             rate=mean_motion - spin_rate,
             attitude=angle + math.pi - math.radians(self.facing_deg),
             swing=self.body.spin_rate - spin_rate,
-            pull=self.body.gravitational_parameter / distance**2,
+            pull=mass_fraction * mean_motion**2 * distance,
             drift=mass_fraction * mean_motion * distance,
             mass_fraction=mass_fraction,
         )

@@ -39,8 +39,8 @@ def dimorphos(*, partner: bool = True) -> Body:
 
     One face towards Didymos is assumed, not measured: the impact of DART may have set it tumbling. Its shape is that
     before the impact. The orbit is taken as a circle (published eccentricity below .03) in the equator of Didymos; its
-    radius follows from period and masses as 1149 m, published are 1144 +- 70 m. The pole is that of the orbit,
-    DIDYMOS_POLE.
+    radius follows from period, masses and flattenings as 1157 m, published are 1144 +- 70 m. The pole is that of the
+    orbit, DIDYMOS_POLE.
 
     Sources: [Daly-2023] (extents and mass); [Naidu-2024] (period); [Thomas-2023] and [Scheirich-2024] (distance and
     eccentricity).

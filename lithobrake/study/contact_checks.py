@@ -76,9 +76,11 @@ def contact_problems(study: Study) -> Iterator[str]:
         )
         return
     radius = 0.5 * largest
-    depth = _first_overlap(study, min(high, grain), radius)
+    # That of a lander that is flown to the ground is not known before its flight.
+    speed = 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
+    depth = _first_overlap(study, min(high, grain), radius, speed)
     if depth > radius:
-        speed, modulus = usual_reach(study.impact.speed)[1], usual_reach(study.grain.young_modulus)[0]
+        modulus = usual_reach(study.grain.young_modulus)[0]
         yield (
             f"impact.speed reaches {speed:.4g} m/s with grain.young_modulus down to {modulus:.3g} Pa, so the first "
             f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
@@ -92,8 +94,8 @@ def _grain_sizes(study: Study) -> tuple[float, float]:
     return (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
 
 
-def _first_overlap(study: Study, mass: float, radius: float) -> float:
-    """Largest overlap [m] of a flat lander and a grain of a radius [m] at the highest speed.
+def _first_overlap(study: Study, mass: float, radius: float, speed: float) -> float:
+    """Largest overlap [m] of a flat lander and a grain of a radius [m] at a speed [m/s].
 
     mass [kg]: of the lighter of the two, which for unlike bodies is that of the collision. Source: [Johnson-1985],
     Eq 11.23: (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
@@ -105,7 +107,6 @@ def _first_overlap(study: Study, mass: float, radius: float) -> float:
     ):
         softest = usual_reach(grain.young_modulus if modulus is None else modulus)[0]
         give += (1.0 - usual_reach(ratio)[0] ** 2) / softest
-    speed = usual_reach(study.impact.speed)[1]
     return float((15.0 * mass * speed**2 * give / (16.0 * math.sqrt(radius))) ** 0.4)
 
 

@@ -37,6 +37,12 @@ class SiteSection(Section):
     """Name of the body in the kernels, or its number as text; absent: that of the built-in body."""
     epoch: str | None = None
     """UTC date and time of the touchdown, "2027-01-20T12:00:00": the partner stands where the kernels have it then."""
+    pole_right_ascension_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
+    """Right ascension, in ICRF, of the pole about which the body turns counter-clockwise."""
+    pole_declination_deg: Annotated[float, Number("deg", at_least=-90, at_most=90)] | None = None
+    """Declination of that pole."""
+    meridian_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
+    """Angle W of longitude 0 at delivery.epoch, from the node of the body's equator on that of ICRF, eastward."""
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0

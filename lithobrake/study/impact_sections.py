@@ -32,9 +32,9 @@ class RegionSection(Section):
 class ImpactSection(Section):
     """How the lander arrives."""
 
-    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] = Field(examples=["0.2"])
+    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] | None = Field(examples=["0.2"])
     """Speed; far below the limit already a contact may be too deep for its law, which is looked at too."""
-    incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = Field(examples=["30.0"])
+    incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] | None = Field(examples=["30.0"])
     """Angle between the velocity and the mean surface normal; 0 is straight down."""
     azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0
     """Direction of the horizontal velocity in the bed, from +x; "random" draws it anew for each run, which is the

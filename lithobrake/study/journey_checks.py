@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from lithobrake.study.journey_sections import PLACE_KEYS
+from lithobrake.study.delivery_checks import delivery_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
 
 def journey_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong."""
-    yield from _delivery_problems(study)
+    yield from delivery_problems(study)
     if study.journey is None:
         return
     design = study.design
@@ -37,12 +37,3 @@ def journey_problems(study: Study) -> Iterator[str]:
     for name, given in of_emulator.items():
         if given:
             yield f"[{name}] asks the emulator of single landings, and [journey] has none; leave one of the two out"
-
-
-def _delivery_problems(study: Study) -> Iterator[str]:
-    """Keys of [delivery] that stand with another value in the tables that they stand for."""
-    for key, value in {} if study.delivery is None else study.delivery:
-        part = "site" if key in PLACE_KEYS else "impact"
-        other = getattr(getattr(study, part), key)
-        if value is not None and value != other:
-            yield f"delivery.{key} is {show(value)} and {part}.{key} {show(other)}; keep one of the two"

@@ -104,7 +104,7 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """The tables with each path of a mesh, kernel, program or template counted from the folder of the study file."""
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
-    for section, key in (("lander", "file"), ("site", "body")):
+    for section, key in (("lander", "file"), ("site", "body"), ("delivery", "states")):
         table = result.get(section)
         if not isinstance(table, dict) or not isinstance(table.get(key), str):
             continue

@@ -1,6 +1,7 @@
 """A commented study file, written from the schema itself, so that the two never differ."""
 
 import textwrap
+from collections.abc import Iterator
 from itertools import groupby
 from typing import Any
 
@@ -18,18 +19,32 @@ _HEAD = """\
 """
 
 
+DISTRIBUTION_WORDS = (
+    "".join(f"#     {kind}: {', '.join(names)}\n" for kind, names in DISTRIBUTIONS.items())
+    + "# (mean and std of log_normal are those of ln x)\n"
+)
+
+
 def template() -> str:
-    """The text of a study file in which every key stands with its meaning, unit, range and default.
+    """The text of a study of the first bounce in which every key stands with its meaning, unit, range and default.
 
     Keys that may be left out, and are, stand behind a comment sign.
     """
-    kinds = "".join(f"#     {kind}: {', '.join(names)}\n" for kind, names in DISTRIBUTIONS.items())
-    parts = [_HEAD + kinds + "# (mean and std of log_normal are those of ln x)\n"]
+    needed = (field.is_required() or field.default is not None for field in Study.model_fields.values())
+    parts = (text if is_needed else commented(text) for text, is_needed in zip(sections(), needed, strict=True))
+    return "\n".join([_HEAD + DISTRIBUTION_WORDS, *parts])
+
+
+def sections() -> Iterator[str]:
+    """The text of each key of a study that is no table, and of each table with its keys, in their order."""
     for name, field in Study.model_fields.items():
         model = table(field)
-        section = _section(name, model) if model else _key(name, field)
-        parts.append(section if field.is_required() or field.default is not None else _commented(section))
-    return "\n".join(parts)
+        yield _section(name, model) if model else _key(name, field)
+
+
+def commented(section: str) -> str:
+    """A table behind comment signs."""
+    return "".join(line if line.startswith("#") else f"# {line}" for line in section.splitlines(keepends=True))
 
 
 def _section(name: str, model: type[BaseModel]) -> str:
@@ -40,11 +55,6 @@ def _section(name: str, model: type[BaseModel]) -> str:
         heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"
         lines += heading + "".join(_key(key, model.model_fields[key]) for key in keys)
     return lines
-
-
-def _commented(section: str) -> str:
-    """A table that may be left out, and is."""
-    return "".join(line if line.startswith("#") else f"# {line}" for line in section.splitlines(keepends=True))
 
 
 def _key(name: str, field: FieldInfo) -> str:

@@ -1,8 +1,18 @@
 """Moving bodies to look at outside the report: a file for ParaView, a window, a film, a contact sheet."""
 
 from lithobrake.view.files import contact_sheet, refuse_other_kinds, write_motion
-from lithobrake.view.film import film
+from lithobrake.view.film import film, journey_film
+from lithobrake.view.journey_files import write_journey
 from lithobrake.view.motion import show
 from lithobrake.view.vtkhdf import write_vtkhdf
 
-__all__ = ["contact_sheet", "film", "refuse_other_kinds", "show", "write_motion", "write_vtkhdf"]
+__all__ = [
+    "contact_sheet",
+    "film",
+    "journey_film",
+    "refuse_other_kinds",
+    "show",
+    "write_journey",
+    "write_motion",
+    "write_vtkhdf",
+]

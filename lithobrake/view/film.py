@@ -11,10 +11,14 @@ from lithobrake.view.motion import INSTALL, DrawnMotion
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies
 
 SIZE = (960, 640)
 KINDS = (".mp4", ".webp")
+# Of each touchdown of a journey.
+PICTURES = 120
+# How long a map is seen before the touchdown that it leads to [s]; pixels per inch of what is said over it.
+MAP_SECONDS, DPI = 2.0, 100.0
 
 
 def film(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
@@ -22,24 +26,77 @@ def film(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Pro
 
     Raises ValueError for another kind or duration, ImportError where PyVista, or imageio-ffmpeg for MP4, is absent.
     """
+    _refuse(path, seconds)
+    count = len(bodies.time)
+    pictures = (picture for picture, _ in zip(_pictures(bodies, count), _counted(count, progress), strict=False))
+    _write(path, pictures, count / seconds)
+
+
+def journey_film(motion: "JourneyMotion", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
+    """Write a film of a journey: before each touchdown the map with the way to it, and at the end the whole way.
+
+    seconds: that each touchdown lasts. Raises as film does.
+    """
+    _refuse(path, seconds)
+    rate, parts = PICTURES / seconds, len(motion.bodies)
+    total = parts * PICTURES + (parts + 1) * round(MAP_SECONDS * rate)
+    pictures = _journey_pictures(motion, round(MAP_SECONDS * rate))
+    _write(path, (picture for picture, _ in zip(pictures, _counted(total, progress), strict=False)), rate)
+
+
+def _refuse(path: Path, seconds: float) -> None:
+    """Raise ValueError for another kind or duration."""
     if path.suffix not in KINDS:
         raise ValueError(f"the film is {path.name!r}; allowed: a name that ends in {' or '.join(KINDS)}")
     if not 0.0 < seconds < np.inf:
         raise ValueError(f"the film lasts {seconds!r} s; allowed: a finite time above 0 s")
-    count = len(bodies.time)
-    pictures = _pictures(bodies, progress)
-    with atomic_path(path) as draft:
-        (_write_mp4 if path.suffix == ".mp4" else _write_webp)(draft, pictures, count / seconds)
 
 
-def _pictures(bodies: "MovingBodies", progress: Progress) -> Iterator[np.ndarray]:
-    """The frames at even instants, one after the other."""
-    drawn, count = DrawnMotion(bodies, size=SIZE, off_screen=True), len(bodies.time)
-    instants = np.linspace(bodies.time[0], bodies.time[-1], count)
-    for number, instant in enumerate(instants):
+def _counted(count: int, progress: Progress) -> Iterator[int]:
+    """So many numbers, each told as a part of all."""
+    for number in range(count):
+        progress((number + 1) / count, "drawing")
+        yield number
+
+
+def _pictures(bodies: "MovingBodies", count: int, words: str = "") -> Iterator[np.ndarray]:
+    """So many pictures at even instants, one after the other."""
+    drawn = DrawnMotion(bodies, size=SIZE, off_screen=True, words=words)
+    for instant in np.linspace(bodies.time[0], bodies.time[-1], count):
         drawn.go_to(int(np.argmin(np.abs(bodies.time - instant))))
         yield drawn.picture()
-        progress((number + 1) / count, "drawing")
+
+
+def _journey_pictures(motion: "JourneyMotion", map_count: int) -> Iterator[np.ndarray]:
+    """The pictures of a journey: maps, each so many times, and touchdowns."""
+    track = motion.track
+    for facts, bodies in zip(track.touchdowns, motion.bodies, strict=False):
+        yield from [map_picture(track, facts.number)] * map_count
+        yield from _pictures(bodies, PICTURES, f"journey {track.number}, {facts.words}")
+    yield from [map_picture(track)] * map_count
+
+
+def map_picture(track: "JourneyTrack", shown: int | None = None) -> np.ndarray:
+    """The map up to a touchdown, or the whole of it, with what is said of it, as large as a picture of the film."""
+    from PIL import Image
+
+    from lithobrake.report.figures.journey_sheet import caption, picture
+    from lithobrake.report.figures.style import figure_style
+    from lithobrake.report.figures.track_map import track_map
+
+    words = track.end_words if shown is None else track.touchdowns[shown].words
+    with figure_style():
+        drawn = picture(track_map(track, shown))
+        height = round(drawn.shape[0] * SIZE[0] / drawn.shape[1])
+        small = Image.fromarray(drawn).resize((SIZE[0], height), Image.Resampling.LANCZOS)
+        strip = picture(caption(f"Journey {track.number}: {words}", (SIZE[0] / DPI, (SIZE[1] - height) / DPI)), DPI)
+    return np.concatenate([strip, np.asarray(small)])
+
+
+def _write(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
+    """Write pictures to a film of the kind that the name says, so many a second."""
+    with atomic_path(path) as draft:
+        (_write_mp4 if path.suffix == ".mp4" else _write_webp)(draft, pictures, rate)
 
 
 def _write_mp4(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:

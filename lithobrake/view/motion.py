@@ -21,6 +21,8 @@ INSTALL = 'pip install "lithobrake[view]"'
 COLOURS = "YlGnBu"
 # What is slower than this part of the fastest is drawn as at rest: below it one colour serves.
 SLOWEST = 1e-3
+# Tiles of ground that repeats which are seen whole; over more of them the picture goes along with the lander.
+MOST_TILES = 2.0
 # Of a window [pixels].
 SIZE = (1280, 800)
 
@@ -37,13 +39,16 @@ def pyvista() -> Any:
 class DrawnMotion:
     """A window, shown or not, with the bodies of a motion; the lander is the last of them."""
 
-    def __init__(self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool) -> None:
-        """Set all up at the first frame; size of the picture in pixels."""
+    def __init__(
+        self, bodies: "MovingBodies", *, size: tuple[int, int], off_screen: bool, words: str = ""
+    ) -> None:  # fmt: skip
+        """Set all up at the first frame; size of the picture in pixels; words: above the time."""
         if off_screen and not os.environ.get("DISPLAY"):
             # Without this VTK asks for a display first, and says so.
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         pv = pyvista()
-        self.bodies = bodies = with_images(bodies)
+        self.words, self.bodies = words, with_images(bodies)
+        bodies = self.bodies
         self.speeds = body_speeds(bodies)
         faces, self.owner = triangles(bodies)
         self.mesh = pv.PolyData.from_regular_faces(placed(bodies, 0), faces)
@@ -57,20 +62,30 @@ class DrawnMotion:
                 "height": 0.5, "color": "black",
             },
         )  # fmt: skip
-        self._look()
+        self.follows = self._is_far()
+        self._look(0)
         self.clock = self.plotter.add_text(self._time(0), font_size=10, color="black")
 
     def _speeds_at(self, frame: int) -> np.ndarray:
         return np.maximum(self.speeds[frame, self.owner], SLOWEST * self.fastest)
 
     def _time(self, frame: int) -> str:
-        return f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+        clock = f"t = {self.bodies.time[frame] - self.bodies.time[0]:.3g} s"
+        return f"{self.words}\n{clock}" if self.words else clock
 
-    def _look(self) -> None:
-        """Look at the middle of the lander's way from aslant and above, far enough for all of the bed."""
+    def _is_far(self) -> bool:
+        """Whether the lander goes so far over ground that repeats that it would be a dot beside its whole way."""
+        facts, ground = self.bodies.attributes, np.ptp(self.bodies.position[0, :, :2], axis=0)
+        return facts.get("sides") == "periodic" and bool(ground.max() > MOST_TILES * max(facts["width"]))
+
+    def _look(self, frame: int) -> None:
+        """Look from aslant and above: at the middle of the bed and all of it, or along with a lander that goes far."""
         place = self.bodies.position
-        width = float(np.ptp(place[0, :, :2], axis=0).max())
-        middle = np.append(place[0, :, :2].mean(axis=0), np.quantile(place[0, :, 2], 0.9))
+        if self.follows:
+            width, middle = MOST_TILES * float(max(self.bodies.attributes["width"])), place[frame, -1]
+        else:
+            width = float(np.ptp(place[0, :, :2], axis=0).max())
+            middle = np.append(place[0, :, :2].mean(axis=0), np.quantile(place[0, :, 2], 0.9))
         self.plotter.camera_position = [tuple(middle + width * np.array([0.8, -2.6, 1.5])), tuple(middle), (0, 0, 1)]
 
     def go_to(self, frame: int) -> None:
@@ -78,6 +93,8 @@ class DrawnMotion:
         self.mesh.points = placed(self.bodies, frame)
         self.mesh.cell_data["speed"] = self._speeds_at(frame)
         self.clock.set_text("upper_left", self._time(frame))
+        if self.follows:
+            self._look(frame)
 
     def picture(self) -> np.ndarray:
         """Return what is seen now, shape [height, width, 3], 0 to 255."""

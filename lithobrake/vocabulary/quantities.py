@@ -116,7 +116,7 @@ FLIGHT = {
 ARC = {
     "sample": FLIGHT["sample"],
     "arc": Quantity("", "number of the flight in the journey of the sample, from 0"),
-    "begin_s": Quantity("s", "time from the first impact to the beginning of the flight"),
+    "begin_s": Quantity("s", "time from the first impact to the beginning of the flight, below 0 before it"),
     "end_s": Quantity("s", "time from the first impact to its end"),
     "clock_s": Quantity("s", "time at its beginning in the clock of the partner's motion"),
     **{f"position_{axis}": Quantity("m", f"place of its beginning along {axis}", FIXED) for axis in "xyz"},
@@ -152,6 +152,8 @@ JOURNEY_TOUCHDOWN = {
     "end_s": Quantity("s", "time from the first touchdown of the journey to the end"),
     "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),
     "longitude_deg": Quantity("deg", "east longitude of the impact", FIXED),
+    **{f"position_{axis}": Quantity("m", f"place of the impact along {axis}", FIXED) for axis in "xyz"},
+    **{f"velocity_{axis}": Quantity("m/s", f"velocity of the impact along {axis}", FIXED) for axis in "xyz"},
 }
 # Of the landers at delivery options (docs/aiming.md).
 AIM_FILE, AIM_COLUMNS = "aim.csv", ("ground", "aim", "refit", "status", "time_s", "distance")

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from lithobrake import __version__
 from lithobrake.cli import app
+from lithobrake.study.journey_template import journey_template
 from lithobrake.study.template import template
 
 RUNNER = CliRunner()
@@ -82,7 +83,9 @@ def test_help_imports_nothing_heavy() -> None:
 def test_new_writes_a_study_and_does_not_overwrite_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert RUNNER.invoke(app, ["new", "bennu"]).exit_code == 0
-    assert "[lander]" in (tmp_path / "bennu.toml").read_text()
+    assert (tmp_path / "bennu.toml").read_text() == journey_template()
+    assert RUNNER.invoke(app, ["new", "bounce", "--first-bounce"]).exit_code == 0
+    assert (tmp_path / "bounce.toml").read_text() == template()
     again = RUNNER.invoke(app, ["new", "bennu"])
     assert again.exit_code == 2
     assert "bennu.toml exists" in again.stderr
@@ -153,12 +156,12 @@ def test_a_missing_study_file_is_one_sentence(tmp_path: Path) -> None:
 def test_all_errors_of_a_study_are_listed_before_anything_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     RUNNER.invoke(app, ["new", "wrong"])
-    text = (tmp_path / "wrong.toml").read_text().replace("mass = 2.6", "mas = -2.6").replace("speed = 0.2", "speed = 0")
-    (tmp_path / "wrong.toml").write_text(text)
+    text = (tmp_path / "wrong.toml").read_text()
+    (tmp_path / "wrong.toml").write_text(text.replace("mass = 2.0", "mas = -2.0").replace("count = 48", "count = 1"))
     said = refused(["run", "wrong.toml"])
     assert "wrong.toml: lander.mas is not a known key; did you mean mass?" in said
     assert "wrong.toml: lander.mass is missing" in said
-    assert "wrong.toml: impact.speed is 0; allowed: above 0 and at most 1000 [m/s]" in said
+    assert "wrong.toml: journey.count is 1; allowed: at least 2 and at most 1e+06" in said
     assert not (tmp_path / "runs").exists()
 
 

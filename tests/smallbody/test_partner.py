@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from lithobrake.smallbody import Body, Partner, didymos, dimorphos, fly
 
@@ -23,7 +24,10 @@ class Stars:
         self.body, self.other = body, body.partner.body
         total = body.gravitational_parameter + self.other.gravitational_parameter
         self.motion = 2.0 * math.pi / body.partner.period
-        self.apart = (total / self.motion**2) ** (1.0 / 3.0)
+        flat = body.flattening + self.other.flattening
+        self.apart = brentq(
+            lambda d: total / d**2 * (1.0 + 1.5 * flat / d**2) - self.motion**2 * d, 500.0, 5000.0, xtol=1e-10
+        )
         self.share = self.other.gravitational_parameter / total
         self.start = math.radians(body.partner.longitude_deg)
         self.facing = self.start + math.pi - math.radians(body.partner.facing_deg)
@@ -123,10 +127,12 @@ def test_the_velocity_against_the_partner_is_the_derivative_of_its_frame():
 
 
 def test_the_orbit_of_the_built_in_binary():
-    """Kepler's third law with both masses; published are 1144 +- 70 m after the impact of DART."""
+    """Kepler's third law with both masses and flattenings; published are 1144 +- 70 m after the impact of DART."""
     body = didymos()
+    assert body.orbit.distance == pytest.approx(Stars(body).apart)
     total = body.gravitational_parameter + body.partner.body.gravitational_parameter
-    assert body.orbit.distance == pytest.approx((total * (body.partner.period / (2.0 * math.pi)) ** 2) ** (1 / 3))
+    spheres = (total * (body.partner.period / (2.0 * math.pi)) ** 2) ** (1 / 3)
+    assert 1.006 < body.orbit.distance / spheres < 1.007
     assert 1144 - 70 < body.orbit.distance < 1144 + 70
     assert dimorphos().orbit.distance == pytest.approx(body.orbit.distance)
     # Always the same face: the centre of Didymos stands over longitude 0 of Dimorphos at any time.
@@ -134,6 +140,27 @@ def test_the_orbit_of_the_built_in_binary():
         centre, _ = body.orbit.seen_from_partner([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], time)
         assert centre == pytest.approx([body.orbit.distance, 0.0, 0.0], abs=1e-9)
     assert dimorphos().orbit.rate == 0.0
+
+
+def test_the_centre_of_a_moon_follows_its_orbit():
+    """What stands at the centre of Dimorphos feels nothing of Didymos: its facets pull as hard as the orbit turns."""
+    moon = dimorphos()
+    angle = np.radians(np.arange(0.0, 360.0, 3.0))
+    around = moon.orbit.distance * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
+    pull = -(moon.partner.body.acceleration(around) * around).sum(axis=1).mean() / moon.orbit.distance
+    # The rest is that the moon is flat too, a part of 1e-3, less what the fourth degree of Didymos adds.
+    assert moon.orbit.pull == pytest.approx(pull, rel=3e-4)
+
+
+def test_a_flat_body_attracts_as_its_moments_say():
+    """MacCullagh's formula against the facets of Didymos, where the orbit of its moon is."""
+    body = didymos(partner=False)
+    # Longitudes 0 and 90 in the mean, between which the equator's own shape cancels.
+    directions = np.eye(3)[:2]
+    for far, fourth_degree in ((1156.0, 2e-3), (11560.0, 1e-6)):
+        pull = -(body.acceleration(far * directions) * directions).sum(axis=1).mean()
+        share = pull * far**2 / body.gravitational_parameter
+        assert share == pytest.approx(1.0 + 1.5 * body.flattening / far**2, rel=fourth_degree)
 
 
 def test_the_partner_is_switched_off():

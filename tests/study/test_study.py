@@ -9,12 +9,16 @@ from typing import Any
 import pytest
 
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
+from lithobrake.study.journey_template import journey_template
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.template import template
 
 from ..paper_tables import paper_tables
 
 TABLES: dict[str, Any] = paper_tables()
+ROOT = Path(__file__).parents[2]
+STUDIES = sorted([*(ROOT / "scenarios").glob("*.toml"), *(ROOT / "validation" / "studies").glob("*.toml")])
+STUDIES.append(ROOT / "examples" / "philae.toml")
 
 
 def problems(changes: dict[str, Any], folder: Path = Path()) -> list[str]:
@@ -48,8 +52,17 @@ def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
     ]
 
 
-def test_every_key_has_a_meaning_in_the_template() -> None:
-    text = template()
+def test_the_journey_template_is_a_study_of_journeys(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(journey_template())
+    study = read_study(tmp_path / "study.toml")
+    assert study.journey is not None
+    assert study.journey.count == study.design.run_count == 48
+    assert study.bed_count == 12
+    assert {"impact.speed", "grain.friction"} <= uncertain(study.touchdown_values()).keys()
+
+
+@pytest.mark.parametrize("text", [template(), journey_template()], ids=["first bounce", "journeys"])
+def test_every_key_has_a_meaning_in_a_template(text: str) -> None:
     for path, names in known_keys().items():
         # The kinds of size distribution stand in the words of bed.diameter.
         for name in names if path != "bed.diameter" else ():
@@ -277,7 +290,7 @@ def test_beds_repeat_unless_the_method_is_that_of_the_paper() -> None:
 
 
 def test_no_scenario_of_the_drawn_method_has_an_edge_to_leave_over() -> None:
-    studies = [read_study(path) for path in (Path(__file__).parents[2] / "scenarios").glob("*.toml")]
+    studies = [read_study(path) for path in STUDIES]
     assert {study.bed.sides for study in studies if study.design.method == "drawn"} == {"periodic"}
     assert sum(study.design.method == "drawn" for study in studies) >= 6
 
@@ -427,12 +440,10 @@ def test_what_only_the_flight_reads_may_be_uncertain() -> None:
     assert "site.mass" in uncertain(study.site_values())
 
 
-@pytest.mark.parametrize(
-    "path", sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml")), ids=lambda path: path.stem
-)
-def test_the_scenarios_are_studies(path: Path) -> None:
-    same = ("one_place", "paper", "mission", "efficient", "first_bounce")
-    counts = {"aim": 6, "bounces": 3, "philae": 4, "quick": 6} | dict.fromkeys(same, 5)
+@pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
+def test_the_studies_of_the_repository_are_studies(path: Path) -> None:
+    same = ("one_place", "paper", "drawn_700", "drawn_170", "first_bounce")
+    counts = {"aim": 6, "philae": 4, "quick": 6, "mission": 10} | dict.fromkeys(same, 5)
     assert len(uncertain(read_study(path).touchdown_values())) == counts[path.stem]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from lithobrake.campaign import Record
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.fly.run_flights import FILE
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.study import Study
@@ -42,3 +43,14 @@ def answers_of(
     """
     answered = [key for key in keys if key in known and key in flown]
     return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
+
+
+def answers_of_design(
+    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same of the runs of a design, with 0 for each lander that is flown to the ground and never touches down."""
+    values, bed = answers_of(design.keys, known, flown)
+    if design.descents is None:
+        return values, bed
+    aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
+    return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])

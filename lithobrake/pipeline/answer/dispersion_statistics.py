@@ -60,14 +60,19 @@ def flight_checks(job: Job) -> FlightChecks:
 
 
 def ellipses(study: Study, rows: Rows, status: str) -> LandingEllipses | None:
-    """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none.
+    """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none."""
+    down = [row for row in rows if row["status"] == status]
+    latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
+    return place_ellipses(study, latitude, longitude)
+
+
+def place_ellipses(study: Study, latitude: np.ndarray, longitude: np.ndarray) -> LandingEllipses | None:
+    """Ellipses that hold half and 95 % of places [deg], both [count]; None where there are none.
 
     The axes in metres are the angles times the radius at the middle.
     """
     from lithobrake.analysis import dispersion_ellipses
 
-    down = [row for row in rows if row["status"] == status]
-    latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
     found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None

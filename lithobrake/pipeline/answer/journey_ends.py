@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.analysis import highest_density, quantile_estimate, share_estimate
+from lithobrake.analysis.highest_density import HighestDensity
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
@@ -26,7 +27,6 @@ class JourneyTable:
     numbers: dict[str, np.ndarray]
     position: np.ndarray
     face: np.ndarray
-    touchdowns: int
 
     @classmethod
     def load(cls, folder: StudyFolder) -> "JourneyTable":
@@ -40,11 +40,15 @@ class JourneyTable:
         return cls(
             end=np.array([row["end"] for row in rows]),
             bed=np.array([int(row["bed"]) for row in rows]),
-            numbers={name: numbers(name) for name in ("time_s", "contacts", "distance", "tilt_deg")},
+            numbers={name: numbers(name) for name in ("time_s", "contacts", "distance", "tilt_deg", "touchdowns")},
             position=np.column_stack([numbers(f"position_{axis}") for axis in "xyz"]),
             face=np.array([row["face"] for row in rows]),
-            touchdowns=int(numbers("touchdowns").sum()),
         )
+
+    @property
+    def touchdowns(self) -> int:
+        """How many landings all of them have."""
+        return int(self.numbers["touchdowns"].sum())
 
     @property
     def rests(self) -> np.ndarray:
@@ -76,13 +80,18 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         time_s=quantiles("time_s"),
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),
-        regions=tuple(
-            RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
-            for one in density.regions
-        ),
+        regions=rest_regions(density),
         faces={str(face): end_share(faces == face, table.bed[rests], why) for face in np.unique(faces) if has_sides},
         tilt_deg=quantiles("tilt_deg") if has_sides else None,
         why_no_regions=density.why,
+    )
+
+
+def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
+    """Regions of highest density as results."""
+    return tuple(
+        RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
+        for one in density.regions
     )
 
 

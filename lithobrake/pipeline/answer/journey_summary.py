@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from lithobrake.pipeline.answer.aim_results import aim_results
+from lithobrake.pipeline.answer.delivery_results import delivery_results
 from lithobrake.pipeline.answer.emulated_ends import emulated_ends
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.landing_results import write_results
@@ -30,6 +31,7 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         aim=aim_results(job.study, job.folder, fitted),
         rest=journey_rest(job.study, table),
         ends=ends,
+        delivery=delivery_results(job, runs, len(table.end)),
         journeys=len(table.end),
         touchdowns=table.touchdowns,
         emulated=emulated,

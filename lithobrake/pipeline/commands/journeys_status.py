@@ -69,7 +69,8 @@ def journeys_status(path: Path, records: Sequence[Record], total: int, *, is_cur
     touchdowns = sum(record.status in (RunStatus.DONE, RunStatus.FAILED) for record in records)
     if is_current:
         ends = Counter(row["end"] for row in read_rows(path / JOURNEYS, ("end",), AGAIN))
-        return JourneysStatus(total, ends, touchdowns, is_final=True)
+        # With those that never touched down, of which the ledger knows nothing.
+        return JourneysStatus(ends.total(), ends, touchdowns, is_final=True)
     last: dict[float, Record] = {}
     for record in sorted(records, key=lambda one: one.inputs[TOUCHDOWN]):
         last[record.inputs[NUMBER]] = record

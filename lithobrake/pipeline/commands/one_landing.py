@@ -9,13 +9,14 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.kernels import compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, StudyError, fixed_study
-from lithobrake.study.touchdown_model import draw, in_words_of_the_study, lander, landing
+from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import TOUCHDOWN
+from lithobrake.vocabulary.quantities import GROUND, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 FRAMES = 120
 # A number of TOML, and nothing else of it: no truth values, no comments, no second line.
 _NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)", re.ASCII)
+# What a touchdown of a journey is given by where the lander is, and by when.
+OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT, *GROUND)
 # Seeds of pours are told apart by the number of the bed in so many bits.
 LAST_BED = 2**32 - 1
 
@@ -81,11 +84,16 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
         raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
     study = with_site_gravity(study, "the study")
     values = _values(study, number)
-    changed = dict(_changed(change, values) for change in changes)
-    if changed:
-        values |= changed
-        _refuse(study, values)
-    return values
+    own = OF_JOURNEYS if study.journey is not None else ()
+    free = {key: value for key, value in values.items() if key not in own}
+    changed = dict(_changed(change, free) for change in changes)
+    if not changed:
+        return values
+    _refuse(study, free | changed)
+    if study.journey is None:
+        return values | changed
+    # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
+    return on_local_ground(study, [values | changed], number - 1)[0]
 
 
 def land_one(
@@ -96,19 +104,33 @@ def land_one(
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
     another soil that is landed on, and not another bed.
     """
-    from lithobrake.touchdown import land, pour_bed, stored_or_poured
+    study = with_site_gravity(study, "the study")
+    return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
+
+
+def bed_of(study: Study, number: int, progress: Callable[[float, str], None]) -> "Bed":
+    """The bed of a number, from the library or poured; the study has the gravity of its site."""
+    from lithobrake.touchdown import pour_bed, stored_or_poured
     from lithobrake.touchdown.bed import Bed
 
-    study = with_site_gravity(study, "the study")
     with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
-        recipe, path = bed_recipe(study, round(values["bed"])), Path(folder) / "bed.h5"
+        recipe, path = bed_recipe(study, number), Path(folder) / "bed.h5"
 
         def pour() -> "Bed":
             compile_kernels(lambda done, total, what, *_: progress(done / total, what))
             return pour_bed(recipe, progress=progress)
 
         stored_or_poured(recipe, path, pour)
-        bed = Bed.load(path)
+        return Bed.load(path)
+
+
+def landed(
+    study: Study, values: dict[str, float], bed: "Bed", progress: Callable[[float, str], None]
+) -> OneLanding:  # fmt: skip
+    """Land once with all that a landing reads on this bed; the study has the gravity of its site."""
+    from lithobrake.touchdown import land
+
+    with in_words_of_the_study():
         body, arrival = lander(study, values), landing(study, values)
         return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
 

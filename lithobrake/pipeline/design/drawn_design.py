@@ -20,10 +20,15 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.design.place_region import Interval, place_region
-from lithobrake.study import Study
+from lithobrake.pipeline.design.release_draws import RELEASE
+from lithobrake.pipeline.site import Site
+from lithobrake.study import Study, StudyError
 from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
+from lithobrake.study.correlated_keys import correlated_keys, drawn_together
+from lithobrake.study.journey_sections import PLACE_KEYS
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, given_attitude, medians
 
@@ -35,6 +40,8 @@ AZIMUTH = "impact.azimuth_deg"
 # an azimuth that is given leaves the others as they were.
 DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
 PAIR_COUNT, TWIN_COUNT = 20, 12
+# What the flight of a lander tells of its impact.
+FLOWN = ("impact.speed", "impact.incidence_deg")
 # Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
 SIDE_DESIGNS = ("soil_pairs", "twins")
 
@@ -55,8 +62,35 @@ class DrawnDesign:
 
     @cached_property
     def medians(self) -> dict[str, float]:
-        """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units."""
-        return medians(self.study)
+        """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units.
+
+        Of landers that are flown to the ground, also the medians of what their flights tell.
+        """
+        told = [key for key in FLOWN if self.is_flown]
+        return medians(self.study) | {key: float(np.median([row[key] for row in self.rows])) for key in told}
+
+    @property
+    def is_flown(self) -> bool:
+        """Whether landers are flown to their first touchdown from states."""
+        return self.study.delivery is not None and self.study.delivery.is_flown
+
+    @cached_property
+    def descents(self) -> Descents | None:
+        """The flights to the first touchdowns of all journeys; None where the study says how landers arrive.
+
+        Raises StudyError where none reaches the ground, and as Descents.flown does.
+        """
+        if not self.is_flown:
+            return None
+        found = self._descents(0, self._points(len(self.beds)))
+        if not found.touches_down.any():
+            raise StudyError(
+                [
+                    f"[delivery]: none of {len(self.beds)} landers reaches the ground within journey.duration; "
+                    "allowed: states of which at least one does; mend them, or raise the duration"
+                ]
+            )
+        return found
 
     @cached_property
     def region(self) -> tuple[Interval, Interval] | None:
@@ -77,8 +111,12 @@ class DrawnDesign:
 
     @cached_property
     def rows(self) -> list[dict[str, float]]:
-        """All inputs of the runs, by dotted key in the file's units, with what each drew."""
-        return self._first_touchdowns(self.rows_at(self.beds, self._points(len(self.beds))), 0)
+        """All inputs of the runs, by dotted key in the file's units, with what each drew.
+
+        Of journeys that are flown to the ground these are the first touchdowns of those that reach it.
+        """
+        points = self._points(len(self.beds))
+        return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
 
     @cached_property
     def keys(self) -> list[str]:
@@ -86,9 +124,30 @@ class DrawnDesign:
         return touchdown_keys(self.study, self.rows, 0)
 
     def row(self, run: int) -> dict[str, float]:
-        """All inputs of one run, counted from 0, of which there may be more than the study has."""
-        rows = self.rows_at(beds_of_runs(self.study, run + 1)[-1:], self._points(1, skip=run))
-        return self._first_touchdowns(rows, run)[0]
+        """All inputs of one run, counted from 0, of which there may be more than the study has.
+
+        Raises ValueError for a lander that is flown to the ground and does not reach it.
+        """
+        row = self._row(run)
+        if row is None:
+            raise ValueError(f"lander {run + 1} of the study never touches down; choose another")
+        return row
+
+    @property
+    def shown_row(self) -> dict[str, float]:
+        """All inputs of the first run; of landers that are flown to the ground, of the first that reaches it.
+
+        Raises StudyError where none does.
+        """
+        rows = (self._row(run) for run in range(len(self.beds)))
+        return next((row for row in rows if row is not None), None) or self.rows[0]
+
+    def _row(self, run: int) -> dict[str, float] | None:
+        """The same as `row`; None for a lander that never touches down."""
+        points = self._points(1, skip=run)
+        rows = self.rows_at(beds_of_runs(self.study, run + 1)[-1:], points)
+        descents = self._descents(run, points) if self.is_flown else None
+        return next(iter(self._first_touchdowns(rows, run, descents)), None)
 
     def rows_of(self, design: str) -> list[dict[str, float]]:
         """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
@@ -99,7 +158,8 @@ class DrawnDesign:
         """What a run takes from its point, but for its bed: the uncertain inputs, then what it draws."""
         from lithobrake.chaos import Uniform
 
-        return self.inputs | dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
+        release = RELEASE if self.is_flown else ()
+        return self.inputs | dict.fromkeys((*DRAWN, *release), Uniform(0.0, 1.0))
 
     @property
     def soil_inputs(self) -> "dict[str, Distribution]":
@@ -118,24 +178,43 @@ class DrawnDesign:
 
     def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
-        rows = []
+        rows, known = [], medians(self.study)
         for bed, point in zip(beds, x.tolist(), strict=True):
             soil = dict(zip(self.inputs, point, strict=False))
-            uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=True))
-            row = self.medians | soil | {"bed": float(bed)} | _arrival(self.study, uniform)
+            uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=False))
+            row = known | soil | {"bed": float(bed)} | _arrival(self.study, uniform)
             for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.region or (), strict=False):
                 row[name] = low + uniform[coordinate] * (high - low)
             rows.append(row)
         return rows
 
-    def _first_touchdowns(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+    def _first_touchdowns(
+        self, rows: list[dict[str, float]], first: int, descents: Descents | None
+    ) -> list[dict[str, float]]:
         """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
         journey = self.study.journey
         if journey is None:
             return rows
         begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
-        return on_local_ground(self.study, numbered, first)
+        numbered = self._together(numbered, first)
+        return on_local_ground(self.study, numbered, first) if descents is None else descents.first_touchdowns(numbered)
+
+    def _together(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+        """Rows with what is correlated in [delivery]; where it lands the site draws."""
+        keys = {key: f"impact.{key}" for key in correlated_keys(self.study) if key not in PLACE_KEYS}
+        if not keys:
+            return rows
+        place = {key: values[first:] for key, values in Site(self.study).sampled_apart(first + len(rows)).items()}
+        arrival = {key: np.array([row[dotted] for row in rows]) for key, dotted in keys.items()}
+        found = drawn_together(self.study, place | arrival)
+        return [
+            row | {dotted: float(found[key][number]) for key, dotted in keys.items()} for number, row in enumerate(rows)
+        ]
+
+    def _descents(self, first: int, points: np.ndarray) -> Descents:
+        """The flights of the journeys from `first` on, at these points of the sequence."""
+        return Descents.flown(self.study, first, points[:, -len(RELEASE) :])
 
     def _soil_pairs(self) -> list[dict[str, float]]:
         """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.

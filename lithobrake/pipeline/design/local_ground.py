@@ -65,7 +65,20 @@ def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
     time = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    local = np.einsum("nij,nj->ni", axes, felt(site.body, origin, time, columns["mass"], columns["spin_period"]))
+    return on_ground(site.body, rows, origin, axes, time, columns["mass"], columns["spin_period"])
+
+
+def on_ground(
+    body: "Body",
+    rows: Sequence[Row],
+    origin: np.ndarray,
+    axes: np.ndarray,
+    time: np.ndarray,
+    mass: np.ndarray,
+    spin_period: np.ndarray,
+) -> list[Row]:
+    """Touchdowns under the acceleration at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
+    local = np.einsum("nij,nj->ni", axes, felt(body, origin, time, mass, spin_period))
     return [row | ground_inputs(one, row[AZIMUTH], friction_of(row)) for row, one in zip(rows, local, strict=True)]
 
 

@@ -10,6 +10,8 @@ from lithobrake.study.touchdown_model import grain, grain_sizes, lander, medians
 Interval = tuple[float, float]
 # Sizes of grains out of their distribution, evenly by share, whose mean is that of all.
 SIZE_COUNT = 1000
+# Of a lander that is flown to the ground [m/s]: the smallest width is the same at every speed.
+ANY_SPEED = 1.0
 
 
 def place_region(study: Study) -> tuple[Interval, Interval] | None:
@@ -37,4 +39,5 @@ def smallest_width(study: Study) -> float:
 
     values: dict[str, Any] = medians(study)
     diameter = float(grain_sizes(study).draw((np.arange(SIZE_COUNT) + 0.5) / SIZE_COUNT).mean())
-    return smallest_bed(lander(study, values), grain(values), diameter, values["impact.speed"])[0]
+    speed = values.get("impact.speed", ANY_SPEED)
+    return smallest_bed(lander(study, values), grain(values), diameter, speed)[0]

@@ -61,7 +61,7 @@ class Arrivals:
     @property
     def spin(self) -> np.ndarray:
         """Angular velocity against the ground [rad/s], [count, 3], in the frames of the touchdowns."""
-        from lithobrake.pipeline.journeys.contact_frame import about_z
+        from lithobrake.geometry.contact_frame import about_z
 
         of_bed = np.column_stack([self.column(name) for name in SPIN])
         turns = [about_z(-angle) for angle in np.radians(self.column("impact.azimuth_deg")).tolist()]

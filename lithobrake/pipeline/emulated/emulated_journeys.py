@@ -33,7 +33,8 @@ def make_emulated(job: Job) -> None:
     """Fit the emulator to all touchdowns, follow landers by it, and write touchdown_emulator.json and emulated.csv."""
     why, rows = fit_touchdowns(job), []
     assert job.study.journey is not None
-    if why is None and job.study.journey.emulated_count:
+    # Landers that are flown to the ground from states of their own are not followed by the emulator.
+    if why is None and job.study.journey.emulated_count and job.design.descents is None:
         emulator = TouchdownEmulator.read(job.design, job.folder)
         rows = [*_fresh(job, emulator), *_own(job, emulator)]
     if why is not None:

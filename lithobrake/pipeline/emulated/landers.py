@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.pipeline.design.arrival import FLATTEST_DEG
 from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
 from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, SLOPE, SPEED, TouchdownEmulator
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.journey import ENDS, FLATTEST_DEG, MOST_TOUCHDOWNS
+from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 
 AFTER = {

@@ -9,12 +9,12 @@ import numpy as np
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
+from lithobrake.geometry.contact_frame import about_z
 from lithobrake.pipeline.design.local_ground import AZIMUTH, friction_of, ground_inputs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import SPIN, Arrivals, Row
 from lithobrake.pipeline.emulated.touchdown_emulator import ALONG, ASIDE, DURATION, INCIDENCE, SPEED
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.contact_frame import about_z
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT

@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.site import SITE_KEYS, Site
+from lithobrake.study.correlated_keys import drawn_together
 
 # Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
 FLIGHT_COUNT = 64
@@ -33,7 +34,8 @@ def run_sites(site: Site, run_count: int, flight_count: int = FLIGHT_COUNT) -> d
                 share = (steps / flight_count + first) % 1.0
                 # Half a unit in the last place off the ends, where an unbounded law is infinite.
                 sites[key][run] = laws[key].ppf(np.clip(share, 2.0**-54, 1.0 - 2.0**-53))
-    return sites
+    together = drawn_together(site.study, {key: values.ravel() for key, values in sites.items()})
+    return {key: values.reshape(run_count, flight_count) for key, values in together.items()}
 
 
 def _generator(count: int) -> int:

@@ -9,10 +9,12 @@ import numpy as np
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
+from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
+from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
-from lithobrake.pipeline.journeys.contact_frame import about_z, attitude_of, from_frame, quaternion, spin_of
 from lithobrake.pipeline.journeys.resting_attitude import side_down
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT
+from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import VELOCITY_OUT
 
@@ -23,9 +25,6 @@ if TYPE_CHECKING:
     from lithobrake.smallbody import Flights
 
 Row = dict[str, float]
-SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
-# A lander that comes in along the ground meets it from above all the same.
-FLATTEST_DEG = 89.9
 # Of one journey; more would be a lander that moves along for ever.
 MOST_TOUCHDOWNS = 1000
 
@@ -44,7 +43,8 @@ class Journey:
     row: inputs of its present touchdown. origin [m] and axes, in rows, of the frame of that; time [s]: at its
     beginning, since the first; clock [s]: when the first began, as of the partner. path_length [m], contacts: so far;
     touchdowns, flights: rows of their tables, by column. end: how it ended, None while it is under way; reason: why it
-    failed; lies: side and tilt of a lander at rest.
+    failed; lies: side and tilt of a lander at rest; descent: row of the flight to its first touchdown, if it was flown
+    there.
     """
 
     model: "JourneyModel"
@@ -63,6 +63,7 @@ class Journey:
     end: JourneyEnd | None = None
     reason: str = ""
     lies: tuple[str, float] | None = None
+    descent: dict[str, Any] | None = None
 
     def go_on(self, record: Record) -> Row | None:
         """Take in how the present touchdown ended; give the inputs of the next one, or None where there is none."""
@@ -129,16 +130,10 @@ class Journey:
 
     def _tumbled(self, outputs: Mapping[str, float], time: float) -> "tuple[Rotation, np.ndarray]":
         """Attitude and spin [rad/s], against the ground, at the end of a flight, both fixed to the body."""
-        from lithobrake.smallbody import tumble
-
         turning = np.array([0.0, 0.0, 2.0 * math.pi / self.spin_period])
         attitude = from_frame(self.axes) * attitude_of(outputs)
         spin = spin_of(outputs) @ self.axes + turning
-        inertia = self.model.inertia(self.row)
-        turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
-        back = about_z(-float(turning[2]) * time)
-        w, x, y, z = turned[0]
-        return back * type(back).from_quat([x, y, z, w]), back.apply(spins[0]) - turning
+        return turned_in_flight(self.model.inertia(self.row), attitude, spin, self.spin_period, time)
 
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
@@ -150,15 +145,12 @@ class Journey:
         random = np.random.default_rng(hashed_seed(self.model.seed, "touchdowns", self.number, number))
         x, y, turn = random.random(3).tolist()
         azimuth = 360.0 * turn
-        into_bed = about_z(math.radians(azimuth)) * from_frame(self.axes).inv()
         arrival = {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - self.time,
-            "impact.speed": float(flight.impact_speed[0]),
-            "impact.incidence_deg": min(math.degrees(float(flight.incidence[0])), FLATTEST_DEG),
+            **impact_inputs(float(flight.impact_speed[0]), float(flight.incidence[0])),
             "impact.azimuth_deg": azimuth,
-            **dict(zip(SPIN, into_bed.apply(spin).tolist(), strict=True)),
-            **dict(zip(ORIENTATION, quaternion(into_bed * attitude), strict=True)),
+            **attitude_inputs(self.axes, azimuth, attitude, spin),
             **dict(zip(PLACE, self.model.place(x, y, self.row), strict=True)),
             **ground_inputs(self.axes @ self._felt(), azimuth, friction_of(self.row)),
         }
@@ -166,18 +158,9 @@ class Journey:
 
     def _note_flight(self, velocity: np.ndarray, time: float) -> None:
         begin = self.time
+        own = self.mass, self.spin_period
         self.flights.append(
-            {
-                "sample": self.number,
-                "arc": len(self.flights),
-                "begin_s": begin,
-                "end_s": begin + time,
-                "clock_s": self.clock + begin,
-                **{f"position_{axis}": float(value) for axis, value in zip("xyz", self.origin, strict=True)},
-                **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", velocity, strict=True)},
-                "site_mass": self.mass,
-                "site_spin_period": self.spin_period,
-            }
+            flight_row(self.number, begin, begin + time, self.clock + begin, self.origin, velocity, *own)
         )
 
     def _touchdown(self, record: Record, began: float, place: np.ndarray) -> dict[str, Any]:
@@ -192,4 +175,36 @@ class Journey:
             "end_s": self.time,
             "latitude_deg": latitude,
             "longitude_deg": longitude,
+            **{f"position_{axis}": float(value) for axis, value in zip("xyz", place, strict=True)},
+            **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", self._incoming(), strict=True)},
         }
+
+    def _incoming(self) -> np.ndarray:
+        """Velocity of the present impact against the ground [m/s], fixed to the body."""
+        incidence = math.radians(self.row["impact.incidence_deg"])
+        along, down = self.row["impact.speed"] * math.sin(incidence), self.row["impact.speed"] * math.cos(incidence)
+        incoming: np.ndarray = along * self.axes[0] - down * self.axes[2]
+        return incoming
+
+
+def flight_row(
+    journey: int,
+    begin: float,
+    end: float,
+    clock: float,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    mass: float,
+    spin_period: float,
+) -> dict[str, Any]:
+    """A row of the table of flights but for its number, by column; times [s], the state at its beginning."""
+    return {
+        "sample": journey,
+        "begin_s": begin,
+        "end_s": end,
+        "clock_s": clock,
+        **{f"position_{axis}": float(value) for axis, value in zip("xyz", position, strict=True)},
+        **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", velocity, strict=True)},
+        "site_mass": mass,
+        "site_spin_period": spin_period,
+    }

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.free_rotation import lander_inertia
 from lithobrake.pipeline.site import Site
-from lithobrake.study.touchdown_model import PLACE, lander
+from lithobrake.study.touchdown_model import PLACE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights
@@ -31,6 +32,16 @@ class JourneyModel:
         return self.site.body
 
     @property
+    def aim(self) -> tuple[float, float]:
+        """Latitude and longitude of the aim point [deg]."""
+        return self.site.medians["latitude_deg"], self.site.medians["longitude_deg"]
+
+    @cached_property
+    def aim_radius(self) -> float:
+        """Radius of the body at the aim point [m]."""
+        return float((self.body.shape.surface_point(*self.aim) ** 2).sum() ** 0.5)
+
+    @property
     def seed(self) -> int:
         """Of the study."""
         return self.design.study.seed
@@ -48,11 +59,7 @@ class JourneyModel:
 
     def inertia(self, row: Mapping[str, float]) -> np.ndarray:
         """Inertia of the lander of a journey about its centroid [kg m2], [3, 3]."""
-        body = lander(self.design.study, row)
-        if body.inertia is not None:
-            return body.inertia
-        whole: np.ndarray = body.shape.inertia_per_density * (body.mass / body.shape.volume)
-        return whole
+        return lander_inertia(self.design.study, row)
 
     def place(self, x: float, y: float, row: Mapping[str, float]) -> tuple[float, float]:
         """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""

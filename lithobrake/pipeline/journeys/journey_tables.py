@@ -23,14 +23,20 @@ FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE)
 
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     """Write journeys.csv, touchdowns.csv and arcs.csv."""
-    write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [_row(journey) for journey in journeys], JOURNEY)
+    write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
     write_table(folder, TOUCHDOWNS_FILE, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
-    flights = [list(row.values()) for journey in journeys for row in journey.flights]
+    flights = [[row[name] for name in ARC] for journey in journeys for row in _flights(journey)]
     write_table(folder, FLIGHTS_FILE, tuple(ARC), flights, ARC)
 
 
-def _row(journey: Journey) -> list[Any]:
+def _flights(journey: Journey) -> list[dict[str, Any]]:
+    """The flights of a journey in their order, with that to its first touchdown."""
+    rows = [*([] if journey.descent is None else [journey.descent]), *journey.flights]
+    return [{**row, "arc": number} for number, row in enumerate(rows)]
+
+
+def journey_row(journey: Journey) -> list[Any]:
     """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side."""
     place: list[Any] = ["", "", "", "", "", ""]
     if journey.end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and journey.is_on_ground:
@@ -44,7 +50,6 @@ def _row(journey: Journey) -> list[Any]:
 
 def _distance(journey: Journey) -> float:
     """Way over the ground from the aim point [m], as if the body were a ball of the radius there."""
-    aim = journey.model.site.medians["latitude_deg"], journey.model.site.medians["longitude_deg"]
-    radius = float((journey.model.body.shape.surface_point(*aim) ** 2).sum() ** 0.5)
-    there = directions(*journey.model.body.shape.latitude_longitude(journey.origin))
-    return radius * float(angles(directions(*aim), there))
+    model = journey.model
+    there = directions(*model.body.shape.latitude_longitude(journey.origin))
+    return model.aim_radius * float(angles(directions(*model.aim), there))

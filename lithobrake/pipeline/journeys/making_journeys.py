@@ -10,6 +10,7 @@ from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
 from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.fly.flights import write_shape
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.delivered_journeys import begun_aloft
 from lithobrake.pipeline.journeys.journey import Journey
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.journeys.journey_tables import write_journeys
@@ -26,6 +27,8 @@ def make_journeys(job: Job) -> None:
     """Follow every lander and write its touchdowns, flights and end."""
     if job.site.warning:
         job.say(job.site.warning)
+    if job.design.descents is not None:
+        job.say(job.design.descents.sentence())
     journeys = begun(job)
     rows = job.design.rows
     job.folder.note_runs("drawn", job.design.keys)
@@ -42,21 +45,31 @@ def make_journeys(job: Job) -> None:
 
 
 def begun(job: Job) -> list[Journey]:
-    """The journeys of a study before their first touchdowns."""
-    rows, model = job.design.rows, JourneyModel(job.design, job.site)
-    columns = job.site.sampled(len(rows))
-    origin, axes = job.site.frames(columns)
-    clock = job.site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
+    """The journeys of a study before their first touchdowns; of those that never touch down, at their end."""
+    model, descents = JourneyModel(job.design, job.site), job.design.descents
+    return begin(model, job.design.rows, 0) if descents is None else begun_aloft(model, descents)
+
+
+def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> list[Journey]:
+    """Journeys, numbered from `first` on, whose first touchdowns have these inputs."""
+    site = model.site
+    columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
+    origin, axes = site.frames(columns)
+    clock = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
     numbers = zip(*(one.tolist() for one in (clock, columns["mass"], columns["spin_period"])), strict=True)
     starts = zip(rows, origin, axes, numbers, strict=True)
-    return [Journey(model, number, *start, *own) for number, (*start, own) in enumerate(starts)]
+    return [Journey(model, first + number, *start, *own) for number, (*start, own) in enumerate(starts)]
 
 
 def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
-    """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it."""
+    """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it.
+
+    rows: first touchdowns, in the order of the journeys that have one.
+    """
+    landing = [journey for journey in journeys if journey.end is None]
 
     def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
-        return journeys[number].go_on(records[-1])
+        return landing[number].go_on(records[-1])
 
     def show(state: Tally) -> None:
         ended = sum(one.end is not None for one in journeys)

@@ -1,7 +1,9 @@
 """The stage of journeys, in the place of the drawn runs."""
 
+from pathlib import Path
 from typing import Any
 
+from lithobrake.files.hashing import content_hash
 from lithobrake.pipeline.fly.flight_paths import FILE as WAYS
 from lithobrake.pipeline.fly.run_flights import run_flight_dependencies
 from lithobrake.pipeline.fly.stages import PARTS as FLIGHT_PARTS
@@ -12,6 +14,7 @@ from lithobrake.pipeline.runs.stages import PARTS as RUN_PARTS
 from lithobrake.pipeline.runs.stages import drawn_dependencies
 from lithobrake.pipeline.stage import Stage, same_files
 from lithobrake.study import Study
+from lithobrake.study.journey_sections import OWN_KEYS
 
 PARTS = ("pipeline/journeys", "pipeline/site.py", "geometry/great_circle.py", *RUN_PARTS, *FLIGHT_PARTS)
 
@@ -19,7 +22,18 @@ PARTS = ("pipeline/journeys", "pipeline/site.py", "geometry/great_circle.py", *R
 def journey_dependencies(study: Study) -> Any:
     """What the journeys depend on."""
     journey = None if study.journey is None else study.journey.model_dump(exclude={"count", "emulated_count"})
-    return [drawn_dependencies(study), run_flight_dependencies(study), journey]
+    return [drawn_dependencies(study), run_flight_dependencies(study), journey, *_delivery(study)]
+
+
+def _delivery(study: Study) -> list[Any]:
+    """What the states and correlations of a delivery depend on; nothing for one that has neither."""
+    if study.delivery is None:
+        return []
+    given = study.delivery.model_dump(include=set(OWN_KEYS), exclude_none=True)
+    if study.delivery.states is not None:
+        # A table counts with its content, wherever it lies.
+        given["states"] = content_hash(Path(study.delivery.states))
+    return [given] if given else []
 
 
 JOURNEYS = Stage(

@@ -1,4 +1,4 @@
-"""How much room the files of a study will take on the disk; sizes measured on first_bounce.toml and bounces.toml."""
+"""How much room the files of a study will take on the disk; sizes measured on studies of the first bounce."""
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of
+from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of_design
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.sequential_sampling import flown_shares
@@ -84,7 +84,7 @@ def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: Stu
         widths = [expected_half_width(*counts, spread=spread) or math.inf for spread in spreads]
         words = "that of fractions of 95 and of 80 %"
         of_journeys = {"typical": tuple(widths), "spread": tuple(spreads), "of": "fraction at rest", "measured": words}
-    values, bed = answers_of(design.keys, known, flown_shares(study, folder))
+    values, bed = answers_of_design(design, known, flown_shares(study, folder))
     of_landings = {"typical": expected_half_widths(*counts) or (np.inf, np.inf), "spread": SPREAD_RANGE}
     return ExpectedHalfWidth(
         *counts,

@@ -33,6 +33,7 @@ class Plan:
     grains          of the beds; None where all have one size
     tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
+    delivery        how landers that are delivered as states reach the ground, in a sentence; None for others
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
 
@@ -52,6 +53,7 @@ class Plan:
     site_slope_deg: float
     grains: PlannedGrains | None = None
     tile: PlannedTile | None = None
+    delivery: str | None = None
     inference: ExpectedInference | None = None
 
     @property

@@ -101,6 +101,7 @@ def plan_of(
         site_slope_deg=site.slope_deg,
         grains=planned_grains(study),
         tile=planned_tile(study),
+        delivery=None if design.descents is None else design.descents.sentence(),
     )
 
 

@@ -36,7 +36,7 @@ def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if design.study.design.method == "paper":
         return draw(design.study, design.medians, design.study.seed)
-    return design.row(0)
+    return design.shown_row
 
 
 def land_once(job: Job) -> None:

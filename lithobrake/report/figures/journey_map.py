@@ -2,29 +2,33 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from lithobrake.report.figures.close_view import draw_bar, frame_view, view_around, whole_body
 from lithobrake.report.figures.density import WHOLE, Window, near
 from lithobrake.report.figures.map_figure import Share, draw_relief, draw_shares
-from lithobrake.report.figures.map_marks import SITE_STYLE, mark_site
-from lithobrake.report.figures.style import INK, SITE
+from lithobrake.report.figures.map_marks import (
+    SITE_STYLE,
+    draw_ellipses,
+    ellipse_style,
+    fitting,
+    mark_site,
+    outline,
+)
+from lithobrake.report.figures.style import DELIVERY, SITE
+from lithobrake.results.dispersion import EllipseShare, LandingEllipses
 from lithobrake.results.journey_results import RestRegion
 from lithobrake.vocabulary.percentages import percent
 
 Array = NDArray[np.float64]
-# The bar of lengths is at most this part of the map's width.
-LONGEST_BAR = 0.3
-# A close view has so much more than what it holds, at least half of this height [deg], and none beyond these.
-MARGIN, SMALLEST_DEG = 1.1, 1e-3
-WIDEST_DEG, HIGHEST_DEG = 60.0, 85.0
 # Beyond this a region is dashed.
 LARGE_SHARE = 0.9
 
@@ -47,14 +51,15 @@ def journey_map(
     shares: list[Share],
     whole: str,
     vertices: Array,
+    delivery: LandingEllipses | None = None,
 ) -> Figure:
     """Draw the places of the landers over a close view, on the whole body beside it, and the share of each end.
 
     aim: latitude and longitude [deg]; radius: of the body there [m]; whole: what the shares are shares of; vertices: of
-    the body [m], shape [vertex, 3].
+    the body [m], shape [vertex, 3]; delivery: ellipses of the first impacts.
     """
     # In inches from below: the axis of the bars, a row for each bar, the axis of the map, the map.
-    window = _window(places, regions, aim)
+    window = _window(places, regions, aim, delivery)
     bars, map_height, gap = 0.2 * len(shares), 4.4, 0.75 if window else 1.35
     height = 0.5 + bars + gap + map_height + 0.1
     figure = Figure(figsize=(9.2, height))
@@ -65,31 +70,34 @@ def journey_map(
     else:
         axes = figure.add_axes((0.07, bottom, map_height / 9.2, map_height / height))
         side = figure.add_axes((0.625, bottom + 1.9 / height, 0.355, 1.65 / height))
-        _whole_body(side, window, vertices)
+        whole_body(side, window, vertices)
     _draw_places(axes, places, regions, aim, window or WHOLE)
+    draw_ellipses(axes, delivery, window or WHOLE, DELIVERY)
     if window is not None:
-        _draw_bar(axes, window, radius)
+        draw_bar(axes, window, radius)
     corner = (0.625, bottom) if window else (0.07, bottom - 1.0 / height)
-    _draw_legend(figure, places, regions, corner)
+    _draw_legend(figure, places, regions, corner, fitting(delivery, window or WHOLE))
     draw_shares(figure.add_axes((0.2, 0.5 / height, 0.52, bars / height)), shares, whole)
     return figure
 
 
-def _window(places: Sequence[EndPlaces], regions: Sequence[RestRegion], aim: tuple[float, float]) -> Window | None:
-    """The part of the map that holds the landers, their regions and the aim point, as wide as high on the ground.
+def _window(
+    places: Sequence[EndPlaces],
+    regions: Sequence[RestRegion],
+    aim: tuple[float, float],
+    delivery: LandingEllipses | None,
+) -> Window | None:
+    """The part of the map that holds the landers, their regions, the delivery and the aim point, square on the ground.
 
     None where they lie too far apart or too near a pole for one.
     """
     landers = [np.column_stack([one.latitude, one.longitude]) for one in places]
     outlines = [np.array(line) for one in regions for line in one.outlines]
-    latitude, longitude = np.concatenate([np.array([aim]), *landers, *outlines]).T
-    east = near(longitude, aim[1])
-    middle = 0.5 * float(latitude.min() + latitude.max())
-    shrink = float(np.cos(np.radians(middle)))
-    half = max(MARGIN * 0.5 * float(max(np.ptp(latitude), shrink * np.ptp(east))), SMALLEST_DEG)
-    if abs(middle) + half > HIGHEST_DEG or half > WIDEST_DEG:
-        return None
-    return Window(middle, 0.5 * float(east.min() + east.max()), half, half / shrink)
+    if delivery is not None:
+        middle = (delivery.latitude_deg, delivery.longitude_deg, delivery.heading_deg)
+        outlines += [np.column_stack(outline(*middle, one.semi_axes_deg)) for one in delivery.shares]
+    latitude, longitude = np.concatenate([np.empty((0, 2)), *landers, *outlines]).T
+    return view_around(latitude, longitude, aim)
 
 
 def _draw_places(
@@ -102,19 +110,7 @@ def _draw_places(
         x = near(one.longitude, window.longitude)
         axes.scatter(x, one.latitude, s=20, color=one.colour, linewidths=0.6, edgecolors="white", zorder=5)
     mark_site(axes, float(near(np.array([aim[1]]), window.longitude)[0]), aim[0])
-    axes.set_xlim(window.longitude - window.half_longitude, window.longitude + window.half_longitude)
-    axes.set_ylim(window.latitude - window.half, window.latitude + window.half)
-    axes.set_aspect("equal" if window is WHOLE else window.half_longitude / window.half)
-    axes.set_xlabel("longitude, east [deg]")
-    axes.set_ylabel("latitude [deg]")
-    axes.grid(visible=True)
-    for spine in axes.spines.values():
-        spine.set_visible(True)
-    if window is WHOLE:
-        axes.set_xticks(range(-180, 181, 45))
-        axes.set_yticks(range(-90, 91, 30))
-    else:
-        axes.locator_params(nbins=6)
+    frame_view(axes, window)
 
 
 def _draw_region(axes: Axes, region: RestRegion, window: Window) -> None:
@@ -138,42 +134,12 @@ def region_style(region: RestRegion) -> Literal["-", "--"]:
     return "-" if region.share < LARGE_SHARE else "--"
 
 
-def _whole_body(axes: Axes, window: Window, vertices: Array) -> None:
-    """The whole map in small, with a frame where the close view is."""
-    draw_relief(axes, vertices)
-    axes.set_xlim(-180, 180)
-    axes.set_ylim(-90, 90)
-    axes.set_aspect("equal")
-    middle = float(near(np.array([window.longitude]), 0.0)[0])
-    for turn in (-360.0, 0.0, 360.0):
-        corner = (middle + turn - window.half_longitude, window.latitude - window.half)
-        size = (2.0 * window.half_longitude, 2.0 * window.half)
-        axes.add_patch(Rectangle(corner, *size, fill=False, edgecolor=SITE, linewidth=1.5))
-    axes.set_xticks(range(-180, 181, 90))
-    axes.set_yticks(range(-90, 91, 45))
-    axes.set_title("the view on the whole body [deg]", fontsize=8, fontweight="normal")
-    axes.tick_params(labelsize=7)
-
-
-def _draw_bar(axes: Axes, window: Window, radius: float) -> None:
-    """A bar of a round length on the ground, in the lower left corner."""
-    metres = 2.0 * np.radians(window.half) * radius
-    length = round_length(LONGEST_BAR * metres)
-    part = length / metres
-    style: dict[str, Any] = {"transform": axes.transAxes, "zorder": 7}
-    axes.add_patch(Rectangle((0.025, 0.022), part + 0.03, 0.078, color="white", alpha=0.85, linewidth=0.0, **style))
-    axes.plot([0.04, 0.04 + part], [0.04, 0.04], color=INK, linewidth=2.5, solid_capstyle="butt", **style)
-    axes.text(0.04 + 0.5 * part, 0.052, f"{length:g} m", ha="center", va="bottom", fontsize=8, **style)
-
-
-def round_length(most: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is not more."""
-    power = 10.0 ** np.floor(np.log10(most))
-    return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most * (1.0 + 1e-12)))
-
-
 def _draw_legend(
-    figure: Figure, places: Sequence[EndPlaces], regions: Sequence[RestRegion], corner: tuple[float, float]
+    figure: Figure,
+    places: Sequence[EndPlaces],
+    regions: Sequence[RestRegion],
+    corner: tuple[float, float],
+    delivery: Sequence[EllipseShare],
 ) -> None:
     """Say what dots, lines and mark are."""
     handles = [
@@ -185,6 +151,9 @@ def _draw_legend(
     for region in regions:
         words = f"smallest region with {percent(region.share)} of those at rest"
         handles.append(Line2D([], [], linestyle=region_style(region), color=SITE, linewidth=1.3, label=words))
+    for one in delivery:
+        words, style = f"ellipse with {percent(one.share)} of the first impacts", ellipse_style(one.share)
+        handles.append(Line2D([], [], linestyle=style, color=DELIVERY, linewidth=1.2, label=words))
     handles.append(Line2D([], [], linestyle="none", label="aim point", **SITE_STYLE))
     columns = 1 if corner[0] > 0.5 else 3
     figure.legend(

@@ -103,7 +103,7 @@ def _on_map(ellipses: LandingEllipses, one: EllipseShare, window: Window) -> tup
     return latitude, near(longitude, window.longitude)
 
 
-def draw_ellipses(axes: Axes, ellipses: LandingEllipses | None, window: Window) -> None:
+def draw_ellipses(axes: Axes, ellipses: LandingEllipses | None, window: Window, colour: str = SITE) -> None:
     """Draw the ellipses of the summary that a window of the map holds whole."""
     if ellipses is None:
         return
@@ -113,4 +113,4 @@ def draw_ellipses(axes: Axes, ellipses: LandingEllipses | None, window: Window) 
         longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
         style = ellipse_style(one.share)
         axes.plot(longitude, latitude, style, color="white", linewidth=2.6, zorder=4, alpha=0.8)
-        axes.plot(longitude, latitude, style, color=SITE, linewidth=1.2, zorder=5)
+        axes.plot(longitude, latitude, style, color=colour, linewidth=1.2, zorder=5)

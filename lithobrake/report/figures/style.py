@@ -19,6 +19,7 @@ TRAINING = "#2f6fb0"
 TEST = "#e2a13b"
 TEST_ALL = "#8b8f96"
 SITE = "#c8442b"
+DELIVERY = "#2f6fb0"
 # Okabe and Ito's set in an order that keeps neighbours apart; grey is left to the interactions.
 INPUT_COLOURS = (
     "#2f6fb0",

@@ -77,6 +77,7 @@ function showLanding(holder, scene, times) {
     requestAnimationFrame(step);
   });
   slider.addEventListener("input", () => { stop(); draw(); });
+  follows.checked = view.follows = Boolean(scene.follows);
   follows.addEventListener("change", () => { view.follows = follows.checked; draw(); });
   for (const name of ["body", ...scene.shades.map((one) => one.name)])
     colour.append(element("option", { value: name, textContent: name }));

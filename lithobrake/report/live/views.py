@@ -60,24 +60,25 @@ def view_sections(data: PageData) -> list[LiveSection]:
 
 
 def _landing(shown: Scene, which: str) -> LiveSection:
-    moving = shown.moving
     arrays, facts = landing_arrays(shown)
-    still = moving.position[0, :-1]
-    middle = 0.5 * (still.min(axis=0) + still.max(axis=0))
-    radius = float(np.linalg.norm(still - middle, axis=1).max())
-    facts["orbit"] = _orbit(middle, radius, -1.1, 0.35)
+    return _section(
+        "landing-3d", "The landing, to turn", f"{which}: {landing_words(shown, arrays, facts)}", arrays, facts
+    )
+
+
+def landing_words(shown: Scene, arrays: Mapping[str, np.ndarray], facts: Mapping[str, Any]) -> str:
+    """What a view of a landing shows, and how exactly."""
     quantum = 1e3 * float(arrays["quanta"].max())
     images = "" if shown.box is not None else ", images of the ground that repeats among them,"
-    words = (
-        f"{which}: {len(moving.vertices) - 1} grains{images} and the lander in {len(moving.time)} pictures, straight "
-        f"between them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
+    return (
+        f"{len(shown.moving.vertices) - 1} grains{images} and the lander in {len(shown.moving.time)} pictures, "
+        f"straight between them. Places are rounded to {number(quantum, 2)} mm, and grains that hardly move to less. "
         f"Colour by {' or '.join(_scale_words(one) for one in facts['shades'])}, over equal factors."
     )
-    return _section("landing-3d", "The landing, to turn", words, arrays, facts)
 
 
 def landing_arrays(scene: Scene) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Arrays and numbers of a landing, all its bodies and frames.
+    """Arrays and numbers of a landing, all its bodies and frames, and from where it is looked at.
 
     Of each pose the difference from that of the frame before, in quanta of the body: place (x, y, z), quaternion
     (x, y, z, w). Whatever does not move is zeros, of which next to nothing is left when they are deflated.
@@ -107,7 +108,11 @@ def landing_arrays(scene: Scene) -> tuple[dict[str, np.ndarray], dict[str, Any]]
         **{name: _shades(values / largest[name]) for name, values in shown.items()},
     }
     shades = [{"name": name, "unit": SHADE_UNITS[name], "largest": most} for name, most in largest.items()]
-    return arrays, {"bodyCount": len(scene.bodies), "frameCount": len(moving.time), "shades": shades}
+    still = moving.position[0, :-1]
+    middle = 0.5 * (still.min(axis=0) + still.max(axis=0))
+    radius = float(np.linalg.norm(still - middle, axis=1).max())
+    counts = {"bodyCount": len(scene.bodies), "frameCount": len(moving.time)}
+    return arrays, {**counts, "shades": shades, "orbit": _orbit(middle, radius, -1.1, 0.35)}
 
 
 def _shades(parts: Array) -> np.ndarray:

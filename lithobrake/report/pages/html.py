@@ -12,15 +12,19 @@ LONG = 15
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "pages/page.js"
 NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
+FOOTER = (
+    "<footer>Written by lithobrake from the files of the results that it names. SI units; degrees where a label says "
+    "so.</footer>"
+)
 HINT = (
     '<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>\n'
 )
 
 
-def _header(title: str, content: Content, facts: str) -> str:
+def _header(kind: str, title: str, content: Content, facts: str) -> str:
     warnings = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in content.warnings)
     return f"""<header>
-<p class="kind">Landing study</p>
+<p class="kind">{escape(kind)}</p>
 <h1>{escape(title)}</h1>
 <p class="answer">{escape(content.answer)}</p>
 {warnings}<p class="facts">{escape(facts)}</p>
@@ -28,17 +32,18 @@ def _header(title: str, content: Content, facts: str) -> str:
 
 
 def page(
-    title: str, facts: str, content: Content, panels: Sequence[Panel], provenance: Sequence[PageTable], study_text: str
+    title: str,
+    facts: str,
+    content: Content,
+    panels: Sequence[Panel],
+    provenance: Sequence[PageTable],
+    study_texts: Mapping[str, str],
+    kind: str = "Landing study",
 ) -> str:
-    """Put the page together, with the panels that the plots of the content gave; all words are plain text and are
-    escaped here.
-    """
+    """Put the page together, with the panels that the plots gave and study files by title; words are escaped here."""
     style = _own_file("pages/style.css")
     scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
-    pictures = "\n".join(
-        f"{_heading(number, panel)}{_figure(number, panel)}{''.join(_table(table) for table in panel.tables)}"
-        for number, panel in enumerate(panels, start=1)
-    )
+    pictures = "\n".join(_panel(number, panel) for number, panel in enumerate(panels, start=1))
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -49,7 +54,7 @@ def page(
 {style}</style>
 </head>
 <body><main>
-{_header(title, content, facts)}
+{_header(kind, title, content, facts)}
 <ul class="tiles">
 {"".join(_tile(tile) for tile in content.tiles)}</ul>
 {pictures}
@@ -57,8 +62,8 @@ def page(
 {"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
 <h2>Provenance</h2>
 {"".join(_table(table) for table in provenance)}
-{_folding("The study file", len(study_text.splitlines()), "lines", f"<pre>{escape(study_text)}</pre>")}
-<footer>Written by lithobrake from the files of the study's folder. SI units; degrees where a label says so.</footer>
+{"".join(_text(*one) for one in study_texts.items())}
+{FOOTER}
 </main>
 <script>
 {"".join(_own_file(name) for name in scripts)}</script>
@@ -91,6 +96,11 @@ def _heading(number: int, panel: Panel) -> str:
     return (f"<h2>{escape(words)}</h2>\n" if words else "") + (HINT if number == 1 else "")
 
 
+def _panel(number: int, panel: Panel) -> str:
+    """One figure under its heading, with the tables that belong to it."""
+    return f"{_heading(number, panel)}{_figure(number, panel)}{''.join(_table(table) for table in panel.tables)}"
+
+
 def _figure(number: int, panel: Panel) -> str:
     """One figure with the picture inside the page, or a place that says there is none."""
     caption = f"<figcaption><b>Figure {number}. {escape(panel.title)}.</b> {escape(panel.sentence)}</figcaption>"
@@ -120,6 +130,10 @@ def _table(table: PageTable) -> str:
     # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
     box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
     return _folding(table.title, len(table.rows), "rows", note + box)
+
+
+def _text(title: str, text: str) -> str:
+    return _folding(title, len(text.splitlines()), "lines", f"<pre>{escape(text)}</pre>")
 
 
 def _is_long(table: PageTable) -> bool:

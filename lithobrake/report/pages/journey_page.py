@@ -89,7 +89,8 @@ def _draw_map(data: JourneyPage) -> "Figure":
     shares = [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
     radius = float(np.linalg.norm(site.place_m))
     aim, regions = (site.latitude_deg, site.longitude_deg), data.at_rest.regions
-    return journey_map(places, regions, aim, radius, shares, "all journeys", data.body_vertices)
+    delivery = None if data.results.delivery is None else data.results.delivery.ellipse
+    return journey_map(places, regions, aim, radius, shares, "all journeys", data.body_vertices, delivery)
 
 
 def _share(name: str, one: EndShare, colour: str) -> Share:

@@ -31,8 +31,8 @@ def tiles(data: JourneyPage) -> list[Tile]:
 
 
 def rest_tables(data: JourneyPage) -> list[PageTable]:
-    """When, where and how the landers rest; none where no lander does."""
-    return [table for table in (_numbers(data), _regions(data)) if table.rows]
+    """When, where and how the landers rest, none where no lander does; and how they come down first."""
+    return [table for table in (_numbers(data), _regions(data), _delivery(data)) if table.rows]
 
 
 def _numbers(data: JourneyPage) -> PageTable:
@@ -64,6 +64,25 @@ def _regions(data: JourneyPage) -> PageTable:
         for one in data.at_rest.regions
     ]
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def _delivery(data: JourneyPage) -> PageTable:
+    """How the landers come down first, whatever the ground does with them."""
+    columns = ["first impacts", "5 %", "median", "95 %"]
+    found = data.results.delivery
+    if found is None:
+        return PageTable("How they are delivered", columns, [])
+    spreads = {
+        "speed [cm/s]": [100.0 * one for one in found.speed],
+        "incidence, from the normal [deg]": list(found.incidence_deg),
+        "time from the delivered state [min]": [one / 60.0 for one in found.descent_s or ()],
+    }
+    rows = [[words, *(number(one, 3) for one in spread)] for words, spread in spreads.items() if spread]
+    note = f"{found.count} of {found.of} landers touch down."
+    for one in found.ellipse.shares if found.ellipse else ():
+        long, short = (number(2.0 * axis, 2) for axis in one.semi_axes_m)
+        note += f" {percent(one.share)} of the first impacts lie in an ellipse of {long} m by {short} m."
+    return PageTable("How they are delivered", columns, rows, note, frozenset(columns[1:]))
 
 
 def journey_tables(data: JourneyPage) -> list[PageTable]:

@@ -52,8 +52,22 @@ def rest_map(data: JourneyPage) -> str:
         said.append(f"The lines enclose the smallest regions with {areas}, by a density fitted to their places.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
+    said += _delivery(data)
     said.append("Landers that escaped, came down on the partner, failed or still fly have no place on it.")
     return " ".join(said)
+
+
+def _delivery(data: JourneyPage) -> list[str]:
+    """The ellipses of the first impacts, where there are any."""
+    found = data.results.delivery
+    if found is None or found.ellipse is None or not found.ellipse.shares:
+        return []
+    shares = " and ".join(percent(one.share) for one in found.ellipse.shares)
+    long, short = (2.0 * axis for axis in found.ellipse.shares[-1].semi_axes_m)
+    return [
+        f"The ellipses hold {shares} of the first impacts, the delivery; the larger is {number(long, 2)} m by "
+        f"{number(short, 2)} m."
+    ]
 
 
 def times(data: JourneyPage) -> str:
@@ -99,7 +113,14 @@ def attitude(data: JourneyPage) -> str:
 
 def first_variance(data: JourneyPage) -> str:
     """The figure of the parts of the variance; empty where it has none."""
-    return of_first_touchdown(variance(data)) if any(data.results.variance_shares.values()) else ""
+    if not any(data.results.variance_shares.values()):
+        return ""
+    said = of_first_touchdown(variance(data))
+    correlations = (data.study.get("delivery") or {}).get("correlations") or ()
+    pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
+    if pairs:
+        said += f" Inputs are taken as independent, and {pairs} are drawn correlated: read their parts together."
+    return said
 
 
 def emulator_words(data: JourneyPage) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.figures.journey_map import round_length
+from lithobrake.report.figures.close_view import round_length
 from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import DECIDES, FIRST, WHERE, journey_content
 from lithobrake.results import StudyResults

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.campaign import read_records
+from lithobrake.geometry.contact_frame import attitude_of, from_frame, quaternion
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.journeys.contact_frame import attitude_of, from_frame, quaternion
 from lithobrake.pipeline.journeys.resting_attitude import side_down
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, Launch, hop

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,7 @@ from lithobrake.pipeline.planning.planned_beds import planned_grains, planned_ti
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
-from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
 from lithobrake.study import Study, StudyError, StudySource, check_tables, load_tables, read_study
@@ -355,11 +356,16 @@ def test_a_half_width_that_is_asked_for_may_take_runs_and_beds_up_to_the_most(tm
     assert "Touchdowns: 144 to 400 drawn, until design.half_width is met;" in " ".join(plan_lines(plan))
 
 
-@pytest.mark.parametrize("name", ["first_bounce", "mission", "bounces", "paper"])
+MEASURED_STUDIES = {name: SCENARIOS / f"{name}.toml" for name in ("first_bounce", "paper")} | {
+    "drawn_700": HERE / "validation" / "studies" / "drawn_700.toml"
+}
+
+
+@pytest.mark.parametrize("name", MEASURED_STUDIES)
 def test_beds_and_landings_are_expected_to_take_what_they_took(name: str) -> None:
     measured = json.loads((HERE / "benchmarks" / "plan_estimate.json").read_text())[name]["result"]
     pace = np.mean(measured["paces"])
-    soil = soil_of(read_study(SCENARIOS / f"{name}.toml"))
+    soil = soil_of(with_site_gravity(read_study(MEASURED_STUDIES[name])))
     assert 1.0 / SPREAD < pace * pour_time(soil) / measured["pour"]["cpu_s"] < SPREAD
     for one in measured["landings"]:
         contact = {"held_speed": one["held_speed"]}
@@ -376,10 +382,44 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
     assert "only 2 MB are free" in plan.warnings[0]
 
 
+# A ball near 50 degrees north of Didymos, over all impacts to come: from bounce to bounce by the emulator.
+EVERY_IMPACT = """
+[bed]
+grain_count = 110
+width = [0.7, 0.7]
+diameter = { distribution = "constant", value = 0.08 }
+cloud_point_count = 10
+pour_gravity = 0.1
+[grain]
+density = 2500.0
+young_modulus = 1e6
+poisson_ratio = 0.25
+restitution = { distribution = "uniform", lower = 0.3, upper = 0.8 }
+friction = 0.6
+[lander]
+shape = "sphere"
+diameter = 0.14
+mass = 0.3
+restitution = 0.9
+[impact]
+speed = { distribution = "uniform", lower = 0.005, upper = 0.4 }
+incidence_deg = { distribution = "uniform", lower = 0.0, upper = 88.0 }
+[surface]
+gravity = 1e-4
+[contact]
+pair_rule = "mean"
+[design]
+run_count = 144
+[site]
+latitude_deg = 50.0
+heading_deg = 90.0
+"""
+
+
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
-    tables = load_tables(SCENARIOS / "bounces.toml")
+    tables = tomllib.loads(EVERY_IMPACT)
     repeating, walled = (
-        check_tables(tables | {"bed": tables["bed"] | sides}, SCENARIOS) for sides in ({}, {"sides": "walls"})
+        check_tables(tables | {"bed": tables["bed"] | sides}, HERE) for sides in ({}, {"sides": "walls"})
     )
     (here,) = study_warnings(DrawnDesign(repeating), Site(repeating), soil_of(repeating))
     assert here.startswith("Many journeys on the soil will have an unknown outcome")

@@ -18,13 +18,13 @@ def example() -> str:
         Content("Half of them come back.", ["Only <two> beds."], [Tile("48.3", "%", "re-impact")], [], [errors]),
         [Panel("Bed", 'A "bed" of 3 grains.', b"\x89PNG"), Panel("Landing", "No landing was kept.", None)],
         [PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])],
-        'title = "<one>"',
+        {"The study file": 'title = "<one>"'},
     )
 
 
 def folds(tables: list[PageTable]) -> list[str]:
     """The parts of a page that can be folded, opening tag first."""
-    text = page("Study", "", Content("", [], [], [], tables), [], [], "")
+    text = page("Study", "", Content("", [], [], [], tables), [], [], {"The study file": ""})
     return re.findall(r"<details.*?</details>", text, flags=re.DOTALL)
 
 

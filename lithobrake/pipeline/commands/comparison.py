@@ -1,0 +1,281 @@
+"""Two studies that ran, compared run by run: the difference of every answer with its interval.
+
+Run r of both came down on the same bed at the same place in the same attitude and heading, so what these do to the
+answers cancels. Studies of which that does not hold are refused.
+"""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.fly.run_flights import RunFlights
+from lithobrake.pipeline.folder.notes import REMEDY
+from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results import StudyResults, open_study
+from lithobrake.results.comparison import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.intact import STUDY_FILE, intact_file
+from lithobrake.results.json_values import to_json
+from lithobrake.study import Study, StudySource
+from lithobrake.study.touchdown_model import ORIENTATION, PLACE
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.quantities import TOUCHDOWN
+
+DESIGN = "designs/drawn.csv"
+# What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
+COMMON = {
+    "bed": "bed",
+    **dict.fromkeys(PLACE, "impact point"),
+    "impact.azimuth_deg": "azimuth",
+    **dict.fromkeys(ORIENTATION, "attitude"),
+}
+# Numbers of a bed that tell it from every other.
+OF_BED = ("solid_fraction", "surface_height")
+OUTPUTS = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "energy_lost")
+MEDIAN, Q95 = 0.5, 0.95
+# Tables of a study file that say how much of it is made, not of what.
+EFFORT = ("title", "seed", "bed.bed_count", "design.run_count", "journey.count")
+COPIED = ("impact", "site")
+# The two names that a sentence has for the studies.
+FIRST, SECOND = "A", "B"
+
+
+@dataclass(frozen=True)
+class OneStudy:
+    """A study of the two: its folder, results, study file and design, run by run."""
+
+    path: Path
+    results: StudyResults
+    study: Study
+    columns: Mapping[str, np.ndarray]
+
+    @classmethod
+    def open(cls, path: Path) -> "OneStudy":
+        """Read a folder. Raises ValueError for one that is no drawn study, or did not run to its summary."""
+        results = open_study(path)
+        if results.study["design"]["method"] == "paper":
+            raise ValueError(f"{path} is a study of the paper method, on one bed; compare studies with drawn runs")
+        source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
+        rows = read_rows(path / DESIGN, ("key", "outcome"), AGAIN)
+        named = {title.split(" ")[0].removeprefix("input:"): title for title in rows[0]}
+        columns = {name: np.array([float(row[named[name]]) for row in rows]) for name in COMMON if name in named}
+        return cls(path, results, source.study, columns)
+
+    @property
+    def run_count(self) -> int:
+        """How many runs or journeys it has."""
+        return len(self.columns["bed"])
+
+    @property
+    def folder(self) -> StudyFolder:
+        """Its folder, to read."""
+        return StudyFolder.only_read(self.path)
+
+
+def compare_studies(first: Path, second: Path) -> StudyComparison:
+    """Compare two studies that ran. Raises ValueError for two that cannot be paired, with the reason."""
+    one, two = OneStudy.open(first), OneStudy.open(second)
+    count = _paired_count(one, two)
+    bed = one.columns["bed"][:count].astype(int)
+    why = why_no_interval(one.study) or why_no_interval(two.study)
+    found = dict(_answers((one, two), count, bed, why))
+    beds = len(np.unique(bed))
+    return StudyComparison(
+        names=(str(first), str(second)),
+        titles=_titles(one, two),
+        of=f"{count} pairs on {beds} {'bed' if beds == 1 else 'beds'}",
+        level=LEVEL,
+        settings=_settings(one.results.study, two.results.study),
+        answers=found,
+        note=_other_beds(one, two, np.unique(bed)),
+        why=why,
+    )
+
+
+def _titles(one: OneStudy, two: OneStudy) -> tuple[str, str]:
+    """Titles that tell the studies apart: those of their files, or the names of their folders."""
+    titles = [str(each.results.study["title"]) for each in (one, two)]
+    return (titles[0], titles[1]) if all(titles) and titles[0] != titles[1] else (one.path.name, two.path.name)
+
+
+def comparison_files(out: Path) -> tuple[Path, Path]:
+    """The files of a comparison in a folder: its page and its numbers."""
+    return out / "index.html", out / "comparison.json"
+
+
+def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
+    """Write page, figure and comparison.json of a comparison into a folder, which is made; returns page and numbers."""
+    from lithobrake.report import write_comparison
+
+    page, numbers = comparison_files(out)
+    texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
+    write_comparison(comparison, texts, out)
+    with atomic_path(numbers) as draft:
+        draft.write_text(json.dumps(to_json(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    return page, numbers
+
+
+def comparison_lines(comparison: StudyComparison) -> list[str]:
+    """A comparison for a terminal: which studies, and a line for each answer."""
+    from lithobrake.report.words.comparison_words import lines
+
+    return lines(comparison)
+
+
+def _paired_count(one: OneStudy, two: OneStudy) -> int:
+    """How many pairs there are. Raises ValueError where the runs of one number differ in what they must share."""
+    if (one.study.journey is None) != (two.study.journey is None):
+        kinds = {True: "first bounces", False: "journeys to rest"}
+        said = " and ".join(f"{each.path} follows {kinds[each.study.journey is None]}" for each in (one, two))
+        raise ValueError(f"{said}; compare two studies of one kind")
+    count = min(one.run_count, two.run_count)
+    for name, words in COMMON.items():
+        if (name in one.columns) != (name in two.columns):
+            raise _unlike(one, two, f"only one of them draws the {words} of each run")
+        if name not in one.columns:
+            continue
+        unlike = np.flatnonzero(one.columns[name][:count] != two.columns[name][:count])
+        if len(unlike):
+            a, b = (each.columns[name][unlike[0]] for each in (one, two))
+            raise _unlike(one, two, f"run {unlike[0]} has {words} {a:g} in {FIRST} and {b:g} in {SECOND} ({name})")
+    return count
+
+
+def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
+    """What to say where beds of one number are not the same bed, as other grains or another gravity leave them."""
+    tables = [each.results.beds for each in (one, two)]
+    known = [name for name in OF_BED if all(name in table for table in tables)]
+    other = [used[np.flatnonzero(a != b)] for a, b in ([table[name][used] for table in tables] for name in known)]
+    count = len(np.unique(np.concatenate(other))) if other else 0
+    if not count:
+        return None
+    return (
+        f"{count} of {len(used)} beds are not the same in both, as they are poured of other grains or settled under "
+        "another gravity: less cancels between the runs of a pair. Where the grains are the same, give both the same "
+        "bed.settle_gravity."
+    )
+
+
+def _unlike(one: OneStudy, two: OneStudy, reason: str) -> ValueError:
+    return ValueError(
+        f"{one.path} ({FIRST}) and {two.path} ({SECOND}) cannot be paired: {reason}; give both the same seed, "
+        "bed.bed_count, bed.width and uncertain inputs (of another range, if need be a narrow one), so that run r of "
+        "both comes down on the same bed at the same place"
+    )
+
+
+def _answers(
+    pair: tuple[OneStudy, OneStudy], count: int, bed: np.ndarray, why: str | None
+) -> Iterator[tuple[str, ComparedAnswer]]:
+    """Every answer that both studies have, by name."""
+    made = _journey_answers if pair[0].study.journey is not None else _bounce_answers
+    yield from made(pair, count, bed, why)
+
+
+def _journey_answers(
+    pair: tuple[OneStudy, OneStudy], count: int, bed: np.ndarray, why: str | None
+) -> Iterator[tuple[str, ComparedAnswer]]:
+    tables = [JourneyTable.load(each.folder) for each in pair]
+    for end in JourneyEnd:
+        met = [(table.end[:count] == end.value).astype(float) for table in tables]
+        if end is JourneyEnd.AT_REST or any(one.any() for one in met):
+            yield (
+                end.value,
+                _told(f"fraction {end.label}", "", share_difference(met[0], met[1], bed, why=why), is_fraction=True),
+            )
+    numbers = (
+        ("time_s", "time to rest", "s", False),
+        ("contacts", "contacts", "", True),
+        ("distance", "distance from aim", "m", False),
+    )
+    for name, words, unit, counts in numbers:
+        values = [np.where(table.rests, table.numbers[name], np.nan)[:count] for table in tables]
+        yield from _quantiles(name, words, unit, values, bed, why, counts=counts)
+
+
+def _bounce_answers(
+    pair: tuple[OneStudy, OneStudy], count: int, bed: np.ndarray, why: str | None
+) -> Iterator[tuple[str, ComparedAnswer]]:
+    runs = [DesignRuns.load(each.folder, "drawn") for each in pair]
+    returns = [RunFlights.load(each.folder, "drawn").returns[:count] for each in pair]
+    if all(np.isfinite(one).any() for one in returns):
+        yield (
+            "returns",
+            _told("return fraction", "", share_difference(returns[0], returns[1], bed, why=why), is_fraction=True),
+        )
+    captured = [_captured(one.outcomes[:count]) for one in runs]
+    if all(np.isfinite(one).any() for one in captured):
+        yield (
+            "captured",
+            _told("fraction captured", "", share_difference(captured[0], captured[1], bed, why=why), is_fraction=True),
+        )
+    for name in OUTPUTS:
+        values = [one.output(name)[:count] for one in runs]
+        if all(np.isfinite(one).sum() > 1 for one in values):
+            what = TOUCHDOWN[name]
+            yield from _quantiles(name, what.title or what.long_name, what.units, values, bed, why)
+
+
+def _captured(outcomes: Sequence[str]) -> np.ndarray:
+    """1 for a run that is captured, 0 for one that left, NaN for any other; [run_count]."""
+    known = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
+    return np.array([known.get(one, np.nan) for one in outcomes])
+
+
+def _quantiles(
+    name: str,
+    words: str,
+    unit: str,
+    values: Sequence[np.ndarray],
+    bed: np.ndarray,
+    why: str | None,
+    *,
+    counts: bool = False,
+) -> Iterator[tuple[str, ComparedAnswer]]:
+    """Median and 95th percentile of a number over the runs of each study that have it."""
+    if not all(np.isfinite(one).any() for one in values):
+        return
+    for level, title in ((MEDIAN, "median"), (Q95, "95th percentile")):
+        found = quantile_difference(values[0], values[1], bed, level, counts=counts, why=why)
+        yield f"{name}_{title.split()[0]}", _told(f"{words}, {title}", unit, found)
+
+
+def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
+    first, second = (ComparedNumber(one.value, one.lower, one.upper) for one in (found.first, found.second))
+    difference = ComparedNumber(found.value, found.lower, found.upper)
+    saved = found.landings_saved
+    return ComparedAnswer(
+        words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved
+    )  # fmt: skip
+
+
+def _settings(one: Mapping[str, Any], two: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
+    """Keys of the study files that differ, with both values in words."""
+    a, b = (dict(_flat(tables)) for tables in (one, two))
+    # What the reader of a journey study copies from [delivery] stands there already.
+    copies = {f"{part}.{name.split('.')[1]}" for name in (*a, *b) if name.startswith("delivery.") for part in COPIED}
+    names = [name for name in dict.fromkeys((*a, *b)) if name not in copies and name not in EFFORT]
+    return {name: (a.get(name, "absent"), b.get(name, "absent")) for name in names if a.get(name) != b.get(name)}
+
+
+def _flat(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    """Numbers, words and distributions of a study by dotted key."""
+    for name, value in tables.items():
+        key = f"{prefix}{name}"
+        if isinstance(value, Mapping) and "distribution" not in value:
+            yield from _flat(value, f"{key}.")
+        elif isinstance(value, Mapping):
+            numbers = ", ".join(f"{part} {number:g}" for part, number in value.items() if part != "distribution")
+            yield key, f"{value['distribution']}: {numbers}"
+        else:
+            yield key, f"{value:g}" if isinstance(value, float) else str(value)

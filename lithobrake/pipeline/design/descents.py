@@ -1,0 +1,183 @@
+"""Landers on their way to their first touchdown: flown from states of another tool, or from where they are released."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
+from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
+from lithobrake.pipeline.design.free_rotation import lander_inertia, turned_in_flight
+from lithobrake.pipeline.design.local_ground import on_ground
+from lithobrake.pipeline.design.release_draws import released_states
+from lithobrake.pipeline.site import Site
+from lithobrake.study import Study, StudyError
+from lithobrake.study.contact_checks import contact_problems
+from lithobrake.study.delivered_states import DeliveredStates, states_of
+from lithobrake.vocabulary.outcomes import FlightStatus
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Flights
+
+Row = dict[str, float]
+AZIMUTH = "impact.azimuth_deg"
+# A start so far below the ground is on it, of a millionth of the radius and at most [m].
+SLACK_PART, MOST_SLACK = 1e-6, 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Descents:
+    """Flights of the landers of a study to the ground, one row a journey from `first` on.
+
+    flights         in axes fixed to the body; their start time is that of the partner's motion
+    axes            of the first touchdown, in rows, [count, 3, 3], x along the incoming horizontal velocity; of those
+                    that touch down
+    attitude, spin  at the start, fixed to the body, of a lander whose states have them: [count, 4] as w, x, y, z, and
+                    against axes that do not turn [rad/s], [count, 3]; else None
+    """
+
+    study: Study
+    first: int
+    flights: "Flights"
+    axes: np.ndarray
+    attitude: Rotation | None
+    spin: np.ndarray | None
+
+    @classmethod
+    def flown(cls, study: Study, first: int, uniforms: np.ndarray) -> "Descents":
+        """Fly the journeys from `first` on, each with six uniform numbers [count, 6], which a release draws by.
+
+        Raises StudyError for states below the ground, and landers too fast for any contact.
+        """
+        from lithobrake.smallbody import fly
+        from lithobrake.smallbody.hopping import impact_frame
+
+        assert study.journey is not None
+        site, count = Site(study), len(uniforms)
+        columns = {key: values[first:] for key, values in site.sampled(first + count).items()}
+        states = _states(study, first, uniforms)
+        into_body = _into_body(study, states.time, columns["spin_period"])
+        position, velocity = turned(into_body, states.position), turned(into_body, states.velocity)
+        if _is_icrf(study):
+            velocity = against_ground(position, velocity, columns["spin_period"])
+        _refuse_below(study, site, position, states.source)
+        clock = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"]) + states.time
+        flights = fly(
+            *(site.body, position, velocity, study.journey.duration),
+            gravity=study.flight.gravity,
+            start_time=clock,
+            mass=columns["mass"],
+            spin_period=columns["spin_period"],
+        )
+        axes = np.tile(np.eye(3), (count, 1, 1))
+        down = flights.status == FlightStatus.IMPACT
+        axes[down] = impact_frame(flights.velocity[down], site.body.shape.normals[flights.facet[down]])
+        _refuse_fast(study, flights.impact_speed[down])
+        attitude, spin = _turning(states, into_body)
+        return cls(study, first, flights, axes, attitude, spin)
+
+    @property
+    def touches_down(self) -> np.ndarray:
+        """Which landers reach the ground of the body, [count]."""
+        down: np.ndarray = self.flights.status == FlightStatus.IMPACT
+        return down
+
+    @property
+    def clock(self) -> np.ndarray:
+        """When each flight ends, in the time of the partner's motion [s], [count]."""
+        end: np.ndarray = self.flights.start.time + self.flights.time
+        return end
+
+    def sentence(self) -> str:
+        """How many reach the ground, and how, in words."""
+        flights, down = self.flights, self.touches_down
+        count, others = len(flights), Counter(flights.status[~down].tolist())
+        said = f"Delivery: {int(down.sum())} of {count} landers reach the ground"
+        if down.any():
+            speed, hours = flights.impact_speed[down], flights.time[down] / 3600.0
+            said += (
+                f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
+                f"{100.0 * speed.max():.3g} cm/s"
+            )
+        words = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "come down on the partner"}
+        ends = [f"{number} {words.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
+        return "; ".join([said, *ends]) + "."
+
+    def first_touchdowns(self, rows: Sequence[Row]) -> list[Row]:
+        """Rows of all journeys as the first touchdowns of those that reach the ground, with what the flight tells."""
+        flights, down = self.flights, np.flatnonzero(self.touches_down)
+        found = []
+        for lander in down.tolist():
+            row = rows[lander] | impact_inputs(float(flights.impact_speed[lander]), float(flights.incidence[lander]))
+            found.append(row | self._attitude(lander, row))
+        start = flights.start
+        return on_ground(
+            flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
+            start.spin_period[down],
+        )  # fmt: skip
+
+    def _attitude(self, lander: int, row: Row) -> Row:
+        """Attitude and spin of a lander at its first touchdown, where its state has them."""
+        if self.attitude is None or self.spin is None:
+            return {}
+        period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
+        inertia = lander_inertia(self.study, row)
+        attitude, spin = turned_in_flight(inertia, self.attitude[lander], self.spin[lander], period, time)
+        return attitude_inputs(self.axes[lander], row[AZIMUTH], attitude, spin)
+
+
+def _is_icrf(study: Study) -> bool:
+    return study.delivery is not None and study.delivery.frame == "icrf"
+
+
+def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.ndarray:
+    """Rotations from the axes of the states into those of the body, [count, 3, 3]."""
+    if _is_icrf(study):
+        return icrf_to_body(study.site, time, spin_period)
+    return np.tile(np.eye(3), (len(time), 1, 1))
+
+
+def _states(study: Study, first: int, uniforms: np.ndarray) -> DeliveredStates:
+    """The states of these journeys in the axes that the study names."""
+    delivery = study.delivery
+    assert delivery is not None
+    if delivery.release is None:
+        return states_of(study).rows(first, len(uniforms))
+    pole = _into_body(study, np.zeros(1), np.full(1, Site(study).medians["spin_period"]))[0, 2]
+    return released_states(delivery.release, uniforms, first, pole)
+
+
+def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation | None, np.ndarray | None]:
+    """Attitudes and spins at the start, fixed to the body."""
+    if states.attitude is None or states.rates is None:
+        return None, None
+    given = Rotation.from_quat(np.roll(states.attitude, -1, axis=1))
+    return Rotation.from_matrix(into_body) * given, turned(into_body, given.apply(states.rates))
+
+
+def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequence[str]) -> None:
+    """Raise StudyError for a state below the ground."""
+    shape = site.body.shape
+    for place, where in zip(position, source, strict=True):
+        height = float(shape.height(place))
+        if height < -min(SLACK_PART * shape.radius, MOST_SLACK):
+            key = "delivery.states" if study.delivery and study.delivery.states else "delivery.release"
+            raise StudyError(
+                [
+                    f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
+                    "from the centre of the body, in metres and in the axes of delivery.frame? mend it, or lower the "
+                    "spread"
+                ]
+            )
+
+
+def _refuse_fast(study: Study, speed: np.ndarray) -> None:
+    """Raise StudyError where the fastest lander comes in too fast for any contact [m/s]."""
+    if not len(speed) or not study.has_soil:
+        return
+    fastest = study.impact.model_copy(update={"speed": float(speed.max())})
+    if wrong := list(contact_problems(study.model_copy(update={"impact": fastest}))):
+        raise StudyError(wrong)

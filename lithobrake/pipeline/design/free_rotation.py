@@ -1,0 +1,36 @@
+"""How a lander turns in flight: without torque, against ground that turns too."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from lithobrake.geometry.contact_frame import about_z, quaternion
+from lithobrake.study import Study
+from lithobrake.study.touchdown_model import lander
+
+
+def lander_inertia(study: Study, row: Mapping[str, float]) -> np.ndarray:
+    """Inertia of the lander of a journey about its centroid [kg m2], [3, 3]."""
+    body = lander(study, row)
+    if body.inertia is not None:
+        return body.inertia
+    whole: np.ndarray = body.shape.inertia_per_density * (body.mass / body.shape.volume)
+    return whole
+
+
+def turned_in_flight(
+    inertia: np.ndarray, attitude: Rotation, spin: np.ndarray, spin_period: float, time: float
+) -> tuple[Rotation, np.ndarray]:
+    """Attitude and spin [rad/s], against the ground, after a flight [s], from those at its start, fixed to the body.
+
+    inertia: of the lander [kg m2], [3, 3]. spin: at the start, against axes that do not turn. spin_period: of the body
+    about z [s].
+    """
+    from lithobrake.smallbody import tumble
+
+    turning = np.array([0.0, 0.0, 2.0 * np.pi / spin_period])
+    turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
+    back = about_z(-float(turning[2]) * time)
+    w, x, y, z = turned[0]
+    return back * Rotation.from_quat([x, y, z, w]), back.apply(spins[0]) - turning

@@ -1,0 +1,176 @@
+"""One journey in numbers and words: its touchdowns, the ways between them, and its end."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from lithobrake.results.moving_bodies import MovingBodies
+
+HEADS = (
+    "touch-     after     speed in  incidence  speed out  on the bed  to the next",
+    " down    delivery     [m/s]      [deg]      [m/s]        [s]         [m]",
+)
+_FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class TouchdownFacts:
+    """A touchdown of a journey in numbers.
+
+    number: in its journey, from 0. begin, end: since the first touchdown [s]. speed [m/s], incidence_deg from the
+    surface normal: of the impact. outcome: how it ended. speed_out [m/s]: None unless the lander flies on.
+    latitude_deg, longitude_deg: of the impact.
+    """
+
+    number: int
+    begin: float
+    end: float
+    speed: float
+    incidence_deg: float
+    outcome: str
+    speed_out: float | None
+    latitude_deg: float
+    longitude_deg: float
+
+    @classmethod
+    def of(cls, row: Mapping[str, Any]) -> "TouchdownFacts":
+        """Those of a row of touchdowns, by the names of the table `touchdowns` of a study's results."""
+        left = row["outcome"] == TouchdownOutcome.CLEAR
+        return cls(
+            number=int(row["touchdown"]),
+            begin=float(row["begin_s"]),
+            end=float(row["end_s"]),
+            speed=float(row["impact.speed"]),
+            incidence_deg=float(row["impact.incidence_deg"]),
+            outcome=str(row["outcome"]) or _FAILED,
+            speed_out=float(row["speed_out"]) if left else None,
+            latitude_deg=float(row["latitude_deg"]),
+            longitude_deg=float(row["longitude_deg"]),
+        )
+
+    @property
+    def left(self) -> str:
+        """The speed with which the lander flies on, or how it ended else."""
+        short: dict[str, str] = {TouchdownOutcome.CAPTURED: "at rest", TouchdownOutcome.TIME_LIMIT: "time is up"}
+        return short.get(self.outcome, self.outcome) if self.speed_out is None else f"{self.speed_out:.3g}"
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Latitude and longitude of the impact [deg]."""
+        return self.latitude_deg, self.longitude_deg
+
+    def to_next(self, there: tuple[float, float] | None, radius: float, end: JourneyEnd | None) -> str:
+        """How far it is over the ground to the next touchdown [m], or, where there is none, how the last flight ended.
+
+        there: latitude and longitude of the next [deg]; radius: of the body [m], as if it were a ball.
+        """
+        if there is not None:
+            return f"{radius * float(angles(directions(*self.place), directions(*there))):.3g}"
+        return end.label if end is not None and self.speed_out is not None else ""
+
+    def cells(self, to_next: str) -> tuple[str, ...]:
+        """What stands under HEADS."""
+        numbers = f"{self.speed:.3g}", f"{self.incidence_deg:.0f}", self.left, f"{self.end - self.begin:.0f}"
+        return str(self.number), time_words(self.begin), *numbers, to_next
+
+    def line(self, to_next: str) -> str:
+        """These as a line under HEADS."""
+        widths = 5, 11, 11, 10, 13, 11, 13
+        text = "".join(f"{cell:>{width}}" for cell, width in zip(self.cells(to_next), widths, strict=True))
+        return text.rstrip()
+
+    @property
+    def words(self) -> str:
+        """A caption: number, time since delivery, impact."""
+        impact = f"{self.speed:.3g} m/s at {self.incidence_deg:.0f} deg"
+        return f"touchdown {self.number}, {time_words(self.begin)} after delivery: {impact}"
+
+
+@dataclass(frozen=True, eq=False)
+class JourneyTrack:
+    """Where one lander went, in what order, and how it ended.
+
+    row: of the table `journeys`, nothing where it has nothing. aim: latitude and longitude of the aim point [deg];
+    radius: of the body there [m]; vertices of the body [m], shape [vertex, 3], body-fixed.
+    """
+
+    row: Mapping[str, Any]
+    touchdowns: tuple[TouchdownFacts, ...]
+    aim: tuple[float, float]
+    radius: float
+    vertices: "NDArray[np.float64]"
+
+    @property
+    def number(self) -> int:
+        """Of the journey, from 0."""
+        return int(self.row["journey"])
+
+    @property
+    def end(self) -> JourneyEnd:
+        """How it ended."""
+        return JourneyEnd(self.row["end"])
+
+    @property
+    def end_place(self) -> tuple[float, float] | None:
+        """Latitude and longitude of the end [deg]; None where the lander is not on the ground of the body."""
+        place = self.row["latitude_deg"], self.row["longitude_deg"]
+        return place if _is_there(place[0]) else None
+
+    def to_next(self, number: int) -> str:
+        """How far it is from a touchdown to the next, or what became of the last flight."""
+        there = self.touchdowns[number + 1].place if number + 1 < len(self.touchdowns) else None
+        return self.touchdowns[number].to_next(there, self.radius, self.end)
+
+    def lines(self) -> list[str]:
+        """A line for each touchdown, under two lines of heads, and the end."""
+        rows = [one.line(self.to_next(number)) for number, one in enumerate(self.touchdowns)]
+        return [*HEADS, *rows, self.end_words]
+
+    @property
+    def end_words(self) -> str:
+        """How, when and where it ended, after how many contacts, and how the lander lies, in a sentence."""
+        contacts, touchdowns = int(self.row["contacts"]), len(self.touchdowns)
+        said = f"{self.end.label.capitalize()} {time_words(self.row['time_s'])} after delivery, after "
+        said += f"{_counted(contacts, 'contact')} in {_counted(touchdowns, 'touchdown')}"
+        if self.end_place is not None:
+            latitude, longitude = self.end_place
+            said += f", at latitude {latitude:.3f} and longitude {longitude:.3f} deg"
+            said += f", {self.row['distance']:.3g} m from the aim point"
+        if self.row["face"]:
+            said += f"; side {self.row['face']} is down, tilted by {self.row['tilt_deg']:.1f} deg"
+        return f"{said}: {self.row['reason']}." if self.row["reason"] else f"{said}."
+
+
+@dataclass(frozen=True, eq=False)
+class JourneyMotion:
+    """A journey with the bodies of its touchdowns and how they moved, in their order; the lander is the last body.
+
+    A touchdown that failed has no bodies, and is the last of its journey.
+    """
+
+    track: JourneyTrack
+    bodies: "Sequence[MovingBodies]"
+
+
+def time_words(seconds: float) -> str:
+    """A time [s] in the unit that suits it, to three digits."""
+    for limit, unit, size in ((120.0, "s", 1.0), (7200.0, "min", 60.0), (172_800.0, "h", 3600.0)):
+        if seconds < limit:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds / 86_400.0:.3g} days"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def _is_there(cell: Any) -> bool:
+    return cell != "" and not math.isnan(cell)

@@ -1,0 +1,317 @@
+"""Flights from delivered states to the first touchdown: closed forms, frames, files, and what is refused."""
+
+import math
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from scipy.special import ndtri
+
+from lithobrake.files.ephemeris_message import message_states
+from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
+from lithobrake.pipeline.design.descents import Descents
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.release_draws import spread, spread_root
+from lithobrake.pipeline.site import Site
+from lithobrake.smallbody import fly, tumble
+from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
+from lithobrake.study import StudyError
+from lithobrake.study.flight_sections import SiteSection
+from lithobrake.study.release_section import ReleaseSection
+from lithobrake.study.source import StudySource
+from lithobrake.study.study import Study
+from lithobrake.vocabulary.outcomes import FlightStatus
+
+from ...smallbody.meshes import sphere_mesh
+
+TABLES: dict[str, Any] = {
+    "seed": 5,
+    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
+    "grain": {
+        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
+        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
+    },
+    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "delivery": {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"},
+    "journey": {"count": 8, "duration": 40000.0},
+    "site": {"body": "dimorphos", "partner": False, "mass": 4.3e9},
+    "flight": {"gravity": "exact"},
+}  # fmt: skip
+# Above the trailing side of Dimorphos, some 3 cm/s towards it.
+POSITION, VELOCITY = [5.0, 140.0, 10.0], [0.002, -0.03, 0.001]
+POLE = {"pole_right_ascension_deg": 60.0, "pole_declination_deg": -71.0, "meridian_deg": 25.0}
+EPOCH = "2027-04-20T12:00:00"
+SPIN_PERIOD = 40922.64
+# Of the ball: radius, where landers are released and how fast towards it, its mass.
+RADIUS, HEIGHT, DOWN, MASS = 80.0, 40.0, 0.02, 4.0e9
+
+
+def study(**changes: dict[str, Any]) -> Study:
+    tables = deepcopy(TABLES)
+    for name, table in changes.items():
+        tables.setdefault(name, {}).update(table)
+    return StudySource.of_tables(tables).study
+
+
+def released(**release: Any) -> dict[str, Any]:
+    return {"release": {"position": POSITION, "velocity": VELOCITY} | release}
+
+
+def write_table(path: Path, table: np.ndarray, titles: str) -> str:
+    lines = [titles, *(",".join(f"{value:.17g}" for value in row) for row in table)]
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+TITLES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
+
+
+def some_states(count: int = 8) -> np.ndarray:
+    """Times and body-fixed states, [count, 7]."""
+    random = np.random.default_rng(1)
+    off = random.standard_normal((count, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
+    return np.column_stack([100.0 * np.arange(count), np.array([*POSITION, *VELOCITY]) + off])
+
+
+def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
+    found = DrawnDesign(study(delivery=released(covariance=[[0.0] * 6] * 6))).descents
+    assert found is not None
+    site = Site(study(delivery=released()))
+    alone = fly(site.body, POSITION, VELOCITY, 40000.0)
+    assert (found.flights.status == "impact").all()
+    assert (found.flights.position == alone.position).all()
+    assert (found.flights.velocity == alone.velocity).all()
+    assert (found.flights.time == alone.time).all()
+
+
+def test_a_run_alone_is_the_same_as_among_others() -> None:
+    design = DrawnDesign(study(delivery=released(position_std=5.0, velocity_std=1e-3)))
+    assert [design.row(run) for run in range(8)] == design.rows
+    more = design.with_run_count(12)
+    assert more.rows[:8] == design.rows
+    assert len({row["impact.speed"] for row in design.rows}) == 8
+
+
+def test_the_first_touchdown_has_what_the_flight_tells() -> None:
+    design = DrawnDesign(study(delivery=released(position_std=5.0, velocity_std=1e-3)))
+    flights = design.descents.flights
+    speeds = [row["impact.speed"] for row in design.rows]
+    assert speeds == flights.impact_speed.tolist()
+    incidence = np.radians([row["impact.incidence_deg"] for row in design.rows])
+    outward = np.einsum("ni,ni->n", flights.velocity, design.descents.axes[:, 2])
+    assert np.cos(incidence) == pytest.approx(-outward / speeds)
+    along = np.einsum("ni,ni->n", flights.velocity, design.descents.axes[:, 0])
+    assert np.sin(incidence) == pytest.approx(along / speeds)
+    assert design.medians["impact.speed"] == np.median(speeds)
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A ball, next to a point mass outside of it."""
+    path = tmp_path_factory.mktemp("ball") / "ball.obj"
+    directions, faces = sphere_mesh(8)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (RADIUS * directions).tolist()]
+    path.write_text("\n".join([*lines, *(f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist())]) + "\n")
+    return path
+
+
+def test_the_spread_at_the_ground_is_that_of_the_linear_propagation(ball: Path) -> None:
+    """A fall straight down to a point mass that does not turn.
+
+    The angular momentum r^2 d(angle)/dt is kept, so an angle off the vertical grows by that over r^2, to first order
+    along the undisturbed fall: on the ground R (dy / r0 + r0 w I), I the integral of dt / r^2, where u = 1 / r and
+    dt / r^2 = -du / v(u), v^2 = v0^2 + 2 mu (u - u0). The velocity across is w = dv + v0 dy / r0: beside the vertical
+    the way down is not that to the centre.
+    """
+    count, high, mu = 400, RADIUS + HEIGHT, GRAVITATIONAL_CONSTANT * MASS
+    integral = (math.sqrt(DOWN**2 + 2.0 * mu * (1.0 / RADIUS - 1.0 / high)) - DOWN) / mu
+    # Small, and each correlated with another: along x up, y and z level.
+    sizes = np.array([0.2, 0.3, 0.2, 1e-5, 2e-5, 1e-5])
+    correlation = np.eye(6)
+    for row, column, value in ((1, 4, 0.6), (2, 1, -0.4), (5, 2, 0.3)):
+        correlation[row, column] = correlation[column, row] = value
+    covariance = correlation * np.outer(sizes, sizes)
+    one = study(
+        delivery={
+            "latitude_deg": 0.0, "longitude_deg": 0.0,
+            "release": {"position": [high, 0.0, 0.0], "velocity": [-DOWN, 0.0, 0.0], "covariance": covariance.tolist()},
+        },
+        site={"body": str(ball), "mass": MASS, "spin_period": 1e12, "partner": True},
+    )  # fmt: skip
+    uniforms = np.random.default_rng(3).random((count, 6))
+    found = Descents.flown(one, 0, uniforms)
+    assert found.touches_down.all()
+    on_ground = RADIUS * np.arctan2(found.flights.position[:, 1:], found.flights.position[:, :1])
+    gain = np.zeros((2, 6))
+    gain[0, 1] = gain[1, 2] = RADIUS / high + RADIUS * integral * DOWN
+    gain[0, 4] = gain[1, 5] = RADIUS * high * integral
+    # The same landers one by one, then all of them as a sample.
+    off = spread(one.delivery.release, np.array([0.0, 0.0, 1.0]), ndtri(uniforms))
+    assert np.abs(on_ground - off @ gain.T).max() < 0.01 * np.abs(on_ground).max()
+    expected = gain @ covariance @ gain.T
+    normal = on_ground @ np.linalg.inv(np.linalg.cholesky(expected)).T
+    # Variances of so many normal numbers scatter by sqrt(2 / count), their products by sqrt(1 / count): four times.
+    assert np.abs(np.cov(normal.T) - np.eye(2)).max() < 4.0 * math.sqrt(2.0 / count)
+
+
+def test_the_root_of_a_covariance_gives_it_back() -> None:
+    random = np.random.default_rng(2)
+    factor = random.standard_normal((6, 4)) * np.array([[30.0]] * 3 + [[0.007]] * 3)
+    covariance = factor @ factor.T
+    release = ReleaseSection(position=POSITION, velocity=VELOCITY, covariance=covariance.tolist())
+    root = spread_root(release, np.array([0.0, 0.0, 1.0]))
+    scale = np.sqrt(np.diag(covariance))
+    assert np.abs(root @ root.T - covariance) / np.outer(scale, scale) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_standard_deviations_are_up_north_and_east() -> None:
+    release = ReleaseSection(
+        position=[0.0, 200.0, 0.0], velocity=[0.0, 0.0, 0.0], position_std=[1.0, 2.0, 3.0], velocity_std=0.01
+    )
+    root = spread_root(release, np.array([0.0, 0.0, 1.0]))
+    # At 90 deg east: up is y, north is z, east is -x.
+    assert np.diag(root @ root.T) == pytest.approx([9.0, 1.0, 4.0, 1e-4, 1e-4, 1e-4])
+
+
+def test_axes_of_icrf_go_through_pole_and_meridian() -> None:
+    site = SiteSection(**POLE)
+    time = np.array([0.0, 0.25 * SPIN_PERIOD, 7.0])
+    found = icrf_to_body(site, time, np.full(3, SPIN_PERIOD))
+    for rotation, seconds in zip(found, time, strict=True):
+        angle = POLE["meridian_deg"] + 360.0 * seconds / SPIN_PERIOD
+        right_ascension, declination = POLE["pole_right_ascension_deg"], POLE["pole_declination_deg"]
+        # The usual three turns of the frame: about z, x, z.
+        turns = [90.0 + right_ascension, 90.0 - declination, angle]
+        expected = Rotation.from_euler("ZXZ", turns, degrees=True).inv().as_matrix()
+        assert rotation == pytest.approx(expected, abs=1e-12)
+
+
+def to_icrf(table: np.ndarray) -> np.ndarray:
+    """Body-fixed states [count, 7] in ICRF."""
+    time, place, velocity = table[:, 0], table[:, 1:4], table[:, 4:]
+    period = np.full(len(time), SPIN_PERIOD)
+    back = np.transpose(icrf_to_body(SiteSection(**POLE), time, period), (0, 2, 1))
+    inertial = 2.0 * velocity - against_ground(place, velocity, period)
+    return np.column_stack([time, turned(back, place), turned(back, inertial)])
+
+
+def test_icrf_and_body_fixed_give_the_same_touchdown(tmp_path: Path) -> None:
+    fixed = write_table(tmp_path / "fixed.csv", some_states(), TITLES)
+    icrf = write_table(tmp_path / "icrf.csv", to_icrf(some_states()), TITLES)
+    one = DrawnDesign(study(delivery={"states": fixed})).descents
+    other = DrawnDesign(study(delivery={"states": icrf, "frame": "icrf", "epoch": EPOCH}, site=POLE)).descents
+    assert one.touches_down.all()
+    # Positions of 140 m lose some digits on the way.
+    assert np.abs(one.flights.position - other.flights.position).max() < 1e-8
+    assert np.abs(one.flights.time - other.flights.time).max() < 1e-6
+    assert one.flights.impact_speed == pytest.approx(other.flights.impact_speed, rel=1e-9)
+
+
+def test_a_message_of_two_segments_gives_the_touchdowns_of_the_table(tmp_path: Path) -> None:
+    states = some_states()
+    table = write_table(tmp_path / "states.csv", states, TITLES)
+    path = tmp_path / "states.oem"
+    path.write_text(message(states[:3]) + message(states[3:], head=""))
+    by_table = DrawnDesign(study(delivery={"states": table})).descents
+    by_message = DrawnDesign(study(delivery={"states": str(path), "epoch": EPOCH})).descents
+    assert np.abs(by_table.flights.position - by_message.flights.position).max() < 1e-9
+    assert by_table.clock == pytest.approx(by_message.clock)
+    # Without an epoch the earliest state is at 0, as it is here.
+    alike = DrawnDesign(study(delivery={"states": str(path)})).descents
+    assert (alike.flights.position == by_message.flights.position).all()
+
+
+HEAD = "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2027-01-01T00:00:00\nORIGINATOR = TOOL\n\n"
+
+
+def message(states: np.ndarray, frame: str = "DIMORPHOS_FIXED", centre: str = "DIMORPHOS", head: str = HEAD) -> str:
+    lines = [f"2027-04-20T12:{int(row[0]) // 60:02d}:{row[0] % 60.0:09.6f} " for row in states]
+    numbers = [" ".join(f"{1e-3 * value:.17g}" for value in row[1:]) for row in states]
+    meta = (
+        f"META_START\nOBJECT_NAME = CUBESAT\nOBJECT_ID = 1\nCENTER_NAME = {centre}\nREF_FRAME = {frame}\n"
+        f"TIME_SYSTEM = UTC\nSTART_TIME = {EPOCH}\nSTOP_TIME = {EPOCH}\nMETA_STOP\n"
+    )
+    rows = "\n".join(line + row for line, row in zip(lines, numbers, strict=True))
+    return f"{head}{meta}COMMENT one state a lander\n{rows}\nCOVARIANCE_START\nEPOCH = {EPOCH}\n1.0\nCOVARIANCE_STOP\n"
+
+
+def test_states_of_a_message_know_their_line_and_segment(tmp_path: Path) -> None:
+    found = list(message_states(tmp_path / "a.oem", message(some_states(2))))
+    assert [state.line for state in found] == [15, 16]
+    assert found[0].segment["REF_FRAME"] == "DIMORPHOS_FIXED"
+    assert found[1].epoch.second == 40
+    by_day = message(some_states(1)).replace("2027-04-20T12:00:00.", "2027-110T12:00:00.")
+    assert next(message_states(tmp_path / "a.oem", by_day)).epoch == found[0].epoch
+
+
+def test_an_attitude_turns_on_until_the_touchdown(tmp_path: Path) -> None:
+    """About an axis of inertia, at the rate of the body: it does not turn against the ground."""
+    turn = Rotation.from_euler("xyz", [20.0, -30.0, 40.0], degrees=True)
+    quaternions = np.roll(turn.as_quat(), 1)
+    # About z of the frame, in the axes of the lander; a cube, which any axis is one of.
+    rates = turn.inv().apply([0.0, 0.0, 2.0 * math.pi / SPIN_PERIOD])
+    table = np.column_stack([some_states(), np.tile([*quaternions, *rates], (8, 1))])
+    titles = f"{TITLES},q_w,q_x,q_y,q_z,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s"
+    path = write_table(tmp_path / "states.csv", table, titles)
+    design = DrawnDesign(study(delivery={"states": path}, lander={"edges": [0.1, 0.1, 0.1]}))
+    for row, axes in zip(design.rows, design.descents.axes, strict=True):
+        azimuth = math.radians(row["impact.azimuth_deg"])
+        into_bed = Rotation.from_rotvec([0.0, 0.0, azimuth]) * Rotation.from_matrix(axes)
+        given = [row[f"impact.orientation.{part}"] for part in "xyzw"]
+        assert (Rotation.from_quat(given) * (into_bed * turn).inv()).magnitude() < 1e-7
+        assert [row[f"impact.spin_{axis}"] for axis in "xyz"] == pytest.approx([0.0] * 3, abs=1e-12)
+
+
+def test_a_spin_of_a_lander_is_told_in_the_frame_of_its_bed(tmp_path: Path) -> None:
+    turn, rates = Rotation.from_euler("xyz", [20.0, -30.0, 40.0], degrees=True), np.array([0.01, 0.02, -0.005])
+    quaternion = np.roll(turn.as_quat(), 1)
+    table = np.column_stack([some_states(), np.tile([*quaternion, *rates], (8, 1))])
+    titles = f"{TITLES},q_w,q_x,q_y,q_z,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s"
+    design = DrawnDesign(study(delivery={"states": write_table(tmp_path / "states.csv", table, titles)}))
+    time = float(design.descents.flights.time[0])
+    edges, mass = TABLES["lander"]["edges"], TABLES["lander"]["mass"]
+    inertia = np.diag([mass / 12.0 * (sum(edge**2 for edge in edges) - own**2) for own in edges])
+    _, after = tumble(inertia, quaternion[None], turn.apply(rates)[None], np.array([time]))
+    against = after[0] - [0.0, 0.0, 2.0 * math.pi / SPIN_PERIOD]
+    # Its size against the ground is the same in every frame that turns with the ground.
+    back = Rotation.from_rotvec([0.0, 0.0, -2.0 * math.pi / SPIN_PERIOD * time]).apply(after[0])
+    against = back - [0.0, 0.0, 2.0 * math.pi / SPIN_PERIOD]
+    row = design.rows[0]
+    assert np.linalg.norm([row[f"impact.spin_{axis}"] for axis in "xyz"]) == pytest.approx(np.linalg.norm(against))
+    outward = float(design.descents.axes[0, 2] @ against)
+    assert row["impact.spin_z"] == pytest.approx(outward)
+
+
+def test_landers_that_never_touch_down_are_no_runs(tmp_path: Path) -> None:
+    states = some_states()
+    states[[0, 5], 4:] *= -20.0
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    design = DrawnDesign(study(delivery={"states": path}))
+    assert np.flatnonzero(~design.descents.touches_down).tolist() == [0, 5]
+    assert [row["journey"] for row in design.rows] == [1.0, 2.0, 3.0, 4.0, 6.0, 7.0]
+    assert design.shown_row == design.rows[0]
+    assert (design.descents.flights.status[[0, 5]] == FlightStatus.ESCAPED).all()
+    with pytest.raises(ValueError, match="lander 6 of the study never touches down"):
+        design.row(5)
+    states[:, 4:] = np.abs(states[:, 4:]) * 20.0
+    write_table(tmp_path / "states.csv", states, TITLES)
+    with pytest.raises(StudyError, match="none of 8 landers reaches the ground"):
+        _ = DrawnDesign(study(delivery={"states": path})).rows
+
+
+def test_a_state_below_the_ground_is_refused_with_its_line(tmp_path: Path) -> None:
+    states = some_states()
+    states[3, 1:4] = [0.0, 60.0, 0.0]
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    with pytest.raises(StudyError, match=r"states\.csv, line 5 lies .* m below the ground; allowed"):
+        _ = DrawnDesign(study(delivery={"states": path})).descents
+    with pytest.raises(StudyError, match=r"delivery\.release: the release of journey 0 lies"):
+        _ = DrawnDesign(study(delivery=released(position=[0.0, 60.0, 0.0]))).descents
+
+
+def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
+    with pytest.raises(StudyError, match=r"impact\.speed reaches"):
+        _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents

@@ -1,0 +1,184 @@
+"""Journeys that begin with states, a release or correlated draws: tables, ends, results, and what outdates them."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import lithobrake
+from lithobrake.pipeline.commands.status import study_status
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.planning.plan_in_words import plan_lines
+from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.results import StudyResults
+from lithobrake.smallbody import fly
+from lithobrake.study.source import StudySource
+from lithobrake.study.study import Study
+
+from .bouncing_lander import bounce, journey_tables
+
+COUNT = 24
+# Above the trailing side; of two in a row of ten the speed is away from the ground.
+RELEASE = {"position": [5.0, 150.0, 10.0], "velocity": [0.0, -0.03, 0.0], "position_std": 8.0, "velocity_std": 0.003}
+TITLES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
+CORRELATIONS = [["north_error", "east_error", 0.6], ["east_error", "speed", -0.5], ["speed", "incidence_deg", 0.4]]
+
+
+def tables(**changes: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a study whose landers are flown to the ground."""
+    found = journey_tables(journey={"count": COUNT})
+    found["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"}
+    for name, table in changes.items():
+        found[name] = found.get(name, {}) | table
+    return found
+
+
+def study_of(given: dict[str, Any]) -> Study:
+    return with_site_gravity(StudySource.of_tables(given).study)
+
+
+def write_states(path: Path, away: tuple[int, ...] = ()) -> np.ndarray:
+    random = np.random.default_rng(4)
+    states = np.column_stack([np.zeros(COUNT), random.normal(0.0, [8.0, 8.0, 8.0, 2e-3, 2e-3, 2e-3], (COUNT, 6))])
+    states += [0.0, 5.0, 150.0, 10.0, 0.0, -0.03, 0.0]
+    states[list(away), 5] = 0.5
+    path.write_text("\n".join([TITLES, *(",".join(f"{one:.17g}" for one in row) for row in states)]) + "\n")
+    return states
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResults, np.ndarray]:
+    """A study of states, of which two fly away, and these."""
+    folder = tmp_path_factory.mktemp("flown")
+    states = write_states(folder / "states.csv", away=(3, 9))
+    given = tables(delivery={"states": str(folder / "states.csv")})
+    lithobrake.run(given, folder / "out", workers=1, model=bounce)
+    return lithobrake.open_study(folder / "out"), states
+
+
+def test_every_state_is_one_journey_with_one_end(flown: tuple[StudyResults, np.ndarray]) -> None:
+    results, _ = flown
+    ends = results.summary["results"]["ends"]
+    assert sum(one["count"] for one in ends.values()) == COUNT
+    journeys = results.journeys
+    assert journeys["end"][[3, 9]].tolist() == ["escaped", "escaped"]
+    assert journeys["touchdowns"][[3, 9]].tolist() == [0.0, 0.0]
+    assert (np.delete(journeys["touchdowns"], [3, 9]) > 0).all()
+    assert (journeys["time_s"] > 0.0).all()
+
+
+def test_the_first_flight_leads_from_the_state_to_the_first_touchdown(flown: tuple[StudyResults, np.ndarray]) -> None:
+    results, states = flown
+    arcs, touchdowns = results.arcs, results.touchdowns
+    first = arcs.where(arcs["arc"] == 0.0)
+    assert first["sample"].tolist() == list(range(COUNT))
+    assert np.column_stack([first[f"position_{axis}"] for axis in "xyz"]).tolist() == states[:, 1:4].tolist()
+    begins = np.delete(first["begin_s"], [3, 9])
+    assert (begins < 0.0).all()
+    assert (np.delete(first["end_s"], [3, 9]) == 0.0).all()
+    impacts = touchdowns.where(touchdowns["touchdown"] == 0.0)
+    own = Site(study_of(tables(delivery={"release": RELEASE}))).body
+    down = np.delete(np.arange(COUNT), [3, 9])
+    again = fly(own, states[down, 1:4], states[down, 4:], 172800.0, gravity="table", start_time=first["clock_s"][down])
+    assert np.column_stack([impacts[f"position_{axis}"] for axis in "xyz"]).tolist() == again.position.tolist()
+    velocity = np.column_stack([impacts[f"velocity_{axis}"] for axis in "xyz"])
+    assert np.abs(velocity - again.velocity).max() < 1e-12
+    assert impacts["impact.speed"] == pytest.approx(again.impact_speed)
+
+
+def test_the_delivery_stands_in_summary_page_and_status(flown: tuple[StudyResults, np.ndarray]) -> None:
+    results, _ = flown
+    found = results.results.delivery
+    assert (found.count, found.of) == (COUNT - 2, COUNT)
+    touchdowns = results.touchdowns
+    speed = touchdowns["impact.speed"][touchdowns["touchdown"] == 0.0]
+    assert found.speed == pytest.approx(np.quantile(speed, [0.05, 0.5, 0.95]))
+    assert found.descent_s[1] > 0.0
+    assert [one.share for one in found.ellipse.shares] == [0.5, 0.95]
+    page = (results.folder / "report" / "index.html").read_text()
+    assert "of the first impacts, the delivery" in page
+    assert f"{COUNT - 2} of {COUNT} landers touch down" in page
+    assert any("escaped" in line for line in study_status(results.folder).lines())
+
+
+def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
+    study = study_of(tables(delivery={"release": RELEASE}))
+    plan = plan_of(DrawnDesign(study), Site(study), "flown", StudyFolder.only_read(tmp_path), 1)
+    line = next(line for line in plan_lines(plan) if line.startswith("Delivery"))
+    assert f"of {COUNT} landers reach the ground" in line
+    assert plan.made["journeys to rest"][1] == len(DrawnDesign(study).rows)
+
+
+def test_an_edited_table_makes_the_journeys_outdated(tmp_path: Path) -> None:
+    path = tmp_path / "states.csv"
+    write_states(path)
+    study = study_of(tables(delivery={"states": str(path)}))
+    before = stage_keys(study)
+    moved = path.rename(tmp_path / "elsewhere.csv")
+    assert stage_keys(study_of(tables(delivery={"states": str(moved)})))["runs"] == before["runs"]
+    write_states(path, away=(COUNT - 1,))
+    after = stage_keys(study)
+    assert after["runs"] != before["runs"]
+    assert after["bed"] == before["bed"]
+
+
+def test_journeys_are_added_also_where_some_never_touch_down(tmp_path: Path) -> None:
+    asked = {"half_width": 0.16, "largest_run_count": 96}
+    release = RELEASE | {"velocity_std": 0.04}
+    lithobrake.run(
+        tables(delivery={"release": release}, design=asked), tmp_path / "out", workers=1, model=bounce, report=False
+    )
+    results = lithobrake.open_study(tmp_path / "out").results
+    at_rest = results.ends["at_rest"]
+    assert results.delivery.count < results.journeys
+    assert results.journeys == 96 or at_rest.upper - at_rest.lower <= 2.0 * 0.16
+
+
+def correlated(count: int, pairs: list[list[Any]] | None = None) -> tuple[DrawnDesign, Site]:
+    """The design and the site of a study at the surface, with these correlations."""
+    error = {"distribution": "normal", "mean": 0.0, "std": 10.0}
+    given = journey_tables(delivery={"north_error": error, "east_error": error}, journey={"count": count})
+    if pairs is not None:
+        given["delivery"]["correlations"] = pairs
+    study = study_of(given)
+    return DrawnDesign(study), Site(study)
+
+
+def drawn(design: DrawnDesign, site: Site) -> dict[str, np.ndarray]:
+    columns = site.sampled(len(design.beds))
+    keys = ("speed", "incidence_deg")
+    return {key: columns[key] for key in ("north_error", "east_error", "heading_deg")} | {
+        key: np.array([row[f"impact.{key}"] for row in design.rows]) for key in keys
+    }
+
+
+def test_draws_of_the_delivery_have_the_correlations_of_the_file() -> None:
+    count = 1000
+    found = drawn(*correlated(count, CORRELATIONS))
+    expected = {frozenset(pair[:2]): pair[2] for pair in CORRELATIONS}
+    names = list(found)
+    for row, one in enumerate(names):
+        for other in names[:row]:
+            rank = stats.spearmanr(found[one], found[other]).statistic
+            # A rank correlation of so many draws errs by at most 1 / sqrt(count); four times that.
+            assert rank == pytest.approx(expected.get(frozenset((one, other)), 0.0), abs=4.0 / np.sqrt(count))
+    speed = np.sort(found["speed"])
+    assert np.abs(speed - np.linspace(0.04, 0.08, count)).max() < 0.002
+
+
+def test_correlations_change_only_what_they_name() -> None:
+    (apart, site), (together, other) = correlated(COUNT), correlated(COUNT, [["north_error", "speed", 0.7]])
+    before, after = drawn(apart, site), drawn(together, other)
+    # The first of the two stays too: the other follows it.
+    for key in ("north_error", "east_error", "heading_deg", "incidence_deg"):
+        assert (before[key] == after[key]).all()
+    assert (before["speed"] != after["speed"]).all()
+    own = {name for name in apart.rows[0] if apart.rows[0][name] != together.rows[0][name]}
+    assert own == {"impact.speed"}
+    assert [together.row(run) for run in (0, 7)] == [together.rows[0], together.rows[7]]
+    assert together.with_run_count(COUNT + 5).rows[:COUNT] == together.rows

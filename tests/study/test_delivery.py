@@ -1,0 +1,252 @@
+"""Deliveries by states, by a release and with correlations: what a study file may say, and what is refused."""
+
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.study import StudyError
+from lithobrake.study.delivered_states import read_states
+from lithobrake.study.reader import check_tables
+from lithobrake.study.study import Study
+
+TABLES: dict[str, Any] = {
+    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
+    "grain": {
+        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
+        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
+    },
+    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "journey": {"count": 2},
+    "site": {"body": "dimorphos"},
+}  # fmt: skip
+AIM = {"latitude_deg": 10.0, "longitude_deg": 20.0}
+RELEASE = {"position": [0.0, 200.0, 0.0], "velocity": [0.0, -0.05, 0.0]}
+FLOWN = {**AIM, "frame": "body_fixed", "release": RELEASE}
+NORMAL = {"distribution": "normal", "mean": 0.0, "std": 10.0}
+SPEED = {"distribution": "uniform", "lower": 0.04, "upper": 0.07}
+SURFACE = {**AIM, "speed": SPEED, "incidence_deg": 20.0, "north_error": NORMAL, "east_error": NORMAL}
+STATES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,0,200,0,0,-0.05,0\n1,0,210,0,0,-0.05,0\n"
+
+
+def checked(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> Study:
+    tables = deepcopy(TABLES) | {"delivery": delivery}
+    for name, table in changes.items():
+        tables[name] = tables.get(name, {}) | table
+    return check_tables(tables, folder)
+
+
+def refused(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> str:
+    with pytest.raises(StudyError) as error:
+        checked(delivery, folder, **changes)
+    return str(error.value)
+
+
+def test_a_release_needs_neither_speed_nor_incidence() -> None:
+    study = checked(FLOWN)
+    assert study.impact.speed is None
+    assert "impact.speed" not in study.touchdown_values()
+    assert study.delivery is not None
+    assert study.delivery.is_flown
+
+
+def test_one_standard_deviation_stands_for_three() -> None:
+    study = checked(FLOWN | {"release": RELEASE | {"position_std": 30, "velocity_std": [0.01, 0.0, 0.02]}})
+    assert study.delivery.release.position_std == (30.0, 30.0, 30.0)
+    assert study.delivery.release.velocity_std == (0.01, 0.0, 0.02)
+
+
+def covariance(**entries: float) -> list[list[float]]:
+    """Variances of 100 and 1e-4, with entries by row and column, as r1c2."""
+    matrix = np.diag([100.0] * 3 + [1e-4] * 3)
+    for place, value in entries.items():
+        matrix[int(place[1]) - 1, int(place[3]) - 1] = value
+    return matrix.tolist()
+
+
+@pytest.mark.parametrize(
+    ("matrix", "words"),
+    [
+        ([[1.0]], "allowed: 6 rows of 6 numbers"),
+        ([["1"] * 6] * 6, "write finite numbers without quotes"),
+        (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
+        (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
+        (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
+        (
+            covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
+            "has the eigenvalue -0.8; allowed: none below 0",
+        ),
+    ],
+)
+def test_what_is_no_covariance_is_refused(matrix: Any, words: str) -> None:
+    said = refused(FLOWN | {"release": RELEASE | {"covariance": matrix}})
+    assert "delivery.release.covariance" in said
+    assert words in said
+
+
+def test_covariances_without_full_rank_are_taken() -> None:
+    checked(FLOWN | {"release": RELEASE | {"covariance": [[0.0] * 6] * 6}})
+    one = np.outer([1.0, 2.0, 3.0, 1e-3, 2e-3, 3e-3], [1.0, 2.0, 3.0, 1e-3, 2e-3, 3e-3])
+    checked(FLOWN | {"release": RELEASE | {"covariance": one.tolist()}})
+
+
+@pytest.mark.parametrize(
+    ("delivery", "words"),
+    [
+        ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
+        (
+            {"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
+            "has covariance and position_std; keep one",
+        ),
+        ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
+        ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
+        ({"heading_deg": 10.0}, "site.heading_deg is given"),
+        ({"north_error": NORMAL}, "site.north_error is given"),
+        ({"frame": None}, "delivery.frame is missing"),
+        ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
+        ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
+        ({"latitude_deg": None}, "delivery.latitude_deg is missing"),
+        ({"longitude_deg": SPEED}, "one number, that of the aim point"),
+        ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
+        ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
+    ],
+)
+def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], words: str) -> None:
+    given = {key: value for key, value in (FLOWN | delivery).items() if value is not None}
+    assert words.replace("'", '"') in refused(given).replace("'", '"')
+
+
+def test_a_delivery_by_states_needs_a_journey() -> None:
+    tables = deepcopy(TABLES) | {"delivery": FLOWN}
+    del tables["journey"]
+    with pytest.raises(StudyError, match=r"delivery\.frame goes with \[journey\]"):
+        check_tables(tables | {"surface": {"gravity": 5e-5}}, Path())
+    assert "delivery.frame goes with states or [delivery.release]" in refused(SURFACE | {"frame": "icrf"})
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"),
+    [
+        ([["north_error", "east_error"]], "allowed: two keys and a number between -1 and 1"),
+        ([["north_error", "east_error", 1.0]], "allowed: two keys and a number between -1 and 1"),
+        ([["north_error", "east", 0.5]], "names 'east'"),
+        ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
+        ([["speed", "speed", 0.5]], "allowed: two different keys"),
+        ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
+        (
+            [["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
+            "weaken the correlations that contradict each other",
+        ),
+    ],
+)
+def test_correlations_that_cannot_be_are_refused(pairs: Any, words: str) -> None:
+    assert words.replace("'", '"') in refused(SURFACE | {"correlations": pairs}).replace("'", '"')
+
+
+def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(tmp_path: Path) -> None:
+    (tmp_path / "states.csv").write_text(STATES)
+    given = AIM | {"frame": "body_fixed", "states": "states.csv"}
+    assert checked(given, tmp_path).delivery.states == str(tmp_path / "states.csv")
+    said = refused(given, tmp_path, journey={"count": 3})
+    assert "journey.count is 3 and delivery.states has 2 rows; allowed: at most as many journeys as rows" in said
+    more = {"half_width": 0.1, "largest_run_count": 24}
+    said = refused(given, tmp_path, design=more)
+    assert "design.largest_run_count is 24 and delivery.states has 2 rows" in said
+    assert "other.csv cannot be read" in refused(given | {"states": "other.csv"}, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("x_m", "x"), "line 1: x has no unit; write it into the title, as x_m"),
+        (("x_m", "x_kg"), "line 1: x_kg has the unit [kg]; allowed: m, km, cm"),
+        (("vx_m_s", "vx_m"), "line 1: vx_m has the unit [m]; allowed: m/s, km/s"),
+        (("x_m", "run"), "is no column"),
+        (("vz_m_s", "vy_km_s"), "line 1: vy has two columns"),
+        (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
+        (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
+        (("210", "nan"), "line 3: y is"),
+        ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
+        (("time_s", "<xml>"), "is XML"),
+        ((",vz_m_s", ""), "the column vz_m_s is missing"),
+    ],
+)
+def test_tables_that_cannot_be_read_are_refused_with_their_line(
+    change: tuple[str, str], words: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "states.csv"
+    path.write_text(STATES.replace(*change))
+    with pytest.raises(ValueError, match=r"states\.csv") as error:
+        read_states(path, "body_fixed", None, ())
+    assert words.replace("'", '"') in str(error.value).replace("'", '"')
+
+
+def test_units_stand_in_the_titles(tmp_path: Path) -> None:
+    path = tmp_path / "states.csv"
+    path.write_text("# of another tool\n\nvx_cm_s,vy_mm_s,vz_m_s,time_h,x_km,y_m,z_m\n1,2,3,0.5,4,5,6\n")
+    found = read_states(path, "body_fixed", None, ())
+    assert found.time.tolist() == [1800.0]
+    assert found.position.tolist() == [[4000.0, 5.0, 6.0]]
+    assert found.velocity[0] == pytest.approx([0.01, 0.002, 3.0])
+    assert found.source == ["states.csv, line 4"]
+
+
+def test_an_attitude_is_whole_and_of_length_one(tmp_path: Path) -> None:
+    path = tmp_path / "states.csv"
+    lines = STATES.splitlines()
+    path.write_text(f"{lines[0]},q_w,q_x,q_y,q_z\n{lines[1]},1,0,0,0\n")
+    with pytest.raises(ValueError, match="the column rate_x_rad_s, rate_y_rad_s, rate_z_rad_s is missing"):
+        read_states(path, "body_fixed", None, ())
+    titles = f"{lines[0]},q_w,q_x,q_y,q_z,rate_x_deg_s,rate_y_deg_s,rate_z_deg_s"
+    path.write_text(f"{titles}\n{lines[1]},0,0.5,0,0,1,0,0\n")
+    with pytest.raises(ValueError, match=r"line 2: q_w to q_z have the length 0\.5"):
+        read_states(path, "body_fixed", None, ())
+    path.write_text(f"{titles}\n{lines[1]},0,1,0,0,1,0,0\n")
+    found = read_states(path, "body_fixed", None, ())
+    assert found.rates[0] == pytest.approx([np.pi / 180.0, 0.0, 0.0])
+
+
+OEM = """CCSDS_OEM_VERS = 2.0
+META_START
+OBJECT_NAME = CUBESAT
+CENTER_NAME = DIMORPHOS
+REF_FRAME = ICRF
+TIME_SYSTEM = UTC
+META_STOP
+2027-04-20T12:00:00.5 0 0.2 0 0 -5e-5 0
+2027-04-20T12:00:10 0 0.2 0 0 -5e-5 0
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "frame", "words"),
+    [
+        (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
+        (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
+        (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
+        (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
+        (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
+        (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
+        (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
+        (("META_START", "META_STOP"), "icrf", "the segment has no"),
+    ],
+)
+def test_messages_that_cannot_be_read_are_refused_with_their_line(
+    change: tuple[str, str], frame: str, words: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "states.oem"
+    path.write_text(OEM.replace(*change) if change[0] else OEM)
+    with pytest.raises(ValueError, match=r"states\.oem") as error:
+        read_states(path, frame, "2027-04-20T12:00:00", ("DIMORPHOS",))
+    assert words in str(error.value)
+
+
+def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
+    path = tmp_path / "states.oem"
+    path.write_text(OEM)
+    found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
+    assert found.time.tolist() == [0.5, 10.0]
+    assert found.position[0].tolist() == [0.0, 200.0, 0.0]
+    assert read_states(path, "icrf", None, ()).time.tolist() == [0.0, 9.5]
