@@ -1,4 +1,4 @@
-"""Are delivery options as the emulator says? Three of scenarios/aim.toml, each followed again by landings of its own.
+"""Are delivery options as the emulator says? Options of scenarios/aim.toml, each followed again by landings of its own.
 
     python validation/delivery_options.py [--work FOLDER]
 

@@ -34,6 +34,11 @@ def aim_problems(study: Study) -> Iterator[str]:
             f"{'is' if len(absent) == 1 else 'are'} no uncertain input; give a distribution that reaches over the "
             "impacts to come"
         )
+    if study.delivery is not None and study.delivery.is_flown:
+        yield (
+            "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
+            "of the two out"
+        )
     count = math.prod(len(values) for values in grid.values())
     if len(grid) > MOST_AXES or count > MOST_AIMS:
         yield (

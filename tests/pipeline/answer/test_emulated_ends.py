@@ -38,7 +38,7 @@ def study(
     bed, x = np.arange(JOURNEYS) % BEDS, random.standard_normal(JOURNEYS)
     end = drawn(chances(x, slope, 0.4 * random.standard_normal(BEDS)[bed]), random)
     nothing = np.full(JOURNEYS, np.nan)
-    table = JourneyTable(end, bed, {}, np.column_stack([nothing] * 3), np.full(JOURNEYS, ""), 3 * JOURNEYS)
+    table = JourneyTable(end, bed, {}, np.column_stack([nothing] * 3), np.full(JOURNEYS, ""))
     errors = 0.3 * random.standard_normal(REFIT_COUNT)
     refit = np.arange(FRESH) % REFIT_COUNT
     fresh = drawn(chances(random.standard_normal(FRESH), predicted, errors[refit]), random)
