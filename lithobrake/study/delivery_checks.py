@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from lithobrake.study.covariance_checks import covariance_problems
-from lithobrake.study.delivered_states import parsed_time, states_of
 from lithobrake.study.journey_sections import ANY_HEADING, FLOWN, OWN_KEYS, PLACE_KEYS, SURFACE_KEYS, DeliverySection
 from lithobrake.study.quantity import Uncertain
 from lithobrake.study.release_section import ReleaseSection
@@ -121,6 +120,9 @@ def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Itera
         )
     if delivery.epoch is None:
         return
+    # Arrays come with it, and a study without states is read without them.
+    from lithobrake.study.delivered_states import parsed_time
+
     try:
         epoch = parsed_time(delivery.epoch)
         if study.site.epoch is not None and parsed_time(study.site.epoch) != epoch:
@@ -137,6 +139,8 @@ def _state_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
     if delivery.release is not None:
         yield from _release_problems(delivery.release)
         return
+    from lithobrake.study.delivered_states import states_of
+
     try:
         count = len(states_of(study).time)
     except ValueError as error:

@@ -216,7 +216,7 @@ def _bounce_answers(
     captured = [_captured(one.outcomes[:count]) for one in runs]
     if all(np.isfinite(one).any() for one in captured):
         yield (
-            "captured",
+            TouchdownOutcome.CAPTURED.value,
             _told("fraction captured", "", share_difference(captured[0], captured[1], bed, why=why), is_fraction=True),
         )
     for name in OUTPUTS:
