@@ -40,8 +40,8 @@ def _what(fitted: Table, beds: int) -> str:
     """What is evaluated, and over which range it is known."""
     ranges = listing([_range(fitted, name) for name in OF_TOUCHDOWN])
     return (
-        "One touchdown of a journey, the first or any later one: move the two ends of an input, and the emulator of all "
-        "touchdowns is evaluated in this page at the values between them. It was fitted to "
+        "One touchdown of a journey, the first or any later one: move the two ends of an input, and the emulator of "
+        "all touchdowns is evaluated in this page at the values between them. It was fitted to "
         f"{thousands(fitted.row_count)} touchdowns on {beds} {'bed' if beds == 1 else 'beds'}, with {ranges}; the "
         "sliders reach somewhat farther, as far as it has an answer."
     )
