@@ -25,7 +25,7 @@ OF_ANY_STUDY = ("flight_paths.h5", "body.obj")
 OF_SAMPLES = ("samples.h5", "explorer.h5", "flights.csv", "rest.csv")
 PAPER_FILES = (*FILES, "scores.json", *OF_SAMPLES, *OF_ANY_STUDY)
 DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_SAMPLES, *OF_ANY_STUDY)
-JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", *OF_ANY_STUDY)
+JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", "touchdown_explorer.h5", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 # More dots than this only cover each other, and a picture of ten million takes minutes.
 DRAWN_COUNT = 200_000
@@ -150,12 +150,15 @@ class DrawnPage(RunsPage, SampledPage):
 class JourneyPage(RunsPage):
     """Results of a study whose landers were followed to rest; journeys: a row each; at_rest: numbers of those at rest.
 
-    ends: shares of the journeys by end; runs are the first touchdowns alone.
+    ends: shares of the journeys by end; touchdowns: a row each, and runs the first ones alone; explorer: what the page
+    evaluates of their emulator, None where there is none.
     """
 
     journeys: Table
+    touchdowns: Table
     ends: Mapping[str, EndShare]
     at_rest: JourneyRest
+    explorer: ExplorerTables | None
 
     @property
     def shown_landing(self) -> str:
@@ -186,7 +189,8 @@ def _journeys(found: StudyResults, results: DrawnResults) -> dict[str, Any]:
     if results.ends is None or not isinstance(results.rest, JourneyRest):
         return {}
     _refuse_without(found.folder, JOURNEY_FILES)
-    return {"journeys": found.journeys, "ends": results.ends, "at_rest": results.rest}
+    tables = {"journeys": found.journeys, "touchdowns": found.touchdowns, "explorer": found.touchdown_explorer}
+    return {**tables, "ends": results.ends, "at_rest": results.rest}
 
 
 def _of_any_study(found: StudyResults) -> dict[str, Any]:

@@ -348,6 +348,17 @@ class StudyResults:
         return ExplorerTables.read(self._file("explorer.h5"), self.remedy)
 
     @cached_property
+    def touchdown_explorer(self) -> "ExplorerTables | None":
+        """The same of the emulator of all touchdowns of journeys; None where they have none (results.emulated.why)."""
+        from lithobrake.results.explorer_tables import ExplorerTables
+        from lithobrake.results.summary import DrawnResults
+
+        emulated = self.results.emulated if isinstance(self.results, DrawnResults) else None
+        if emulated is not None and emulated.why is not None:
+            return None
+        return ExplorerTables.read(self._file("touchdown_explorer.h5"), self.remedy)
+
+    @cached_property
     def run_flights(self) -> "Table":
         """How the flights of each run of a drawn study ended, from many sites, and which share of them returns."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)

@@ -9,13 +9,15 @@ from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landers import EmulatedLanders
 from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, fit_touchdowns
+from lithobrake.pipeline.emulated.touchdown_explorer import FILE as EXPLORER
+from lithobrake.pipeline.emulated.touchdown_explorer import write_explorer, write_reason
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, JOURNEY_DESIGN
 
-FILES = (EMULATOR, EMULATED_FILE)
+FILES = (EMULATOR, EXPLORER, EMULATED_FILE)
 # Landers that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
@@ -32,16 +34,23 @@ def emulated_dependencies(study: Study) -> Any:
 
 def make_emulated(job: Job) -> None:
     """Fit the emulator to all touchdowns, follow landers by it, and write touchdown_emulator.json and emulated.csv."""
-    why, rows = fit_touchdowns(job), []
-    assert job.study.journey is not None
-    if why is None and job.design.is_flown:
-        job.say(LANDINGS_ALONE)
-    elif why is None and job.study.journey.emulated_count:
-        emulator = TouchdownEmulator.read(job.design, job.folder)
-        rows = [*_fresh(job, emulator), *_own(job, emulator)]
+    why = fit_touchdowns(job)
+    rows = _followed(job) if why is None else []
     if why is not None:
+        write_reason(job, why)
         job.say(why)
     write_table(job.folder, EMULATED_FILE, tuple(EMULATED), rows, EMULATED)
+
+
+def _followed(job: Job) -> list[list[Any]]:
+    """Write the explorer of the emulator, and follow landers by it where the study asks for any."""
+    emulator = TouchdownEmulator.read(job.design, job.folder)
+    write_explorer(job, emulator)
+    assert job.study.journey is not None
+    if job.design.is_flown:
+        job.say(LANDINGS_ALONE)
+        return []
+    return [*_fresh(job, emulator), *_own(job, emulator)] if job.study.journey.emulated_count else []
 
 
 def most_landings(job: Job) -> int:

@@ -108,9 +108,9 @@ class Explorer {
         const bin = Math.max(Math.floor(BINS * this.y[k] / this.axes[k]), 0);
         if (bin < BINS) counts[(refit * law.outputs + k) * BINS + bin]++;
       }
+      known[refit]++;
       if (!flown) return;
       const flight = flown.near(this.y[facts.speed], this.y[facts.elevation], this.azimuthOf(row), uniform);
-      known[refit]++;
       fates[flown.status[flight]]++;
       if (flown.status[flight] !== facts.impact) return;
       returns[refit]++;

@@ -86,8 +86,9 @@ function readExplorer() {
   const data = document.getElementById("explorer-data");
   if (!data) return null;
   const { facts, law: packedLaw, flown: packedFlown } = JSON.parse(data.textContent);
-  const found = unpack(packedFlown), law = new Law(unpack(packedLaw), facts);
-  if (!found.status.length) return new Explorer(law, null, facts);
+  const law = new Law(unpack(packedLaw), facts);
+  if (!packedFlown) return new Explorer(law, null, facts);
+  const found = unpack(packedFlown);
   const flown = new Flown(found.starts, found.status);
   flown.cells = Uint16Array.from(found.status, (_, flight) => mapCell(found.places, flight));
   return new Explorer(law, flown, facts);
@@ -112,9 +113,8 @@ function pictures(explorer, holder) {
       drawDistribution(canvas, { ...densities(found, law, k), whole: whole[k], largest: factor * axes[k] });
       caption.textContent = `Median ${value} ${unit} (refits: ${low} to ${high})`;
     });
-    if (!flown) return;
-    holder.querySelector(".share").textContent = shareWords(explorer, found);
-    drawMap(map.canvas, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
+    if (facts.action) holder.querySelector(".share").textContent = shareWords(explorer, found);
+    if (flown) drawMap(map.canvas, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
   };
 }
 

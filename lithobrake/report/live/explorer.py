@@ -1,5 +1,6 @@
 """The explorer of the page: the coefficients of the emulator or expansion and the flown starts, for a browser."""
 
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from lithobrake.report.content import LiveSection
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
-from lithobrake.report.words.captions import hours, input_words, listing, thousands
+from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.drawn_warnings import action, has_interval
 from lithobrake.report.words.labels import output
 from lithobrake.results import ExplorerTables, Table
@@ -26,25 +27,35 @@ START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
 def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
     """The explorer with all its numbers."""
     flown = _flown(data.flights)
-    count = thousands(len(flown["status"]))
+    count = len(flown["status"])
     flown_words = (
-        f"Each lander that is drawn here takes the end of one of {count} flown starts, one of the eight nearest to its "
-        "speed, elevation and azimuth: nothing is flown anew. "
-        if count != "0"
+        f"Each lander that is drawn here takes the end of one of {thousands(count)} flown starts, one of the eight "
+        "nearest to its speed, elevation and azimuth: nothing is flown anew. "
+        if count
         else "Nothing was flown, so neither shares nor places are shown. "
     )
     words = (
         f"Move the two ends of an input: the {data.model} is evaluated in this page, at every soil between them as "
         f"often as the study's law has it there. {_fixed(data, data.explorer)}"
     )
-    numbers = {"facts": _facts(data, data.explorer), "law": packed(_law(data.explorer)), "flown": packed(flown)}
+    facts = law_facts(data.explorer, _moved(data, data.explorer), data.samples) | _flight_facts(data, bool(count))
+    note = f"{words}{_bands(data, data.explorer)} {flown_words}"
+    return [explorer_section(note, facts, data.explorer, flown if count else None)]
+
+
+def explorer_section(
+    note: str, facts: Mapping[str, Any], explorer: ExplorerTables, flown: Mapping[str, np.ndarray] | None = None
+) -> LiveSection:
+    """The section of an explorer. note: what it says of itself; facts and flown starts: what its scripts read."""
+    law = {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
+    numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
     html = f"""<section id="explorer">
-<p class="note">{escape(f"{words}{_bands(data, data.explorer)} {flown_words}")}Grey lines: the whole law.</p>
+<p class="note">{escape(note)}Grey lines: the whole law.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>
 {script_data("explorer-data", numbers)}"""
-    return [LiveSection("Explorer", html, SCRIPTS)]
+    return LiveSection("Explorer", html, SCRIPTS)
 
 
 def _fixed(data: PageData, explorer: ExplorerTables) -> str:
@@ -60,27 +71,29 @@ def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
 
 def _bands(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> str:
     """What the bands are, in a sentence."""
-    fits = f"Bands: the middle nine tenths of {explorer.tables['location'].shape[0]} fits of the {data.model} to "
     if isinstance(data, PaperPage):
-        return fits + "residuals that fall on other runs; no other bed."
-    return fits + (
-        "beds drawn with replacement." if has_interval(data) else "runs drawn with replacement; no other bed."
-    )
+        return f"{_fits(data.model, explorer)} residuals that fall on other runs; no other bed."
+    return emulator_bands(explorer, has_interval(data))
 
 
-def _law(explorer: ExplorerTables) -> dict[str, np.ndarray]:
-    """The tables of the law; JSON-free arrays may hold infinite bounds."""
-    return {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
+def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
+    """What the bands of an emulator are, in a sentence; over_beds: whether its refits draw beds."""
+    drawn = "beds drawn with replacement" if over_beds else "runs drawn with replacement; no other bed"
+    return f"{_fits('emulator', explorer)} {drawn}."
 
 
-def _facts(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> dict[str, Any]:
-    """Names, units and words beside the numbers."""
-    names, site = list(explorer.output_names), data.results.site
-    units = {name: one.units for name, one in data.samples.columns.items()}
+def _fits(model: str, explorer: ExplorerTables) -> str:
+    return f"Bands: the middle nine tenths of {explorer.tables['location'].shape[0]} fits of the {model} to"
+
+
+def law_facts(explorer: ExplorerTables, moved: Sequence[str], of_inputs: Table) -> dict[str, Any]:
+    """Names, units and words beside the numbers. moved: inputs with sliders; of_inputs: a table that has them all."""
+    names = list(explorer.output_names)
+    units = {name: one.units for name, one in of_inputs.columns.items()}
     shown = {name: output(name) for name in names if name in SHOWN}
     return {
         "inputNames": list(explorer.input_names),
-        "moved": [explorer.input_names.index(name) for name in _moved(data, explorer)],
+        "moved": [explorer.input_names.index(name) for name in moved],
         "inputs": [{"words": input_words(name), "unit": units.get(name, "")} for name in explorer.input_names],
         "outputs": [
             {
@@ -98,16 +111,22 @@ def _facts(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> dict[str, A
         "bound": explorer.bound,
         **{name.removesuffix("_out"): names.index(name) for name in SHOWN},
         "level": [names.index(name) for name in LEVEL if name in names] or None,
-        # The study's share is of all samples, those without an answer among them.
-        "ofAll": isinstance(data, PaperPage),
         "fates": [str(fate) for fate in FlightStatus],
         "impact": list(FlightStatus).index(FlightStatus.IMPACT),
-        "holds": site.holds,
-        "action": action(data),
-        "hours": hours(data.study["flight"]["duration"]),
-        "site": [site.latitude_deg, site.longitude_deg],
         "bedCount": explorer.group_count,
-        "reach": explorer.interval_reach if has_interval(data) else None,
+    }
+
+
+def _flight_facts(data: PaperPage | DrawnPage, is_flown: bool) -> dict[str, Any]:
+    """What the share of returns and the map need; no action where there is no share."""
+    site = data.results.site
+    return {
+        # The study's share is of all samples, those without an answer among them.
+        "ofAll": isinstance(data, PaperPage),
+        "holds": site.holds,
+        "action": action(data) if is_flown else None,
+        "site": [site.latitude_deg, site.longitude_deg],
+        "reach": data.explorer.interval_reach if has_interval(data) else None,
     }
 
 

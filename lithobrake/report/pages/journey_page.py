@@ -11,6 +11,7 @@ from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
 from lithobrake.report.figures.style import END_COLOURS
+from lithobrake.report.live.touchdown_explorer import touchdown_sections
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
@@ -34,7 +35,8 @@ OF_FIRST = {
 
 def journey_content(data: JourneyPage) -> Content:
     """All that the page shows of the study."""
-    plots, live = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST)], view_sections(data)
+    plots = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST)]
+    live = [*touchdown_sections(data), *view_sections(data)]
     return Content(words.answer(data), words.journey_warnings(data), tiles(data), plots, journey_tables(data), live)
 
 

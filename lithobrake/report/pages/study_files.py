@@ -33,6 +33,7 @@ CONTENTS = {
     "touchdowns.csv": "every landing of the journeys: its number, key, outcome, time and place",
     "designs/touchdowns.csv": "the same landings: what each was given, and what came out",
     "touchdown_emulator.json": "the emulator of all touchdowns of the journeys (lithobrake.emulator.load reads it)",
+    "touchdown_explorer.h5": "what the explorer of this page evaluates: that emulator, fitted anew many times",
     "emulated.csv": "landers that the emulator of the touchdowns followed, and how they ended",
     "rest.csv": "the journey of each lander that was followed from bounce to bounce",
     "arcs.csv": "each flight between impacts: where it begins, and when it ends",

@@ -4,6 +4,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
@@ -13,6 +14,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import served_models
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.emulated_journeys import COPIES, MOST_LANDINGS
+from lithobrake.report import write_report
 from lithobrake.results import StudyResults
 from lithobrake.results.emulated_results import EmulatedJourneys
 from lithobrake.study import StudyError
@@ -149,6 +151,12 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
     assert "left the ground, and it needs 8" in emulated.why
     assert emulated.why in found.results.answer
     assert [one.soil.missing for one in aim.aims] == [1.0] * 4
+    assert found.touchdown_explorer is None
+    with h5py.File(found.folder / "touchdown_explorer.h5") as file:
+        assert file.attrs["why"] == emulated.why
+    page = write_report(found.folder).read_text(encoding="utf-8")
+    assert 'id="body-3d"' in page
+    assert 'id="explorer"' not in page
 
 
 @pytest.mark.parametrize(

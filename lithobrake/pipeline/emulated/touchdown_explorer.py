@@ -1,0 +1,36 @@
+"""What the explorer of one touchdown evaluates: the refits of the emulator of all touchdowns as tables."""
+
+import numpy as np
+
+from lithobrake.files.atomic import atomic_path
+from lithobrake.pipeline.emulate.explorer_tables import save_explorer, tables_of_refits
+from lithobrake.pipeline.emulated.arrivals import SPIN
+from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import bound_numbers
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
+
+FILE = "touchdown_explorer.h5"
+
+
+def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
+    """Write touchdown_explorer.h5, of the refits that landers follow."""
+    runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
+    # Only the size of the spin counts for the energy: an arrival without one of its own has that of the median.
+    spin = np.linalg.norm([runs.inputs[name] for name in SPIN], axis=0)
+    bound = {
+        **bound_numbers(job.design, emulator.bed_height),
+        **dict(zip(SPIN, (float(np.median(spin)), 0.0, 0.0), strict=True)),
+        "across": emulator.across,
+        "time_limit": 0.0,
+    }
+    save_explorer(job.folder / FILE, tables_of_refits(emulator.refits, bound))
+
+
+def write_reason(job: Job, why: str) -> None:
+    """Write touchdown_explorer.h5 of a study without an emulator: the reason alone."""
+    import h5py
+
+    with atomic_path(job.folder / FILE) as draft, h5py.File(draft, "w") as file:
+        file.attrs["why"] = why
