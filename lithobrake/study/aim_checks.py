@@ -1,11 +1,11 @@
 """What is wrong with the aims that a study is to choose from, found before anything runs."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from lithobrake.study.journey_sections import arrival_key
-from lithobrake.study.quantity import reach, uncertain
+from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.question_sections import AimLimit, aim_results
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest
@@ -45,6 +45,14 @@ def aim_problems(study: Study) -> Iterator[str]:
             f"aim.grid has {len(grid)} names and {count} aims; allowed: at most {MOST_AXES} and {MOST_AIMS}; leave "
             "some values out"
         )
+    yield from _value_problems(study, grid, inputs)
+    yield from _limit_problems(study)
+
+
+def _value_problems(
+    study: Study, grid: Mapping[str, Sequence[float]], inputs: Mapping[str, Uncertain]
+) -> Iterator[str]:
+    """Names of a grid that nothing has, and values that its runs do not reach over."""
     known = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
     if study.journey is not None:
         known = tuple(f"delivery.{name.partition('.')[2]}" for name in known)
@@ -60,7 +68,6 @@ def aim_problems(study: Study) -> Iterator[str]:
                 f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
                 "runs reach over; leave others out, or widen its distribution"
             )
-    yield from _limit_problems(study)
 
 
 def _limit_problems(study: Study) -> Iterator[str]:
