@@ -119,14 +119,22 @@ def _difference(
 
 
 def _bounds(first: Estimated, second: Estimated, correlation: float) -> Bounds | None:
-    """Bounds of second less first from the bounds of both.
-
-    Source: [Zou-2008] (the variances are recovered at the bounds that decide).
-    """
+    """Bounds of second less first; None where one of both lacks an end."""
     ends = (first.value, first.lower, first.upper, second.value, second.lower, second.upper)
     if None in ends:
         return None
     one, one_low, one_high, two, two_low, two_high = (float(end) for end in ends if end is not None)
+    return difference_bounds((one, one_low, one_high), (two, two_low, two_high), correlation)
+
+
+def difference_bounds(
+    first: tuple[float, float, float], second: tuple[float, float, float], correlation: float = 0.0
+) -> Bounds:
+    """Bounds of second less first, each given as value, lower and upper bound.
+
+    Source: [Zou-2008] (the variances are recovered at the bounds that decide).
+    """
+    (one, one_low, one_high), (two, two_low, two_high) = first, second
 
     def reach(a: float, b: float) -> float:
         return math.sqrt(max(a * a + b * b - 2.0 * correlation * a * b, 0.0))

@@ -1,6 +1,5 @@
 """Ends of journeys by the emulator beside those of landings: whether the two agree, and what the first do for these."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ import numpy as np
 from lithobrake.analysis import refit_interval
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
+from lithobrake.analysis.paired_difference import difference_bounds
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.scope import why_no_interval
@@ -91,17 +91,15 @@ def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> di
 
 
 def _agrees(landings: Shares, emulator: Shares) -> bool | None:
-    """Whether no end differs by more than both intervals together allow; None without intervals.
-
-    Source: [Zou-2008] (interval of a difference from those of both).
-    """
-    apart = []
+    """Whether no end differs by more than both intervals together allow; None without intervals."""
+    agreed = []
     for end in EMULATED_ENDS:
-        low, high = sorted((landings[end], emulator[end]), key=lambda one: one.share)
-        if low.upper is None or high.lower is None:
+        one, other = landings[end], emulator[end]
+        if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
             return None
-        apart.append(high.share - low.share - math.hypot(low.upper - low.share, high.share - high.lower))
-    return max(apart) <= 0.0
+        lower, upper = difference_bounds((one.share, one.lower, one.upper), (other.share, other.lower, other.upper))
+        agreed.append(lower <= 0.0 <= upper)
+    return all(agreed)
 
 
 def _narrowed(

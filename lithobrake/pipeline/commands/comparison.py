@@ -14,12 +14,12 @@ import numpy as np
 
 from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
 from lithobrake.files.atomic import atomic_path
-from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.commands.running_estimates import CAPTURED
 from lithobrake.pipeline.fly.run_flights import RunFlights
 from lithobrake.pipeline.folder.notes import REMEDY
-from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
+from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.comparison import ComparedAnswer, ComparedNumber, StudyComparison
@@ -31,7 +31,6 @@ from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.percentages import LEVEL
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
-DESIGN = "designs/drawn.csv"
 # What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
 COMMON = {
     "bed": "bed",
@@ -40,7 +39,7 @@ COMMON = {
     **dict.fromkeys(ORIENTATION, "attitude"),
 }
 # Numbers of a bed that tell it from every other.
-OF_BED = ("solid_fraction", "surface_height")
+OF_BED = ("solid_fraction", "surface_height_m")
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "energy_lost")
 MEDIAN, Q95 = 0.5, 0.95
 # Tables of a study file that say how much of it is made, not of what.
@@ -52,11 +51,15 @@ FIRST, SECOND = "A", "B"
 
 @dataclass(frozen=True)
 class OneStudy:
-    """A study of the two: its folder, results, study file and design, run by run."""
+    """A study of the two: its folder, results, study file, and what it draws, run by run or journey by journey.
+
+    bed: of each run [run_count]; columns of COMMON [run_count], NaN for a lander that never touched down.
+    """
 
     path: Path
     results: StudyResults
     study: Study
+    bed: np.ndarray
     columns: Mapping[str, np.ndarray]
 
     @classmethod
@@ -66,15 +69,20 @@ class OneStudy:
         if results.study["design"]["method"] == "paper":
             raise ValueError(f"{path} is a study of the paper method, on one bed; compare studies with drawn runs")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
-        rows = read_rows(path / DESIGN, ("key", "outcome"), AGAIN)
-        named = {title.split(" ")[0].removeprefix("input:"): title for title in rows[0]}
-        columns = {name: np.array([float(row[named[name]]) for row in rows]) for name in COMMON if name in named}
-        return cls(path, results, source.study, columns)
+        runs = DesignRuns.load(StudyFolder.only_read(path), "drawn")
+        bed, number = runs.inputs["bed"], np.arange(runs.run_count)
+        if source.study.journey is not None:
+            # A lander that is flown to the ground and misses it has a journey, and no run.
+            bed, number = JourneyTable.load(StudyFolder.only_read(path)).bed, runs.inputs["journey"].astype(int)
+        columns = {name: np.full(len(bed), np.nan) for name in COMMON if name in runs.inputs}
+        for name, values in columns.items():
+            values[number] = runs.inputs[name]
+        return cls(path, results, source.study, bed.astype(int), columns | {"bed": bed.astype(float)})
 
     @property
     def run_count(self) -> int:
         """How many runs or journeys it has."""
-        return len(self.columns["bed"])
+        return len(self.bed)
 
     @property
     def folder(self) -> StudyFolder:
@@ -86,7 +94,7 @@ def compare_studies(first: Path, second: Path) -> StudyComparison:
     """Compare two studies that ran. Raises ValueError for two that cannot be paired, with the reason."""
     one, two = OneStudy.open(first), OneStudy.open(second)
     count = _paired_count(one, two)
-    bed = one.columns["bed"][:count].astype(int)
+    bed = one.bed[:count]
     why = why_no_interval(one.study) or why_no_interval(two.study)
     found = dict(_answers((one, two), count, bed, why))
     beds = len(np.unique(bed))
@@ -144,19 +152,23 @@ def _paired_count(one: OneStudy, two: OneStudy) -> int:
             raise _unlike(one, two, f"only one of them draws the {words} of each run")
         if name not in one.columns:
             continue
-        unlike = np.flatnonzero(one.columns[name][:count] != two.columns[name][:count])
+        a, b = (each.columns[name][:count] for each in (one, two))
+        unlike = np.flatnonzero((a != b) & np.isfinite(a) & np.isfinite(b))
         if len(unlike):
-            a, b = (each.columns[name][unlike[0]] for each in (one, two))
-            raise _unlike(one, two, f"run {unlike[0]} has {words} {a:g} in {FIRST} and {b:g} in {SECOND} ({name})")
+            run = unlike[0]
+            said = f"run {run} has {words} {a[run]:g} in {FIRST} and {b[run]:g} in {SECOND} ({name})"
+            raise _unlike(one, two, said)
     return count
 
 
 def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     """What to say where beds of one number are not the same bed, as other grains or another gravity leave them."""
     tables = [each.results.beds for each in (one, two)]
-    known = [name for name in OF_BED if all(name in table for table in tables)]
-    other = [used[np.flatnonzero(a != b)] for a, b in ([table[name][used] for table in tables] for name in known)]
-    count = len(np.unique(np.concatenate(other))) if other else 0
+    # Whose touchdowns are made by a program or function of the user's own has no beds.
+    if not all(table.row_count for table in tables):
+        return None
+    pairs = ([table[name][used] for table in tables] for name in OF_BED)
+    count = int(np.any([a != b for a, b in pairs], axis=0).sum())
     if not count:
         return None
     return (
@@ -228,8 +240,7 @@ def _bounce_answers(
 
 def _captured(outcomes: Sequence[str]) -> np.ndarray:
     """1 for a run that is captured, 0 for one that left, NaN for any other; [run_count]."""
-    known = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
-    return np.array([known.get(one, np.nan) for one in outcomes])
+    return np.array([CAPTURED.get(one, np.nan) for one in outcomes])
 
 
 def _quantiles(

@@ -15,7 +15,8 @@ from lithobrake.vocabulary.quantities import OVER_RIM
 if TYPE_CHECKING:
     from lithobrake.analysis import IntervalEstimate, ShareEstimate
 
-_CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
+# The share of a lander that is captured, by how its touchdown ended; no other end has one.
+CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
 # Of fewer runs no interval says anything.
 FEWEST_RUNS = 2
 NO_FLIGHTS = "The return fraction is not known yet: it takes flights."
@@ -74,7 +75,7 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
     from lithobrake.analysis import mean_estimate, share_estimate
 
     bed = np.array([record.inputs["bed"] for record in done])
-    captured = np.array([_CAPTURED.get(record.outcome or "", np.nan) for record in done])
+    captured = np.array([CAPTURED.get(record.outcome or "", np.nan) for record in done])
     speed = np.array([record.outputs.get("speed_out", np.nan) for record in done])
     returns = np.array([flown.get(record.key, np.nan) for record in done])
     # As the result takes landings without an outcome.

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.geometry.great_circle import directions
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.emulated_journeys import most_landings
@@ -13,6 +13,7 @@ from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.rest.aiming import ways_from_aims
 from lithobrake.study import Study
 from lithobrake.study.journey_sections import arrival_key
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -45,7 +46,8 @@ def follow_options(job: Job) -> None:
             job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
         )
         landers.follow(most_landings(job))
-        end, time, distance = landers.end, landers.time, _distances(job, begin, landers.position)
+        there = directions(*job.site.body.shape.latitude_longitude(landers.position))
+        end, time, distance = landers.end, landers.time, ways_from_aims(job.site.body, begin.site, there)
     rests = end == JourneyEnd.AT_REST
     rows = [
         ["soil", number // count, refit, str(word), seconds, way if at_rest else ""]
@@ -70,14 +72,3 @@ def _arrivals(job: Job) -> Arrivals:
         rows += [row | {name: value for name, value in chosen.items() if not name.startswith(SITE)} for row in one.rows]
     numbers, refit = (np.tile(values, len(options)) for values in (one.number, one.refit))
     return Arrivals.of(job.site, numbers, rows, site, refit)
-
-
-def _distances(job: Job, begin: Arrivals, position: np.ndarray) -> np.ndarray:
-    """Ways over the ground [m] from the aim points to places [m], [count, 3], as if the body were a ball."""
-    latitude, longitude = begin.site["latitude_deg"], begin.site["longitude_deg"]
-    shape = job.site.body.shape
-    aims, place = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
-    radius = np.array([np.linalg.norm(shape.surface_point(*one)) for one in aims.tolist()])[place.ravel()]
-    there = directions(*shape.latitude_longitude(position))
-    ways: np.ndarray = radius * angles(directions(latitude, longitude), there)
-    return ways

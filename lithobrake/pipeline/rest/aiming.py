@@ -1,5 +1,6 @@
 """Landers at every aim of a study, followed until they rest: on the soil, and on hard ground beside it."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -76,10 +77,16 @@ def _distances(body: "Body", site: dict[str, np.ndarray], ends: list[list[Any]])
     As if the body were a ball of the radius at the aim; what the delivery misses the aim by counts.
     """
     place = np.array([[np.nan, np.nan] if end[4] == "" else end[4:6] for end in ends], dtype=float)
-    there, aim = (directions(*one) for one in (place.T, (site["latitude_deg"], site["longitude_deg"])))
-    aims, inverse = np.unique(
-        np.column_stack([site["latitude_deg"], site["longitude_deg"]]), axis=0, return_inverse=True
-    )
+    return ways_from_aims(body, site, directions(*place.T))
+
+
+def ways_from_aims(body: "Body", site: Mapping[str, np.ndarray], there: np.ndarray) -> np.ndarray:
+    """Ways over the ground [m] from the aims of landers to directions [count, 3], [count], as if the body were a ball.
+
+    Of the radius at the aim. site: columns of SITE_KEYS, [count] each.
+    """
+    latitude, longitude = site["latitude_deg"], site["longitude_deg"]
+    aims, inverse = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
     radius = np.array([np.linalg.norm(body.shape.surface_point(*one)) for one in aims.tolist()])
-    ways: np.ndarray = radius[inverse.ravel()] * angles(aim, there)
+    ways: np.ndarray = radius[inverse.ravel()] * angles(directions(latitude, longitude), there)
     return ways

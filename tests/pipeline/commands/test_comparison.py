@@ -1,6 +1,7 @@
 """Two studies compared run by run, from their folders to the page."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,14 @@ from typer.testing import CliRunner
 import lithobrake
 from lithobrake.cli import app
 from lithobrake.pipeline import compare_studies
+from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
 from lithobrake.results.comparison import StudyComparison
 from lithobrake.results.json_values import from_json
+from lithobrake.results.table import Table
+from lithobrake.vocabulary.quantities import BEDS
 
 from ..journeys.bouncing_lander import bounce, journey_tables
+from ..journeys.test_delivered_journeys import tables, write_states
 
 FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 
@@ -45,6 +50,38 @@ def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     assert time.difference.lower > 0.0
     assert "36 pairs on 12 beds" in found.of
     assert list(found.settings) == ["delivery.speed"]
+
+
+def test_landers_that_miss_the_ground_keep_their_number(tmp_path: Path) -> None:
+    """Two of the first study's landers fly away, and have journeys without a run: the pairs behind them stay pairs."""
+    folders = []
+    for name, away in (("some", (3, 9)), ("all", ())):
+        states = tmp_path / f"{name}.csv"
+        write_states(states, away)
+        lithobrake.run(tables(delivery={"states": str(states)}), tmp_path / name, workers=1, model=bounce, report=False)
+        folders.append(tmp_path / name)
+    found = compare_studies(*folders)
+    ends = [lithobrake.open_study(folder).journeys["end"] == "at_rest" for folder in folders]
+    assert f"{len(ends[0])} pairs" in found.of
+    answer = found.answers["at_rest"]
+    assert answer.difference.value == pytest.approx(ends[1].mean() - ends[0].mean())
+    assert answer.pairs == len(ends[0])
+
+
+def test_beds_that_differ_are_named(pair: tuple[Path, Path]) -> None:
+    one, two = (replace(OneStudy.open(pair[0]), results=WithBeds(height)) for height in (0.3, 0.31))
+    used = np.arange(3)
+    assert _other_beds(one, one, used) is None
+    assert "1 of 3 beds are not the same in both" in (_other_beds(one, two, used) or "")
+    assert _other_beds(OneStudy.open(pair[0]), OneStudy.open(pair[1]), used) is None
+
+
+class WithBeds:
+    """Results with three beds, the last of this surface height [m]."""
+
+    def __init__(self, height: float) -> None:
+        numbers = {"solid_fraction": [0.6, 0.61, 0.62], "surface_height_m": [0.3, 0.3, height]}
+        self.beds = Table.of("bed", {name: (BEDS[name], values) for name, values in numbers.items()})
 
 
 def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_path: Path) -> None:
