@@ -1,4 +1,4 @@
-"""Where the scatter of an output comes from: soil, arrival, bed, chaos, and everything else."""
+"""Where the scatter of an output comes from: soil, arrival, attitude, bed, chaos, and everything else."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -25,18 +25,19 @@ TERMS_PER_RUN = 1 / 3
 class VarianceShares:
     """Shares of the total variance of one output over the input distributions, beds, impact points and attitudes.
 
-    Each part lies within its interval and within [0, 1]. Soil, arrival, bed, place_and_attitude and chaos add up to 1,
-    place_and_attitude being what the others leave (0 where they leave nothing). `unbiased` has the parts before they
-    are cut: free of bias, below 0 by chance where there is nothing, and with the sum 1 exactly.
+    Each part lies within its interval and within [0, 1]. Soil, arrival, attitude, bed, place and chaos add up to 1,
+    place being what the others leave (0 where they leave nothing). `unbiased` has the parts before they are cut: free
+    of bias, below 0 by chance where there is nothing, and with the sum 1 exactly.
 
     variance              the whole [unit of the output, squared]
     soil, soil_by_input   at least so much: terms of first and second degree of soil inputs, with products among them;
                           terms of one soil input alone. What the soil does in another form, as waves or products of
-                          three, is part of place_and_attitude
+                          three, is part of place
     arrival               the same of all terms in which another input takes part; None where there is none
+    attitude              at least so much: the given terms of the attitude; None where none were given, or the runs are
+                          too few for them
     bed                   what landings on one bed have in common
-    place_and_attitude    everything else: impact point, attitude, lack of fit and interactions with the soil, less
-                          chaos where it is known
+    place                 everything else: impact point, lack of fit and interactions, less chaos where it is known
     chaos                 what twins differ in; None without twins
     unbiased              values before the cut, by the names of the parts
     """
@@ -45,8 +46,9 @@ class VarianceShares:
     soil: IntervalEstimate
     soil_by_input: dict[str, IntervalEstimate]
     arrival: IntervalEstimate | None
+    attitude: IntervalEstimate | None
     bed: IntervalEstimate
-    place_and_attitude: IntervalEstimate
+    place: IntervalEstimate
     chaos: IntervalEstimate | None
     unbiased: dict[str, float]
 
@@ -75,6 +77,13 @@ class _Part(NamedTuple):
         return IntervalEstimate(value, min(max(self.printed[0], 0.0), value), max(min(self.printed[1], 1.0), value))
 
 
+class _Terms(NamedTuple):
+    """Terms to regress on: matrix [run_count, term_count], and by part which of them make it up [term_count]."""
+
+    matrix: Array
+    groups: dict[str, np.ndarray]
+
+
 class _Regression(NamedTuple):
     """Least squares on terms: squares [term_count] of coefficients freed of scatter, and the variance of residuals."""
 
@@ -90,11 +99,13 @@ def variance_shares(
     bed: ArrayLike,
     *,
     soil: Collection[str],
+    attitude: ArrayLike | None = None,
     twins: ArrayLike | None = None,
 ) -> VarianceShares | None:
     """Split the variance of an output y [run_count] (NaN: none) of runs at x [run_count, input_count] on beds.
 
-    soil: names of the inputs that are soil. twins [pair_count]: differences of the output between twins. None where
+    soil: names of the inputs that are soil. attitude [run_count, term_count]: terms of the attitude, of mean 0,
+    variance 1 and no correlation over its law. twins [pair_count]: differences of the output between twins. None where
     the runs cannot tell: one bed, runs all alike, or fewer than three runs for each input. Intervals: of terms by
     leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
@@ -106,18 +117,15 @@ def variance_shares(
     beds = numbered_beds(numbered_beds(bed, len(of_all))[known], len(values))
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
-    terms, indices = regression_terms(inputs, points)
-    used = _affordable(indices, len(values))
-    if used is None or len(values) - int(beds.max()) - 2 - used.sum() < 1:
+    used = _affordable(inputs, points, soil, _checked_attitude(attitude, known))
+    if used is None or len(values) - int(beds.max()) - 2 - used.matrix.shape[1] < 1:
         return None
-    terms, indices = terms[:, used], indices[used]
-    groups = _groups(inputs, indices, soil)
-    found = _regression(terms, values)
-    components = bed_components(values, beds, terms)
+    found = _regression(used.matrix, values)
+    components = bed_components(values, beds, used.matrix)
     explained = float(found.squares.sum())
     total = explained + components.bed_variance + components.within
-    of_terms = _left_out(terms, values, beds, np.array(list(groups.values())), found, total)
-    parts = dict(zip(groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
+    of_terms = _left_out(used.matrix, values, beds, np.array(list(used.groups.values())), found, total)
+    parts = dict(zip(used.groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
     if twins is not None:
         parts["chaos"] = _of_chaos(chaos_variance(twins), total)
     return _printed(total, parts, [name for name in inputs if name in soil])
@@ -133,10 +141,11 @@ def _printed(total: float, parts: dict[str, _Part], soil: Collection[str]) -> Va
         printed["soil"],
         by_input,
         printed.get("arrival"),
+        printed.get("attitude"),
         printed["bed"],
         _completing(rest, list(printed.values())),
         printed.get("chaos"),
-        {name: part.value for name, part in parts.items()} | {"place_and_attitude": rest.value},
+        {name: part.value for name, part in parts.items()} | {"place": rest.value},
     )
 
 
@@ -152,23 +161,54 @@ def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array
     return points
 
 
-def _affordable(indices: Labels, run_count: int) -> np.ndarray | None:
-    """Which terms of second degree the runs can bear: all, squares alone, none; None where not even linear ones."""
+def _checked_attitude(attitude: ArrayLike | None, known: np.ndarray) -> Array:
+    """Terms of the attitude of the runs that are known, [known_count, term_count]. Raises ValueError for others."""
+    if attitude is None:
+        return np.empty((int(known.sum()), 0))
+    terms = np.asarray(attitude, dtype=float)
+    if terms.ndim != 2 or len(terms) != len(known) or not np.isfinite(terms).all():
+        raise ValueError(
+            f"attitude has shape {terms.shape}; allowed: finite numbers [run_count, term_count], a row for each of the "
+            f"{len(known)} runs of x"
+        )
+    return terms[known]
+
+
+def _affordable(
+    inputs: Mapping[str, "Distribution"], points: Array, soil: Collection[str], attitude: Array
+) -> _Terms | None:
+    """The terms that the runs can bear; None where not even linear ones.
+
+    Of second degree all, or squares alone, or none; where there are still too many, the attitude goes unseen.
+    """
+    terms, indices = regression_terms(inputs, points)
     degree, squares = indices.sum(axis=1), (indices > 0).sum(axis=1) == 1
-    for used in (degree > 0, squares, degree == 1):
-        if used.sum() <= TERMS_PER_RUN * run_count:
-            return used
+    for extra in (attitude, attitude[:, :0]):
+        for used in (degree > 0, squares, degree == 1):
+            count = int(used.sum()) + extra.shape[1]
+            if count <= TERMS_PER_RUN * len(points):
+                groups = _groups(inputs, indices[used], soil, extra.shape[1])
+                return _Terms(np.hstack([terms[:, used], extra]), groups)
     return None
 
 
-def _groups(inputs: Mapping[str, "Distribution"], indices: Labels, soil: Collection[str]) -> dict[str, np.ndarray]:
-    """Which terms [term_count] make up each part: soil, each soil input by its name, arrival where there is one."""
+def _groups(
+    inputs: Mapping[str, "Distribution"], indices: Labels, soil: Collection[str], attitude_count: int
+) -> dict[str, np.ndarray]:
+    """Which terms make up each part: soil, each soil input by its name, arrival and attitude where there are any.
+
+    [term_count], those of the attitude last.
+    """
     is_soil = np.array([name in soil for name in inputs])
     of_soil = (indices[:, ~is_soil] == 0).all(axis=1)
     alone = (indices > 0).sum(axis=1) == 1
     groups = {"soil": of_soil}
     groups |= {name: alone & (indices[:, k] > 0) for k, name in enumerate(inputs) if is_soil[k]}
-    return groups if is_soil.all() else groups | {"arrival": ~of_soil}
+    groups |= {} if is_soil.all() else {"arrival": ~of_soil}
+    groups = {name: np.append(group, np.zeros(attitude_count, dtype=bool)) for name, group in groups.items()}
+    if attitude_count:
+        groups["attitude"] = np.arange(len(indices) + attitude_count) >= len(indices)
+    return groups
 
 
 def _regression(terms: Array, y: Array) -> _Regression:

@@ -130,10 +130,13 @@ class VarianceParts:
     """one of them alone"""
     arrival: VariancePart | None
     """all other inputs, as speed, incidence and mass; null where none is uncertain"""
+    attitude: VariancePart | None
+    """terms of second degree of the surface normal and the direction of travel, seen from the lander; null for a ball,
+    for one attitude alone, and where the runs are too few"""
     bed: VariancePart
     """what landings on one bed have in common"""
-    place_and_attitude: VariancePart
-    """everything else: impact point, attitude, lack of fit and interactions with the soil"""
+    place: VariancePart
+    """everything else: impact point, lack of fit and interactions; of a journey all that its later touchdowns draw"""
     chaos: VariancePart | None
     """what twins differ in; null without auxiliary runs"""
     of: str
@@ -143,7 +146,7 @@ class VarianceParts:
     def parts(self) -> dict[str, VariancePart]:
         """The parts that are known, by their keys; together they are the whole."""
         found = {
-            "soil": self.soil, "arrival": self.arrival, "bed": self.bed,
-            "place_and_attitude": self.place_and_attitude, "chaos": self.chaos,
+            "soil": self.soil, "arrival": self.arrival, "attitude": self.attitude, "bed": self.bed,
+            "place": self.place, "chaos": self.chaos,
         }  # fmt: skip
         return {name: one for name, one in found.items() if one is not None}

@@ -5,7 +5,7 @@ SI where no unit is named.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from lithobrake.results.aims import AimResults
 from lithobrake.results.dispersion import FlightResults, ImpactNumbers, LandingEllipses, RestResults, WithoutScatter
@@ -23,6 +23,7 @@ from lithobrake.results.journey_results import DeliveryResults, EndShare, Journe
 from lithobrake.results.limit_state_results import LimitStateResult
 from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
 from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
+from lithobrake.results.side_results import SideResults
 from lithobrake.results.site_results import BedNumbers, SiteResults
 
 
@@ -36,6 +37,7 @@ class Estimates:
     variance_shares: Mapping[str, VarianceParts | None]
     outputs: Mapping[str, OutputEstimate | OutputDirection]
     runs: RunResults
+    sides: Mapping[str, SideResults]
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,12 @@ class DrawnResults:
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the most informative numbers, in sentences"""
+    sides: Mapping[str, SideResults] = field(default_factory=dict)
+    """by the side of the lander that faces the ground at the first touchdown; empty for a ball, a cube, and where
+    attitudes are not told"""
+    end_variance_shares: Mapping[str, VarianceParts | None] = field(default_factory=dict)
+    """with [journey]: where the scatter of the ends comes from, by inputs of the first touchdowns: at_rest (whether),
+    time_s and distance_m of those at rest; empty without"""
     ends: Mapping[str, EndShare] | None = None
     """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
     delivery: DeliveryResults | None = None

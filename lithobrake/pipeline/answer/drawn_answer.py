@@ -18,11 +18,12 @@ CENTIMETRES = 100.0
 PARTS = {
     "soil": "soil",
     "arrival": "speed, angle and spin of the impact",
+    "attitude": "attitude",
     "bed": "the bed",
-    "place_and_attitude": "everything else",
+    "place": "everything else",
     "chaos": "chaos",
 }
-FLOORS = ("soil", "arrival")
+FLOORS = ("soil", "arrival", "attitude")
 GROUNDS = {"soil": "on the soil", "hard": "on hard ground"}
 
 

@@ -7,13 +7,16 @@ import numpy as np
 from lithobrake.pipeline.answer.aim_results import aim_results
 from lithobrake.pipeline.answer.delivery_results import delivery_results
 from lithobrake.pipeline.answer.emulated_ends import emulated_ends
+from lithobrake.pipeline.answer.first_sides import with_journeys
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, journey_rest
 from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import Refits
+from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.summary import DrawnResults, Estimates
+from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 
 def write_journey_summary(job: Job) -> None:
@@ -25,6 +28,7 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
     """What the first touchdowns say, and how the journeys ended."""
     table = JourneyTable.load(job.folder)
     emulated, ends = emulated_ends(job, table, end_shares(job.study, table))
+    touchdowns = DesignRuns.load(job.folder, JOURNEY_DESIGN)
     fitted = Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(job.study))
     return replace(
         found,
@@ -35,4 +39,6 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         journeys=len(table.end),
         touchdowns=table.touchdowns,
         emulated=emulated,
+        sides=with_journeys(job.study, dict(found.sides), runs, touchdowns, table),
+        end_variance_shares=parts_of_journeys(job, runs, table),
     )

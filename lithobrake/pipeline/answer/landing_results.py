@@ -57,4 +57,5 @@ def results_of_landings(job: Job, estimates: Estimates, distinct: DesignRuns) ->
         emulator=None,
         answer=(),
         headline=(),
+        sides=estimates.sides,
     )

@@ -10,12 +10,13 @@ from lithobrake.analysis import (
     mean_estimate,
     quantile_estimates,
     soil_total_effect,
-    variance_shares,
 )
+from lithobrake.pipeline.answer.first_sides import first_sides
 from lithobrake.pipeline.answer.missing_landings import described, missing_landings, missing_warning
 from lithobrake.pipeline.answer.run_shares import flight_estimates, return_fraction, run_shares
 from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.answer.typed_estimates import direction, finite_estimate, variance_part, variance_parts
+from lithobrake.pipeline.answer.typed_estimates import direction, finite_estimate, variance_part
+from lithobrake.pipeline.answer.variance_of_runs import parts_of_variance
 from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.fly.run_flights import RunFlights, RunImpacts
 from lithobrake.pipeline.job import Job
@@ -24,15 +25,12 @@ from lithobrake.results.json_values import to_json
 from lithobrake.results.run_results import OutputDirection, OutputEstimate, RunResults, SideRuns, VarianceParts
 from lithobrake.results.shares import Estimate
 from lithobrake.results.summary import Estimates
-from lithobrake.study.touchdown_model import SURFACE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 
 FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
 RETURNS = "returns"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
-# Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
-SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
 
 
 def estimate(job: Job) -> None:
@@ -58,6 +56,7 @@ def estimate(job: Job) -> None:
             for name, y in _outputs(runs).items()
         },
         runs=_counts(job, runs, values),
+        sides=first_sides(study, runs, returns),
     )
     job.folder.write_json(FILE, to_json(estimates))
 
@@ -88,15 +87,9 @@ def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str)
 
 def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> VarianceParts | None:
     """Parts of the variance of an output; None where the runs cannot tell."""
-    # A place that is drawn by a law of its own is a place like any other.
-    inputs = job.design.soil_inputs
-    if not inputs:
-        return None
-    soil = [key for key in inputs if key.startswith(SOIL)]
     twins = _differences(job, "twins", name, y)
     known = twins if np.isfinite(twins).any() else None
-    found = variance_shares(inputs, runs.columns(list(inputs)), y, runs.inputs["bed"], soil=soil, twins=known)
-    return None if found is None else variance_parts(found, described(np.isfinite(y), runs.outcomes))
+    return parts_of_variance(job, runs, y, described(np.isfinite(y), runs.outcomes), known)
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:

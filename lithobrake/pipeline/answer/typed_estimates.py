@@ -50,8 +50,9 @@ def variance_parts(found: VarianceShares, of: str) -> VarianceParts:
         soil=variance_part(found.soil),
         soil_by_input={name: variance_part(one) for name, one in found.soil_by_input.items()},
         arrival=None if found.arrival is None else variance_part(found.arrival),
+        attitude=None if found.attitude is None else variance_part(found.attitude),
         bed=variance_part(found.bed),
-        place_and_attitude=variance_part(found.place_and_attitude),
+        place=variance_part(found.place),
         chaos=None if found.chaos is None else variance_part(found.chaos),
         of=of,
     )

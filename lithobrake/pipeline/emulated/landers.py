@@ -3,16 +3,19 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.arrival import FLATTEST_DEG
-from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, named_terms
+from lithobrake.pipeline.design.local_ground import AZIMUTH, felt, friction_of, ground_inputs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
 from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, SLOPE, SPEED, TouchdownEmulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
+from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 
 AFTER = {
@@ -50,7 +53,7 @@ class EmulatedLanders:
     def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
         """Landers at their first touchdowns."""
         count = len(begin.rows)
-        names = [name for name in emulator.inputs if name not in emulator.ranges]
+        names = [name for name in emulator.inputs if name not in emulator.ranges and not name.startswith(PREFIX)]
         return cls(
             job=job,
             emulator=emulator,
@@ -107,9 +110,25 @@ class EmulatedLanders:
             INCIDENCE: self.incidence[going],
             GRAVITY: np.array([one[GRAVITY] for one in ground]),
             SLOPE: np.array([one[SLOPE] for one in ground]),
+            **self._attitude(going, number),
         }
         seed = hashed_seed(self.job.study.seed, self.title, number)
         return self.emulator.answers(inputs, self.spin[going], self.begin.refit[going], seed)
+
+    def _attitude(self, going: np.ndarray, number: int) -> dict[str, np.ndarray]:
+        """Terms of the attitudes of some landers: as delivered at the first touchdown, any attitude at later ones.
+
+        A lander that has bounced tumbles for minutes before it comes down again.
+        """
+        terms = self.emulator.terms
+        if terms is None:
+            return {}
+        if number == 0:
+            delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, AZIMUTH)}
+            return attitude_inputs_of(terms, delivered)
+        random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
+        turned = Rotation.random(len(self.end), rng=random).as_matrix()[going]
+        return named_terms(terms, turned[:, 2], turned[:, 0])
 
     def _go_on(self, going: np.ndarray, answers: Answers) -> None:
         """Take in how touchdowns ended, and fly what left to its next impact."""

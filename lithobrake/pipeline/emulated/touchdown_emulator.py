@@ -1,13 +1,15 @@
 """The emulator of all touchdowns of a study's journeys: it knows the impacts that occur, because they occurred."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.attitude_terms import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
@@ -16,6 +18,7 @@ from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, TO_REST
 
@@ -28,7 +31,7 @@ FILE = "touchdown_emulator.json"
 SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
 GRAVITY, SLOPE, _ = GROUND
 ALONG, ASIDE, DURATION, _ = TO_REST
-# What differs from touchdown to touchdown of a journey; attitude and spin of the arrival are in the scatter.
+# What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
 OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL = ("impact.", "surface.")
@@ -41,7 +44,8 @@ LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
 class TouchdownEmulator:
     """The emulator of a study's touchdowns.
 
-    refits: of the emulator to beds drawn with replacement. bed: of each touchdown that it was fitted to. ranges: of the
+    refits: of the emulator to beds drawn with replacement. terms: of the lander's attitude that it reads, None for a
+    ball. bed: of each touchdown that it was fitted to. ranges: of the
     inputs of OF_TOUCHDOWN, beyond which it has no answer. rest: duration [s] and way along and aside [m] of the
     touchdowns in which a lander came to rest, [count, 3]. across [m]: the longest way of a touchdown. bed_height [m]:
     of the highest bed.
@@ -49,6 +53,7 @@ class TouchdownEmulator:
 
     design: DrawnDesign
     refits: "list[Emulator]"
+    terms: AttitudeTerms | None
     bed: np.ndarray
     ranges: Mapping[str, tuple[float, float]]
     rest: np.ndarray
@@ -67,7 +72,8 @@ class TouchdownEmulator:
         bed = runs.inputs["bed"][np.isin(runs.outcomes, model.outcome_names)].astype(int)
         refits = model.refits(REFIT_COUNT, hashed_seed(study.seed, "refits"))
         height = height_of_beds(study, folder)
-        return cls(design, refits, bed, trained_ranges(runs), rest, _across(runs), height)
+        terms = attitude_terms(study)
+        return cls(design, refits, terms, bed, trained_ranges(runs), rest, _across(runs), height)
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -120,7 +126,7 @@ class TouchdownEmulator:
 
 def fit_touchdowns(job: Job) -> str | None:
     """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
-    runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
+    runs = with_attitude(job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN))
     why = _why_none(runs)
     if why is not None:
         job.folder.write_json(FILE, {"why": why})
@@ -147,12 +153,21 @@ def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
 
 
 def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
-    """Soil and lander as the study draws them, and what differs between touchdowns, over its trained range."""
+    """Soil and lander as the study draws them, and what differs between touchdowns, over its range."""
     from lithobrake.chaos import LogUniform, Uniform
 
     kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL)}
     ranges = trained_ranges(runs)
-    return kept | {name: (LogUniform if name == SPEED else Uniform)(*ends) for name, ends in ranges.items()}
+    found = kept | {name: (LogUniform if name == SPEED else Uniform)(*ends) for name, ends in ranges.items()}
+    terms = attitude_terms(job.study)
+    of_attitude = {} if terms is None else terms.ranges
+    return found | {f"{PREFIX}{name}": Uniform(*ends) for name, ends in of_attitude.items()}
+
+
+def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
+    """The same touchdowns with the terms of their attitudes among their inputs."""
+    terms = attitude_terms(study)
+    return runs if terms is None else replace(runs, inputs={**runs.inputs, **attitude_inputs_of(terms, runs.inputs)})
 
 
 def _why_none(runs: DesignRuns) -> str | None:

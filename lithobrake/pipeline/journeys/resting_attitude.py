@@ -5,8 +5,7 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-# Of the lander's own axes, with its sign.
-SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
+from lithobrake.pipeline.design.lander_attitude import SIDES
 
 
 def side_down(attitude: Rotation, acceleration: np.ndarray) -> tuple[str, float]:

@@ -16,8 +16,9 @@ from lithobrake.vocabulary.percentages import percent
 # The parts beside the soil, in the order of the bar: colour, hatching. No soil input has any of these.
 LOOKS = {
     "arrival": (QUIET, ""),
+    "attitude": ("#e8d5e2", "\\\\\\\\"),
     "bed": ("#f1e6d0", "////"),
-    "place_and_attitude": (INTERACTIONS, ""),
+    "place": (INTERACTIONS, ""),
     "chaos": (INK, ""),
 }
 # From here on a piece has room for its figure.

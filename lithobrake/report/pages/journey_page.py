@@ -11,11 +11,12 @@ from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
 from lithobrake.report.figures.style import END_COLOURS
+from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.touchdown_explorer import touchdown_sections
 from lithobrake.report.live.views import view_sections
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
-from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, tiles
+from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, side_tables, tiles
 from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
@@ -26,7 +27,7 @@ from lithobrake.vocabulary.percentages import LEVEL
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WHERE, DECIDES, FIRST = "Where it ends up", "What decides the first touchdown", "The first touchdown"
+WHERE, DECIDES, FIRST = "Where it ends up", "What decides it", "The first touchdown"
 # Figures of a drawn study by the part of this page, with another title where its own speaks of more.
 OF_FIRST = {
     "bed": "", "landing": "A first touchdown", "runs": "What the first touchdowns gave",
@@ -60,10 +61,24 @@ def _options(data: JourneyPage) -> list[Plot]:
 
 
 def _decides(data: JourneyPage) -> list[Plot]:
-    """The parts of the variance of the first touchdown, where they are known."""
-    plot = next(one for one in landing_plots(data) if one.name == "variance")
-    title = "Parts of the variance"
-    return [replace(plot, title=title, sentence=words.first_variance(data), heading=DECIDES)]
+    """The parts of the variance of the ends, and of the first touchdown, where they are known."""
+    sides = side_tables(data)
+    first = next(one for one in landing_plots(data) if one.name == "variance")
+    plots = [
+        Plot(
+            "end_variance", "Parts of the variance of the ends", words.end_variance(data), lambda: _draw_decides(data)
+        ),
+        replace(first, title="Parts of the variance of the first touchdown", sentence=words.first_variance(data)),
+    ]
+    shown = [plot for plot in plots if plot.sentence]
+    return [
+        replace(plot, heading="" if row else DECIDES, tables=() if row else sides) for row, plot in enumerate(shown)
+    ]
+
+
+def _draw_decides(data: JourneyPage) -> "Figure":
+    known = {name: one for name, one in data.results.end_variance_shares.items() if one}
+    return variance_figure(known, words.END_ROWS, LEVEL)
 
 
 def _part(data: JourneyPage, heading: str, titles: dict[str, str]) -> list[Plot]:

@@ -85,6 +85,27 @@ def _delivery(data: JourneyPage) -> PageTable:
     return PageTable("How they are delivered", columns, rows, note, frozenset(columns[1:]))
 
 
+def side_tables(data: JourneyPage) -> list[PageTable]:
+    """What becomes of the landers by the side that faces the ground when they touch down."""
+    sides = [one for one in data.results.sides.values() if one.at_rest and one.time_s and one.rests]
+    size, unit = time_unit(data)
+    columns = ["side toward the ground", "first touchdowns", "at rest in the end", f"median time to rest [{unit}]"]
+    columns += ["median rebound speed over impact speed", "all touchdowns", "of these at rest"]
+    rows = [
+        [
+            one.words, str(one.landings), with_interval(one.at_rest), quantile_words(one.time_s, size),
+            quantile_words(one.speed_ratio), str(one.touchdowns), with_interval(one.rests),
+        ]
+        for one in sides
+        if one.at_rest and one.time_s and one.rests
+    ]  # fmt: skip
+    note = (
+        "The side whose axis is nearest to the normal of the ground at the impact; an edge or a corner of it touches "
+        f"first. In brackets {percent(LEVEL)} intervals, of each side by itself."
+    )
+    return [PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))] if rows else []
+
+
 def journey_tables(data: JourneyPage) -> list[PageTable]:
     """How the journeys ended, and the tables of the first touchdowns."""
     return [_ends(data), *(_of_first(table) for table in [*landing_tables(data), *site_tables(data)])]

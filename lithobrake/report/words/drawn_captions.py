@@ -88,7 +88,9 @@ def variance(data: RunsPage) -> str:
     if others:
         soils = [f"{records[name].soil.words()} of {sign(name)}" for name in others]
         said.append(f"Soil explains at least {listing(soils)}.")
-    said.append("Soil and impact: by terms of first and second degree; what they do otherwise is in everything else.")
+    said.append(
+        "Soil, impact and attitude: by terms of first and second degree; what they do otherwise is in everything else."
+    )
     if all(record.chaos is None for record in records.values()):
         said.append("Without auxiliary runs chaos is not known apart: it is within everything else.")
     return " ".join(said)

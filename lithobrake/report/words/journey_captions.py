@@ -2,7 +2,7 @@
 
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
-from lithobrake.report.words.drawn_captions import variance
+from lithobrake.report.words.drawn_captions import scatter_words, variance
 from lithobrake.report.words.drawn_warnings import landing_warnings
 from lithobrake.report.words.numbers import number
 from lithobrake.results.journey_results import RestQuantile
@@ -13,6 +13,11 @@ HOUR, MINUTE = 3600.0, 60.0
 # How a journey ended, as short as it has to be in a legend.
 END_WORDS: dict[str, str] = {end.value: end.label for end in JourneyEnd}
 FIRST = "Of the first touchdown alone"
+# What the ends of journeys vary in, in a sentence and as rows of a figure.
+END_SIGNS = {
+    "at_rest": "whether a lander comes to rest", "time_s": "the time to rest", "distance_m": "the distance to the aim",
+}  # fmt: skip
+END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m": "distance from\nthe aim point"}
 
 
 def answer(data: JourneyPage) -> str:
@@ -109,6 +114,21 @@ def attitude(data: JourneyPage) -> str:
         f"{quantile_words(tilt.median)} deg off the plumb line in the median, {quantile_words(tilt.q95)} deg at the "
         f"95th percentile. Brackets and bars: {percent(LEVEL)} intervals."
     )
+
+
+def end_variance(data: JourneyPage) -> str:
+    """The figure of what decides the ends; empty where the journeys cannot tell."""
+    known = {name: one for name, one in data.results.end_variance_shares.items() if one}
+    said = [
+        f"Of the variance of {END_SIGNS[name]} ({one.of}), {scatter_words(one)} ({percent(LEVEL)} intervals)."
+        for name, one in known.items()
+    ]
+    if said:
+        said.append(
+            "Impact and attitude are those of the first touchdown; everything else holds the later ones, which draw "
+            "impact points and attitudes anew."
+        )
+    return " ".join(said)
 
 
 def first_variance(data: JourneyPage) -> str:

@@ -100,22 +100,22 @@ def input_label(name: str, unit: str = "") -> str:
 
 # The parts of a variance, in the order of its bar.
 PART_WORDS = {
-    "soil": "soil, at least", "arrival": "impact, at least", "bed": "bed", "place_and_attitude": "everything else",
-    "chaos": "chaos",
+    "soil": "soil, at least", "arrival": "impact, at least", "attitude": "attitude, at least", "bed": "bed",
+    "place": "everything else", "chaos": "chaos",
 }  # fmt: skip
 # What everything else holds, where there is room for it.
-REMAINDER = "impact point, attitude, interactions"
+REMAINDER = "impact point, interactions"
 
 
 def part_words(record: VarianceParts, name: str) -> str:
     """A part in words; without auxiliary runs chaos is within everything else."""
-    with_chaos = name == "place_and_attitude" and record.chaos is None
+    with_chaos = name == "place" and record.chaos is None
     return f"{PART_WORDS[name]}, chaos" if with_chaos else PART_WORDS[name]
 
 
 def long_part_words(record: VarianceParts, name: str) -> str:
     """A part in words, and what everything else holds."""
     words = part_words(record, name)
-    if name != "place_and_attitude":
+    if name != "place":
         return words
     return f"{PART_WORDS[name]} ({REMAINDER}{words.removeprefix(PART_WORDS[name])})"
