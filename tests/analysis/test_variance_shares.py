@@ -86,10 +86,10 @@ def test_the_parts_add_up_and_are_free_of_bias() -> None:
     twins = math.sqrt(2.0 * 0.05) * np.random.default_rng(0).standard_normal(12)
     found = [split(seed, twins) for seed in range(60)]
     for one in found:
-        parts = (one.soil, one.arrival, one.bed, one.place_and_attitude, one.chaos)
+        parts = (one.soil, one.arrival, one.bed, one.place, one.chaos)
         assert sum(part.value for part in parts) == pytest.approx(1.0)
         assert sum(one.unbiased.values()) == pytest.approx(1.0)
-        assert list(one.unbiased) == ["soil", "arrival", "bed", "chaos", "place_and_attitude"]
+        assert list(one.unbiased) == ["soil", "arrival", "bed", "chaos", "place"]
         assert all(0.0 <= part.lower <= part.value <= part.upper <= 1.0 for part in parts)
     expected = {"soil": 0.3, "arrival": 0.2, "bed": 0.1}
     for name, share in expected.items():
@@ -97,12 +97,42 @@ def test_the_parts_add_up_and_are_free_of_bias() -> None:
         assert estimates.mean() == pytest.approx(share, abs=3.0 * estimates.std() / math.sqrt(60))
         inside = [getattr(one, name).lower <= share <= getattr(one, name).upper for one in found]
         assert 0.78 <= np.mean(inside) <= 1.0
-    place = [one.place_and_attitude for one in found]
+    place = [one.place for one in found]
     chaos = [one.chaos.value for one in found]
     truth = 0.4 - np.mean(chaos)
     assert 0.78 <= np.mean([part.lower <= truth <= part.upper for part in place]) <= 1.0
     friction = np.array([one.soil_by_input["friction"].value for one in found])
     assert friction.mean() == pytest.approx(0.2, abs=3.0 * friction.std() / math.sqrt(60))
+
+
+def test_the_attitude_is_a_part_of_its_own() -> None:
+    found = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        x = sobol_sequence(INPUTS, 240, seed=seed)
+        scatter, bed = on_beds(24, 10, 0.1, seed)
+        attitude = rng.standard_normal((240, 6))
+        y = math.sqrt(0.2) * math.sqrt(3.0) * INPUTS["friction"].germ(x[:, 0]) + attitude[:, 0] * math.sqrt(0.1)
+        y += attitude[:, 4] * math.sqrt(0.05) + math.sqrt(0.65) * scatter
+        found.append(variance_shares(INPUTS, x, y, bed, soil=tuple(INPUTS), attitude=attitude))
+    estimates = np.array([one.unbiased["attitude"] for one in found])
+    assert estimates.mean() == pytest.approx(0.15, abs=3.0 * estimates.std() / math.sqrt(60))
+    assert 0.78 <= np.mean([one.attitude.lower <= 0.15 <= one.attitude.upper for one in found]) <= 1.0
+    soil = np.array([one.unbiased["soil"] for one in found])
+    assert soil.mean() == pytest.approx(0.2, abs=3.0 * soil.std() / math.sqrt(60))
+    for one in found:
+        parts = (one.soil, one.attitude, one.bed, one.place)
+        assert sum(part.value for part in parts) == pytest.approx(1.0)
+
+
+def test_too_few_runs_leave_the_attitude_out_rather_than_the_soil() -> None:
+    x, rng = sobol_sequence(INPUTS, 24, seed=1), np.random.default_rng(0)
+    attitude, y, bed = rng.standard_normal((24, 6)), rng.standard_normal(24), np.arange(24) % 6
+    found = variance_shares(INPUTS, x, y, bed, soil=SOIL, attitude=attitude)
+    assert found is not None
+    assert found.attitude is None
+    with pytest.raises(ValueError, match=r"attitude has shape \(12, 6\)"):
+        variance_shares(INPUTS, x, y, bed, soil=SOIL, attitude=attitude[:12])
 
 
 def test_where_inputs_do_nothing_none_is_found() -> None:
@@ -122,7 +152,7 @@ def test_where_inputs_do_nothing_none_is_found() -> None:
         assert 0.0 <= part.lower <= part.value <= part.upper <= 1.0
     # Where everything may be the remainder its interval reaches so far.
     alone = [one for one in found if one.unbiased["soil"] > 0.0 and one.soil.lower == one.bed.lower == 0.0]
-    assert np.mean([one.place_and_attitude.upper == 1.0 for one in alone]) > 0.9
+    assert np.mean([one.place.upper == 1.0 for one in alone]) > 0.9
 
 
 def test_beds_that_differ_less_than_chance_have_an_upper_bound_above_0() -> None:
@@ -141,8 +171,8 @@ def test_twins_that_differ_by_more_than_the_whole_leave_no_interval_without_widt
     assert found.unbiased["chaos"] > 1.0 == found.chaos.value == found.chaos.upper
     # Chi-square of 12.
     assert found.chaos.lower == pytest.approx(12.0 / stats.chi2.ppf(0.95, 12))
-    assert found.unbiased["place_and_attitude"] < 0.0 == found.place_and_attitude.value
-    assert found.place_and_attitude.lower == 0.0 < found.place_and_attitude.upper
+    assert found.unbiased["place"] < 0.0 == found.place.value
+    assert found.place.lower == 0.0 < found.place.upper
 
 
 def test_few_runs_drop_terms_and_then_the_answer() -> None:

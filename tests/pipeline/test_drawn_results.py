@@ -105,7 +105,7 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     found = results.summary["results"]
     assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "returns"}
     parts = found["variance_shares"]["speed_out"]
-    whole = ("soil", "bed", "place_and_attitude", "chaos")
+    whole = ("soil", "attitude", "bed", "place", "chaos")
     assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
     assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
         "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",

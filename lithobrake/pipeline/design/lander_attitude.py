@@ -36,11 +36,10 @@ def attitude_inputs_of(terms: AttitudeTerms, inputs: Mapping[str, np.ndarray]) -
 
 def named_terms(terms: AttitudeTerms, normal: Array, travel: Array) -> dict[str, Array]:
     """The same of normals and directions of travel [run_count, 3], seen from the lander."""
-    columns = terms.at(normal, travel).T
+    names = [f"{PREFIX}{name}" for name in terms.ranges]
     # Rounding may put a term beyond its end.
-    return {
-        f"{PREFIX}{name}": np.clip(one, *ends) for (name, ends), one in zip(terms.ranges.items(), columns, strict=True)
-    }
+    columns = np.clip(terms.at(normal, travel), *np.array(list(terms.ranges.values())).T)
+    return dict(zip(names, columns.T, strict=True))
 
 
 def seen(inputs: Mapping[str, np.ndarray]) -> tuple[Array, Array]:

@@ -65,18 +65,15 @@ def _decides(data: JourneyPage) -> list[Plot]:
     sides = side_tables(data)
     first = next(one for one in landing_plots(data) if one.name == "variance")
     plots = [
-        Plot(
-            "end_variance", "Parts of the variance of the ends", words.end_variance(data), lambda: _draw_decides(data)
-        ),
+        Plot("end_variance", "Parts of the variance of the ends", words.end_variance(data), lambda: _draw_ends(data)),
         replace(first, title="Parts of the variance of the first touchdown", sentence=words.first_variance(data)),
     ]
     shown = [plot for plot in plots if plot.sentence]
-    return [
-        replace(plot, heading="" if row else DECIDES, tables=() if row else sides) for row, plot in enumerate(shown)
-    ]
+    headed = [replace(plot, heading=DECIDES, tables=sides) for plot in shown[:1]]
+    return [*headed, *shown[1:]]
 
 
-def _draw_decides(data: JourneyPage) -> "Figure":
+def _draw_ends(data: JourneyPage) -> "Figure":
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
     return variance_figure(known, words.END_ROWS, LEVEL)
 
