@@ -45,6 +45,11 @@ class JourneyTable:
             face=np.array([row["face"] for row in rows]),
         )
 
+    def taken(self, which: np.ndarray) -> "JourneyTable":
+        """Some of the journeys, by their numbers."""
+        numbers = {name: values[which] for name, values in self.numbers.items()}
+        return JourneyTable(self.end[which], self.bed[which], numbers, self.position[which], self.face[which])
+
     @property
     def touchdowns(self) -> int:
         """How many landings all of them have."""

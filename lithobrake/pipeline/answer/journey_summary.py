@@ -28,6 +28,8 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
     """What the first touchdowns say, and how the journeys ended."""
     table = JourneyTable.load(job.folder)
     emulated, ends = emulated_ends(job, table, end_shares(job.study, table))
+    # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
+    landed = table.taken(runs.inputs["journey"].astype(int))
     touchdowns = DesignRuns.load(job.folder, JOURNEY_DESIGN)
     fitted = Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(job.study))
     return replace(
@@ -39,6 +41,6 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         journeys=len(table.end),
         touchdowns=table.touchdowns,
         emulated=emulated,
-        sides=with_journeys(job.study, dict(found.sides), runs, touchdowns, table),
-        end_variance_shares=parts_of_journeys(job, runs, table),
+        sides=with_journeys(job.study, dict(found.sides), runs, touchdowns, landed),
+        end_variance_shares=parts_of_journeys(job, runs, landed),
     )

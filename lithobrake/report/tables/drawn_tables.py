@@ -177,9 +177,10 @@ def _variance(data: RunsPage) -> PageTable:
     rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
     note = (
         "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
-        f"brackets {percent(data.level)} intervals. Soil, impact and attitude: terms of first and second degree, so at "
-        "least so much; what they do in another form is within everything else. Not detected: no more than nothing, "
-        "but for chance. The return fraction is a mean over headings already: what headings do is in none of its parts."
+        f"brackets {percent(data.level)} intervals. Soil, delivery and attitude: terms of first and second degree, so "
+        "at least so much; what they do in another form is within everything else. Not detected: no more than "
+        "nothing, but for chance. The return fraction is a mean over headings already: what headings do is in none "
+        "of its parts."
     )
     columns = ["part", *(sign(name) for name in records)]
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))

@@ -87,13 +87,18 @@ def variance(data: RunsPage) -> str:
     ]
     if others:
         soils = [f"{records[name].soil.words()} of {sign(name)}" for name in others]
-        said.append(f"Soil explains at least {listing(soils)}.")
+        said.append(f"Soil, at least: {listing(soils)}.")
     said.append(
-        "Soil, impact and attitude: by terms of first and second degree; what they do otherwise is in everything else."
+        "Soil, delivery and attitude: by terms of first and second degree; what they do otherwise is in everything "
+        "else."
     )
     if all(record.chaos is None for record in records.values()):
         said.append("Without auxiliary runs chaos is not known apart: it is within everything else.")
     return " ".join(said)
+
+
+# Parts that are not detected.
+NAMES = {"soil": "soil", "arrival": "delivery", "attitude": "attitude", "bed": "the bed"}
 
 
 def scatter_words(record: VarianceParts) -> str:
@@ -102,8 +107,9 @@ def scatter_words(record: VarianceParts) -> str:
     found = []
     for name, share in record.parts.items():
         more = _main_input(record) if name == "soil" else ""
-        whose = words.get(name, part_words(record, name)).replace(",", "")
-        found.append(f"{whose} {share.words(more)}")
+        whose = words.get(name, part_words(record, name).replace(", chaos", " with chaos").replace(",", ""))
+        # What is not detected is not "at least" so much.
+        found.append(f"{whose if share.share > 0.0 else NAMES.get(name, whose)} {share.words(more)}")
     return listing(found)
 
 

@@ -125,8 +125,8 @@ def end_variance(data: JourneyPage) -> str:
     ]
     if said:
         said.append(
-            "Impact and attitude are those of the first touchdown; everything else holds the later ones, which draw "
-            "impact points and attitudes anew."
+            "Delivery: the place and state of the first impact, but for its attitude; everything else holds the later "
+            "touchdowns, which draw impact points anew."
         )
     return " ".join(said)
 

@@ -100,7 +100,7 @@ def input_label(name: str, unit: str = "") -> str:
 
 # The parts of a variance, in the order of its bar.
 PART_WORDS = {
-    "soil": "soil, at least", "arrival": "impact, at least", "attitude": "attitude, at least", "bed": "bed",
+    "soil": "soil, at least", "arrival": "delivery, at least", "attitude": "attitude, at least", "bed": "bed",
     "place": "everything else", "chaos": "chaos",
 }  # fmt: skip
 # What everything else holds, where there is room for it.
