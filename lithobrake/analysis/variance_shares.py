@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 # More terms than this for each run leave too little of the runs to tell scatter by.
 TERMS_PER_RUN = 1 / 3
+# A scatter within beds that is less than this part of the whole is rounding.
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -106,8 +108,9 @@ def variance_shares(
 
     soil: names of the inputs that are soil. attitude [run_count, term_count]: terms of the attitude, of mean 0,
     variance 1 and no correlation over its law. twins [pair_count]: differences of the output between twins. None where
-    the runs cannot tell: one bed, runs all alike, or fewer than three runs for each input. Intervals: of terms by
-    leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from those of the others.
+    the runs cannot tell: one bed, runs all alike or alike on each bed, or fewer than three runs for each input.
+    Intervals: of terms by leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from
+    those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
     """
     of_all = answers("y", y)
@@ -122,6 +125,8 @@ def variance_shares(
         return None
     found = _regression(used.matrix, values)
     components = bed_components(values, beds, used.matrix)
+    if components.within <= ROUNDING * float(np.var(values)):
+        return None
     explained = float(found.squares.sum())
     total = explained + components.bed_variance + components.within
     of_terms = _left_out(used.matrix, values, beds, np.array(list(used.groups.values())), found, total)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -62,7 +63,7 @@ class ServedStudy:
         if (self.folder / "emulator.json").is_file():
             found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
         if self._has_touchdown_emulator():
-            found.append(ServedModel("emulator", self._touchdowns.inputs, LANDING, self.emulated_touchdown))
+            found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
         return found
 
     def _has_touchdown_emulator(self) -> bool:
@@ -76,13 +77,16 @@ class ServedStudy:
         return TouchdownEmulator.read(self.design, self.folder)
 
     def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
-        """Draw a touchdown of a lander that does not spin from the emulator of all of them. config: seed of the draw.
+        """Draw a touchdown of a lander that does not spin from the emulator of all of them.
 
-        Raises ValueError for an impact that the emulator has no answer to.
+        config: seed of the draw; orientation, a quaternion w, x, y, z that turns the lander into the frame of the
+        touchdown, in the place of a random attitude. Raises ValueError for an impact that the emulator has no answer
+        to.
         """
-        _refuse_keys(config, ("seed",))
+        _refuse_keys(config, ("seed", "orientation"))
         emulator, seed = self._touchdowns, _seed(config)
-        inputs = {name: np.array([value]) for name, value in zip(emulator.inputs, point, strict=True)}
+        inputs = {name: np.array([value]) for name, value in zip(emulator.plain_inputs, point, strict=True)}
+        inputs |= emulator.attitude_of(_attitude(config, seed))
         refit = np.array([seed % len(emulator.refits)])
         answers = emulator.answers(inputs, np.zeros((1, 3)), refit, seed)
         if not answers.is_known[0]:
@@ -202,6 +206,17 @@ def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
     if not isinstance(given, Mapping):
         raise ValueError(f"config.inputs is {show(given)}; allowed: numbers by the dotted keys of the study file")
     return given
+
+
+def _attitude(config: Mapping[str, Any], seed: int) -> Rotation:
+    """The attitude of a touchdown in its frame: as given, or a random one."""
+    given = config.get("orientation")
+    if given is None:
+        return Rotation.random(1, rng=np.random.default_rng([seed, 1]))
+    if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)) or not any(given):
+        raise ValueError(f"config.orientation is {show(given)}; allowed: a quaternion of four numbers w, x, y, z")
+    w, x, y, z = given
+    return Rotation.from_quat([[x, y, z, w]])
 
 
 def _seed(config: Mapping[str, Any]) -> int:

@@ -83,6 +83,17 @@ def sides_down(study: Study, normal: Array) -> np.ndarray:
     return sides
 
 
+def directions_of_sides(study: Study) -> dict[str, list[list[float]]]:
+    """The sides of the lander, named as by `sides_down`, each with the directions of it that may face the ground."""
+    downs = [sign * axis for axis in np.eye(3) for sign in (1.0, -1.0)]
+    names = sides_down(study, -np.array(downs)).tolist()
+    found: dict[str, list[list[float]]] = {name: [] for name in dict.fromkeys(names) if name}
+    for name, down in zip(names, downs, strict=True):
+        if name:
+            found[name].append(down.tolist())
+    return found
+
+
 def side_words(study: Study, side: str) -> str:
     """A side in words: of a box with the lengths of its face [m]."""
     edges = study.lander.edges

@@ -1,6 +1,8 @@
 """What the page's explorer evaluates: the emulator's refits as tables, and what energy allows a lander."""
 
+import json
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,5 +57,6 @@ def save_explorer(path: Path, explorer: ExplorerTables) -> None:
         file.attrs["format_version"] = FORMAT_VERSION
         for name in (*NAMES, "output_outcome", "group_count", "interval_reach"):
             file.attrs[name] = getattr(explorer, name)
+        file.attrs["attitude"] = json.dumps(None if explorer.attitude is None else asdict(explorer.attitude))
         for name, value in explorer.bound.items():
             file.attrs[f"bound.{name}"] = value

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.arrival import FLATTEST_DEG
-from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, named_terms
+from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.local_ground import AZIMUTH, felt, friction_of, ground_inputs
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
@@ -53,7 +53,7 @@ class EmulatedLanders:
     def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
         """Landers at their first touchdowns."""
         count = len(begin.rows)
-        names = [name for name in emulator.inputs if name not in emulator.ranges and not name.startswith(PREFIX)]
+        names = [name for name in emulator.plain_inputs if name not in emulator.ranges]
         return cls(
             job=job,
             emulator=emulator,
@@ -127,8 +127,7 @@ class EmulatedLanders:
             delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, AZIMUTH)}
             return attitude_inputs_of(terms, delivered)
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
-        turned = Rotation.random(len(self.end), rng=random).as_matrix()[going]
-        return named_terms(terms, turned[:, 2], turned[:, 0])
+        return self.emulator.attitude_of(Rotation.random(len(self.end), rng=random)[going])
 
     def _go_on(self, going: np.ndarray, answers: Answers) -> None:
         """Take in how touchdowns ended, and fly what left to its next impact."""

@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude_terms import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
@@ -23,6 +23,8 @@ from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, TO_REST
 
 if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
@@ -79,6 +81,16 @@ class TouchdownEmulator:
     def inputs(self) -> tuple[str, ...]:
         """What it reads of a touchdown, by dotted key."""
         return tuple(self.refits[0].runs.inputs)
+
+    @property
+    def plain_inputs(self) -> tuple[str, ...]:
+        """The same without the terms of the attitude."""
+        return tuple(name for name in self.inputs if not name.startswith(PREFIX))
+
+    def attitude_of(self, attitude: "Rotation") -> dict[str, np.ndarray]:
+        """The terms of attitudes in the frames of their touchdowns [count] as inputs; none for a ball."""
+        into_frame = attitude.as_matrix()
+        return {} if self.terms is None else named_terms(self.terms, into_frame[:, 2], into_frame[:, 0])
 
     def unseen(self, bed: int) -> np.ndarray:
         """Places of the refits that have not seen a bed."""

@@ -1,14 +1,20 @@
 """What the explorer of one touchdown evaluates: the refits of the emulator of all touchdowns as tables."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
+from lithobrake.geometry.attitude_terms import AttitudeTerms
+from lithobrake.pipeline.design.lander_attitude import PREFIX, directions_of_sides, side_words
 from lithobrake.pipeline.emulate.explorer_tables import save_explorer, tables_of_refits
 from lithobrake.pipeline.emulated.arrivals import SPIN
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.explorer_tables import ExplorerAttitude
+from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 FILE = "touchdown_explorer.h5"
@@ -25,7 +31,17 @@ def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
         "across": emulator.across,
         "time_limit": 0.0,
     }
-    save_explorer(job.folder / FILE, tables_of_refits(emulator.refits, bound))
+    tables = tables_of_refits(emulator.refits, bound)
+    save_explorer(job.folder / FILE, replace(tables, attitude=_attitude(job.study, emulator.terms)))
+
+
+def _attitude(study: Study, terms: AttitudeTerms | None) -> ExplorerAttitude | None:
+    """What draws attitudes in the explorer."""
+    if terms is None:
+        return None
+    names = tuple(f"{PREFIX}{name}" for name in terms.ranges)
+    sides = {side_words(study, side): downs for side, downs in directions_of_sides(study).items()}
+    return ExplorerAttitude(names, terms.axes.tolist(), terms.has_sides, terms.is_cube, sides)
 
 
 def write_reason(job: Job, why: str) -> None:

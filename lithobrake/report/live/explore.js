@@ -20,7 +20,7 @@ function fraction(value) {
 
 class Explorer {
   constructor(law, flown, facts) {
-    Object.assign(this, { law, flown, facts });
+    Object.assign(this, { law, flown, facts, attitude: facts.attitude ? new Attitude(facts.attitude) : null });
     // Sides of the cube: the inputs, then outcome, row, flight, and a normal number for each output.
     const { inputs, outputs } = law;
     this.own = 3 + outputs;
@@ -66,6 +66,8 @@ class Explorer {
         const [low, high] = ranges[input];
         germs[input] = law.germAt(input, low + (high - low) * fraction((number + 0.5) * steps[input]));
       }
+      // The terms of an attitude go together; three of their sides of the cube are enough for all.
+      this.attitude?.into(germs, law, this.attitude.inputs.slice(0, 3).map((input) => fraction((number + 0.5) * steps[input])));
       const point = law.pointAt(germs);
       for (let refit = 0; refit < law.refits; refit++) {
         const first = (refit * POINTS + number) * own;

@@ -27,6 +27,15 @@ function inputControl(explorer, input, changed) {
   return { box, range, reset };
 }
 
+// A choice of the side of the lander that is toward the ground.
+function attitudeControl(explorer, changed) {
+  const { choices } = explorer.facts.attitude, value = element("select", { ariaLabel: "attitude" },
+    ...choices.map(({ words }, place) => element("option", { value: place, textContent: words })));
+  value.addEventListener("change", () => { explorer.attitude.downs = choices[value.value].downs; changed(); });
+  return element("div", { className: "control" },
+    element("div", { className: "name" }, element("span", { textContent: "side toward the ground" }), value));
+}
+
 // Densities of an output by shown bin: of all draws, and the middle nine tenths of the refits.
 function densities(found, law, k) {
   const bins = BINS / SHOWN_TOGETHER;
@@ -143,7 +152,8 @@ function startExplorer() {
     button.addEventListener("click", () => { controls.forEach((one) => one.reset(low, high)); changed(); });
     return button;
   };
-  holder.querySelector(".controls").append(...Array.from(controls.values(), (one) => one.box),
+  const attitude = explorer.attitude ? [attitudeControl(explorer, changed)] : [];
+  holder.querySelector(".controls").append(...attitude, ...Array.from(controls.values(), (one) => one.box),
     element("p", { className: "buttons" }, set("The whole law", 0, 1), set("All at their medians", 0.5, 0.5)));
   addEventListener("resize", changed);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);

@@ -13,11 +13,14 @@ from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.drawn_warnings import action, has_interval
 from lithobrake.report.words.labels import output
 from lithobrake.results import ExplorerTables, Table
+from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 
 # More flown starts would make the page heavier, and no cell of them noticeably smaller.
 MOST_STARTS = 20_000
-SCRIPTS = ("live/law.js", "live/flown.js", "live/explore.js", "live/charts.js", "live/explorer.js")
+SCRIPTS = (
+    *("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js", "live/charts.js", "live/explorer.js"),
+)
 # The explorer's outputs, in the order in which it draws them: the first ones of its tables.
 SHOWN = ("speed_out", "elevation_out", "spin_out")
 LEVEL = ("velocity_out_x", "velocity_out_y")
@@ -114,6 +117,20 @@ def law_facts(explorer: ExplorerTables, moved: Sequence[str], of_inputs: Table) 
         "fates": [str(fate) for fate in FlightStatus],
         "impact": list(FlightStatus).index(FlightStatus.IMPACT),
         "bedCount": explorer.group_count,
+        "attitude": _attitude(explorer.attitude, explorer.input_names),
+    }
+
+
+def _attitude(found: ExplorerAttitude | None, names: Sequence[str]) -> dict[str, Any] | None:
+    """What draws attitudes, None where the law reads none."""
+    if found is None:
+        return None
+    return {
+        "inputs": [names.index(name) for name in found.input_names],
+        "axes": found.axes,
+        "hasSides": found.has_sides,
+        "isCube": found.is_cube,
+        "choices": [{"words": "any", "downs": []}, *({"words": w, "downs": d} for w, d in found.sides.items())],
     }
 
 

@@ -25,7 +25,9 @@ def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
     beds = len(np.unique(fitted["bed"]))
     # Refits draw runs where those that left lie on one bed.
     over_beds = 1 < beds == explorer.group_count
-    facts = law_facts(explorer, explorer.input_names, fitted) | {
+    of_attitude = explorer.attitude.input_names if explorer.attitude else ()
+    moved = [name for name in explorer.input_names if name not in of_attitude]
+    facts = law_facts(explorer, moved, fitted) | {
         # Of all touchdowns that are drawn, those that are captured.
         "ofAll": True,
         "holds": True,
@@ -56,9 +58,12 @@ def _range(fitted: Table, name: str) -> str:
 def _law(explorer: ExplorerTables) -> str:
     """What the inputs are drawn from, and what no slider moves."""
     even = listing([input_words(name) for name in OF_TOUCHDOWN if name != SPEED])
-    others = "Soil and lander follow the study's law; " if set(explorer.input_names) - set(OF_TOUCHDOWN) else ""
+    of_attitude = explorer.attitude.input_names if explorer.attitude else ()
+    attitude = "Attitudes are drawn over all rotations, or with one side toward the ground; s" if of_attitude else "S"
+    named = {*OF_TOUCHDOWN, *of_attitude}
+    others = "Soil and lander follow the study's law; " if set(explorer.input_names) - named else ""
     words = (
         f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, however many touchdowns "
-        "were there. Attitude, spin and bed are part of the scatter."
+        f"were there. {attitude}pin and bed are part of the scatter."
     )
     return f"{words[:1].upper()}{words[1:]}"

@@ -54,7 +54,7 @@ def test_every_part_has_its_interval_and_an_output_that_is_not_known_says_so() -
         assert found in words
     # On the left of its interval, and in the legend.
     assert words.count("everything else, chaos") == 1
-    assert "everything else (impact point, attitude, interactions, chaos)" in words
+    assert "everything else (impact point, interactions, chaos)" in words
     assert "chaos" not in words
 
 

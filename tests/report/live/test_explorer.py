@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from lithobrake import emulator
 from lithobrake.analysis import refit_interval
@@ -22,6 +23,7 @@ from lithobrake.chaos import (
     Uniform,
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
+from lithobrake.geometry.attitude_terms import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.live.packed import packed, script_data
@@ -37,6 +39,8 @@ LAW = ("live/law.js",)
 ALL = ("live/law.js", "live/flown.js", "live/explore.js")
 # What follows the arrays of a law: names, no energy bound, and no number of it.
 FACTS = {"inputNames": [], "bound": {}, "speed": 0, "elevation": 1, "spin": 2, "outputOutcome": "clear"}
+PRISM, BOX, CUBE = (AttitudeTerms.of_box(np.array(edges)) for edges in ([0.1, 0.1, 0.2], [0.3, 0.2, 0.1], [0.1] * 3))
+MESH = AttitudeTerms.of_body(np.array([[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]]))
 BEGIN = "const law = new Law(unpack(given.law), given.facts);"
 
 
@@ -208,3 +212,34 @@ def test_words_in_numbers_end_no_script() -> None:
 def test_an_array_that_a_browser_has_not_is_refused() -> None:
     with pytest.raises(ValueError, match="bed has type int64, but must have one of float64"):
         packed({"bed": np.arange(3)})
+
+
+@needs_node
+@pytest.mark.parametrize("terms", [PRISM, BOX, CUBE, MESH])
+def test_terms_of_attitudes_are_those_of_python(terms: AttitudeTerms) -> None:
+    turned = Rotation.random(6, rng=0).as_matrix()
+    ways = [turned[:, 2].tolist(), turned[:, 0].tolist()]
+    facts = {"inputs": [0], "axes": terms.axes.tolist(), "hasSides": terms.has_sides, "isCube": terms.is_cube}
+    program = """const attitude = new Attitude(given.facts);
+return given.ways[0].map((normal, place) => attitude.terms(normal, given.ways[1][place]));"""
+    found = answer_of(("live/attitude.js",), program, {"facts": facts, "ways": ways})
+    assert np.array(found) == pytest.approx(terms.at(turned[:, 2], turned[:, 0]), abs=EXACT)
+
+
+@needs_node
+def test_attitudes_of_the_browser_are_uniform_or_have_a_side_down() -> None:
+    facts = {"inputs": [0, 1, 2], "axes": PRISM.axes.tolist(), "hasSides": False, "isCube": False}
+    uniforms = np.random.default_rng(0).random((4000, 3)).tolist()
+    program = """const attitude = new Attitude(given.facts);
+const all = (downs) => { attitude.downs = downs; return given.uniforms.map((one) => attitude.ways(...one)); };
+return [all([]), all([[0, 0, 1], [0, 0, -1]])];"""
+    free, pointed = map(np.array, answer_of(("live/attitude.js",), program, {"facts": facts, "uniforms": uniforms}))
+    for ways in (free, pointed):
+        assert np.einsum("nk,nk->n", ways[:, 0], ways[:, 1]) == pytest.approx(np.zeros(4000), abs=EXACT)
+        assert np.linalg.norm(ways, axis=2) == pytest.approx(np.ones((4000, 2)))
+    mean, covariance = PRISM.uniform_law
+    terms = PRISM.at(free[:, 0], free[:, 1])
+    assert terms.mean(axis=0) == pytest.approx(mean, abs=0.03)
+    assert np.cov(terms.T) == pytest.approx(covariance, abs=0.03)
+    assert np.abs(pointed[:, 0]) == pytest.approx(np.tile([0.0, 0.0, 1.0], (4000, 1)), abs=EXACT)
+    assert pointed[:, 0, 2].mean() == pytest.approx(0.0, abs=0.06)
