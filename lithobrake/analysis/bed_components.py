@@ -46,7 +46,11 @@ class BedComponents:
         from scipy import optimize, special
 
         count = len(self.squares)
-        expected = count * self.within * float(special.fdtri(count, self.within_freedom, 1.0 - probability))
+        quantile = float(special.fdtri(count, self.within_freedom, 1.0 - probability))
+        if self.within <= 0.0:
+            # The limit of the equation below for runs that are alike on each bed.
+            return float(np.sum(self.squares / self.counts)) / (count * quantile)
+        expected = count * self.within * quantile
 
         def excess(ratio: float) -> float:
             return float(np.sum(self.squares / (1.0 + ratio * self.counts))) - expected

@@ -135,6 +135,14 @@ def test_too_few_runs_leave_the_attitude_out_rather_than_the_soil() -> None:
         variance_shares(INPUTS, x, y, bed, soil=SOIL, attitude=attitude[:12])
 
 
+def test_beds_whose_runs_are_alike_have_the_variance_of_runs_that_nearly_are() -> None:
+    values, bed = np.repeat(np.random.default_rng(0).standard_normal(6), 4), np.repeat(np.arange(6), 4)
+    exact = bed_components(values, bed)
+    near = bed_components(values + 1e-6 * np.random.default_rng(1).standard_normal(24), bed)
+    assert exact.within == 0.0
+    assert exact.variance_at(0.9) == pytest.approx(near.variance_at(0.9), rel=1e-4)
+
+
 def test_where_inputs_do_nothing_none_is_found() -> None:
     found = []
     for seed in range(60):
