@@ -31,6 +31,12 @@ def row_weights(points: Array, row_points: Array, weights: Array, bandwidth: flo
     return nearness / nearness.sum(axis=1, keepdims=True)
 
 
+def log_row_weights(points: Array, row_points: Array, weights: Array, bandwidth: float) -> Array:
+    """Logarithms of the chances of rows [point_count, row_count]; one row for all points where they are alike."""
+    alike = points[:1] if np.isinf(bandwidth) else points
+    return np.log(np.maximum(row_weights(alike, row_points, weights, bandwidth), np.finfo(float).tiny))
+
+
 def drawn_rows(chances: Array, count: int, random: np.random.Generator) -> NDArray[np.int64]:
     """Places of rows drawn by their chances [point_count, row_count], shape [point_count, count]."""
     ends = np.cumsum(chances, axis=1)
