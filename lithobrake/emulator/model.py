@@ -14,7 +14,7 @@ from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.bed_effect import BedEffect
 from lithobrake.emulator.coordinates import from_coordinate
-from lithobrake.emulator.density import Kernels
+from lithobrake.emulator.density import DENSITY_FACTOR, Kernels
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
 from lithobrake.emulator.observed_density import observed_density
@@ -156,9 +156,10 @@ class Emulator(Parts):
     ) -> Array:
         """Logarithm of the density of one observed run at each x [point_count, input_count], shape [point_count].
 
-        That of what `draw` draws. observed: outputs by name, in their units, any of those that have a law (riders have
-        none); errors: standard deviation of each that was observed with one. outcome: how the run ended; None: as runs
-        with outputs do. An outcome without outputs has its chance alone. lower, upper: as in `sample`.
+        That of what `draw` draws, with kernels three times as wide. observed: outputs by name, in their units, any of those
+        that have a law (riders have none); errors: standard deviation of each that was observed with one. outcome: how
+        the run ended; None: as runs with outputs do. An outcome without outputs has its chance alone. lower, upper: as
+        in `sample`.
         Raises ValueError for names and values that cannot be.
         """
         given, alone = (lower, upper), BedEffect.none(len(self.runs.modelled))
@@ -218,8 +219,8 @@ class Emulator(Parts):
 
     @property
     def kernels(self) -> Kernels:
-        """The kernels about the residual rows whose sum the scatter of draws is."""
-        return Kernels.of(self.law.rows, *smoothing(self.law.rows, self.law.weights))
+        """The kernels about the residual rows whose sum is the density of an observed run."""
+        return Kernels.of(self.law.rows, *smoothing(self.law.rows, self.law.weights, DENSITY_FACTOR))
 
     @property
     def bed_effect(self) -> BedEffect:
