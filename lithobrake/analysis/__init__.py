@@ -14,7 +14,7 @@ from lithobrake.analysis.failure_probability import (
 )
 from lithobrake.analysis.half_width import expected_half_width, expected_half_widths, runs_for_half_width
 from lithobrake.analysis.highest_density import DensityRegion, HighestDensity, highest_density
-from lithobrake.analysis.inference import LearntInput, Observation, Posterior, infer, shared_bed_warning
+from lithobrake.analysis.inference import LearntInput, Posterior, infer
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import (
@@ -27,6 +27,7 @@ from lithobrake.analysis.paired_difference import PairedDifference, quantile_dif
 from lithobrake.analysis.refit_interval import refit_interval
 from lithobrake.analysis.sequential_stopping import half_width_of, next_run_count, scatter_of
 from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.analysis.shared_beds import Observation, bed_shares, beds_statement
 from lithobrake.analysis.side_runs import chaos_variance, soil_total_effect
 from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
@@ -36,11 +37,11 @@ __all__ = [
     "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability",
     "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel",
     "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult", "VarianceShares",
-    "best_choice", "chaos_variance", "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures",
-    "expected_half_width", "expected_half_widths", "failure_inputs", "failure_probability", "half_width_of",
-    "highest_density", "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value",
-    "quantile_difference", "quantile_estimate", "quantile_estimates", "quantile_within", "refit_interval",
-    "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of", "share_difference", "share_estimate",
-    "shared_bed_warning", "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit", "variance_shares",
-    "wilson_interval",
+    "bed_shares", "beds_statement", "best_choice", "chaos_variance", "direction_estimate", "dispersion_ellipses",
+    "drawn_counts", "drawn_failures", "expected_half_width", "expected_half_widths", "failure_inputs",
+    "failure_probability", "half_width_of", "highest_density", "identifiability", "infer", "mean_estimate",
+    "next_run_count", "predictive_p_value", "quantile_difference", "quantile_estimate", "quantile_estimates",
+    "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of",
+    "share_difference", "share_estimate", "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit",
+    "variance_shares", "wilson_interval",
 ]  # fmt: skip

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, t_quantile
+from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
+from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
@@ -20,7 +21,8 @@ class BestChoice:
                      that it is: refits scatter about one fit, whose own error they share
     difference       of the best over the runner-up
     own              how often the best meets the event, less what its selection adds: the mean of the best of many is
-                     too high by several points. An estimate; a little of the excess is left where many are alike
+                     too high by several points. A little of the excess is left where many are alike; the interval
+                     holds it (docs/aiming.md has the coverage)
     not_worse        places of the best and of all that cannot be told from it; they hold the true best at the level
     """
 
@@ -61,7 +63,8 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     wins = scaled >= scaled.max(axis=0)
     shares = np.zeros(len(values))
     shares[open_to] = (wins / wins.sum(axis=0)).mean(axis=1)
-    own, not_worse = _own(values, best, open_to, bed_count), _not_worse(values, best, open_to, bed_count)
+    not_worse = _not_worse(values, best, open_to, bed_count)
+    own = _own(values, best, open_to, not_worse, bed_count)
     if runner_up is None:
         return BestChoice(best, None, shares, None, own, not_worse)
     between = values[best] - values[runner_up]
@@ -90,23 +93,40 @@ def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, 
     return middle, lower if first >= places[0] else -math.inf, upper if second <= places[-1] else math.inf
 
 
-def _own(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> IntervalEstimate:
-    """The mean of the best less its optimism: how far the best of a refit lies above its own mean over all refits.
+def _own(
+    values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int
+) -> IntervalEstimate:
+    """The mean of the best less its optimism, with the error that those which cannot be distinguished from it have.
+
+    That the best is chosen among them chooses a small error of its own, too. So the variance is theirs together, as a
+    part of p (1 - p), on the logit scale near 0 and 1.
+    """
+    value = min(max(float(values[best].mean()) - _optimism(values[allowed], bed_count), 0.0), 1.0)
+    limit = upper_limit(bed_count, LEVEL)
+    means = values[list(near)].mean(axis=(1, 2))
+    spread = float((means * (1.0 - means)).sum())
+    # Where no draw scatters so many beds bound what was never seen.
+    if value in (0.0, 1.0) or spread <= 0.0:
+        return IntervalEstimate(value, value * (1.0 - limit), value + (1.0 - value) * limit)
+    part = sum(_error_variance(values[one], bed_count) for one in near) / spread
+    lower, upper = share_interval(value, t_quantile(bed_count - 1) * math.sqrt(part * value * (1.0 - value)))
+    return IntervalEstimate(value, lower, upper)
+
+
+def _optimism(values: Array, bed_count: int) -> float:
+    """How far the best of a refit lies above its own mean over all refits, of [choice_count, refit_count, draw_count].
 
     Choices scatter alike, so what refits and draws add is told from all of them together: that of one choice alone is
     told so roughly from few draws that too much would be taken off.
     """
-    means = values[allowed].mean(axis=2)
+    means = values.mean(axis=2)
     centres = means.mean(axis=1, keepdims=True)
     total = float(means.var(axis=1, ddof=1).mean())
-    within = float(values[allowed].var(axis=2, ddof=1).mean()) / values.shape[2]
+    within = float(values.var(axis=2, ddof=1).mean()) / values.shape[2]
     error = max(total - within, 0.0) * bed_count / (bed_count - 1) + within / values.shape[1]
     deviations = math.sqrt(error / total) * (means - centres) if total > 0.0 else means - centres
     winners = (centres + deviations).argmax(axis=0)
-    optimism = float(deviations[winners, np.arange(len(winners))].mean())
-    value = min(max(float(values[best].mean()) - optimism, 0.0), 1.0)
-    half = t_quantile(bed_count - 1) * math.sqrt(_error_variance(values[best], bed_count))
-    return IntervalEstimate(value, max(value - half, 0.0), min(value + half, 1.0))
+    return float(deviations[winners, np.arange(len(winners))].mean())
 
 
 def _not_worse(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> tuple[int, ...]:

@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,12 @@ from scipy.special import logsumexp, ndtr, ndtri
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
 from lithobrake.analysis.posterior_points import ENDLESS, INSTALL, LEAST, WALKER_COUNT, Proposal, can_walk, walk
+from lithobrake.analysis.shared_beds import Observation, by_bed
+from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
+from lithobrake.chaos.threads import one_thread
+from lithobrake.emulator.bed_effect import BedEffect
+from lithobrake.emulator.observed_density import observed_density
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.percentages import percent
@@ -35,20 +40,6 @@ STEPS = 20
 
 Likelihood = Callable[[Array, int], Array]
 Bounds = Callable[[Array], tuple[ArrayLike | None, ArrayLike | None]]
-
-
-@dataclass(frozen=True)
-class Observation:
-    """One observed bounce.
-
-    outputs: those that were observed, by name, in their units; errors: standard deviations of those that have one;
-    known: inputs that are known of this bounce, by name, as its speed; outcome: how it ended, None: with outputs.
-    """
-
-    outputs: Mapping[str, float]
-    errors: Mapping[str, float] = field(default_factory=dict)
-    known: Mapping[str, float] = field(default_factory=dict)
-    outcome: str | None = None
 
 
 @dataclass(frozen=True)
@@ -159,9 +150,10 @@ def infer(
     refit_count: fits to groups drawn with replacement, over which the likelihood is averaged; 0: the emulator alone.
     point_count: points that are looked at, of the prior first, then near those that carry weight until 400 do. Where
     these rounds end with fewer the walkers of emcee follow, if it is installed.
-    Each bounce counts as on a bed of its own. Bounces of one landing share their bed, so intervals from several are too
-    narrow: `shared_bed_warning` says by how much.
-    Raises ValueError for no observation, and for names and values that cannot be.
+    Bounces on one bed (`Observation.bed`) share its effect, as large as that of the groups of the emulator's runs in
+    each refit; a bounce without a word for its bed has one of its own.
+    Raises ValueError for no observation, for names and values that cannot be, and for a shared bed where no group of
+    the emulator has two runs.
     """
     shared, seed = _checked(model, observations, own), whole_number("seed", seed, 0)
     models = model.refits(refit_count, seed) if refit_count else [model]
@@ -172,20 +164,6 @@ def infer(
 
     found = _drawn(laws, logarithm, point_count, seed)
     return found if found.is_reliable else _walked(found, logarithm, seed)
-
-
-def shared_bed_warning(observations: Sequence[Observation]) -> str | None:
-    """What to make of a posterior from several bounces, in a sentence; None for one.
-
-    The figure: ten of sixteen 90 % intervals held the input, five bounces on one bed of a fifth of the variance.
-    """
-    if len(observations) < 2:
-        return None
-    return (
-        f"The {len(observations)} bounces count as on beds of their own; those of one landing share their bed and are "
-        "more alike, so intervals from them are too narrow: with 5 on one bed that has a fifth of the variance, 62 % "
-        "of 90 % intervals held the truth."
-    )
 
 
 def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_count: int, seed: int) -> Posterior:
@@ -247,6 +225,7 @@ def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: 
     return Posterior(dict(laws), points, weights, 1.0 / float(np.sum(weights**2)), evidence)
 
 
+@one_thread()
 def _likelihood(
     models: "Sequence[Emulator]",
     observations: Sequence[Observation],
@@ -257,16 +236,19 @@ def _likelihood(
 ) -> Array:
     """Logarithm of the likelihood at points [point_count, shared_count], averaged over the refits, [point_count]."""
     inputs, total = models[0].runs.inputs, np.zeros((len(models), len(points)))
+    at = []
     for number, one in enumerate(observations):
         drawn = {name: law for name, law in inputs.items() if name not in shared and name not in one.known}
         anew = dict(zip(drawn, sample_inputs(drawn, len(points), seed * 1000 + number).T, strict=True))
         given = dict(zip(shared, points.T, strict=True)) | {n: np.full(len(points), v) for n, v in one.known.items()}
-        x = np.column_stack([(given | anew)[name] for name in inputs])
-        low, high = bounds(x) if bounds else (None, None)
+        x = checked_points(inputs, np.column_stack([(given | anew)[name] for name in inputs]))
+        at.append((models[0].terms.matrix(x), bounds(x) if bounds else (None, None)))
+    for bed in by_bed(observations):
         for place, refit in enumerate(models):
-            total[place] += refit.log_density(
-                one.outputs, x, errors=one.errors, outcome=one.outcome, lower=low, upper=high
-            )
+            effect = refit.bed_effect if len(bed) > 1 else BedEffect.none(len(refit.runs.modelled))
+            for one, (terms, ends) in ((observations[number], at[number]) for number in bed):
+                found, effect = observed_density(refit, one.outputs, terms, one.errors, one.outcome, ends, effect)
+                total[place] += found
     # Each refit is one emulator of all bounces, so the mean is over products, not of means.
     averaged: Array = logsumexp(total, axis=0) - np.log(len(models))
     return averaged

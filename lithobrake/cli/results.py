@@ -225,7 +225,7 @@ def infer(
     tell(plan)
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
-        tell([line for line in (found["statement"], found["warning"], written) if line])
+        tell([line for line in (found["statement"], found["beds"], written) if line])
 
 
 @app.command(epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")

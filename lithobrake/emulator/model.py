@@ -12,23 +12,23 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.coordinates import from_coordinate, with_slope
-from lithobrake.emulator.density import kernels_of, log_density
+from lithobrake.emulator.bed_effect import BedEffect
+from lithobrake.emulator.coordinates import from_coordinate
+from lithobrake.emulator.density import DENSITY_FACTOR, Kernels
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
+from lithobrake.emulator.observed_density import observed_density
 from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count
+from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
 from lithobrake.vocabulary.html_table import html_table
 from lithobrake.vocabulary.percentages import LEVEL
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
-# Of an observation: the squares of larger ones overflow, and these say nothing either.
-LARGEST_ERROR = 1e100
 
 
 @dataclass(frozen=True)
@@ -156,35 +156,14 @@ class Emulator(Parts):
     ) -> Array:
         """Logarithm of the density of one observed run at each x [point_count, input_count], shape [point_count].
 
-        That of what `draw` draws. observed: outputs by name, in their units, any of those that have a law (riders have
-        none); errors: standard deviation of each that was observed with one. outcome: how the run ended; None: as runs
-        with outputs do. An outcome without outputs has its chance alone. lower, upper: as in `sample`.
+        That of what `draw` draws, with kernels three times as wide. observed: outputs by name, in their units, any of those
+        that have a law (riders have none); errors: standard deviation of each that was observed with one. outcome: how
+        the run ended; None: as runs with outputs do. An outcome without outputs has its chance alone. lower, upper: as
+        in `sample`.
         Raises ValueError for names and values that cannot be.
         """
-        matrix = self._matrix(x)
-        linear = self._linear(matrix)
-        ended = self._checked_observation(observed, errors or {}, outcome)
-        chance = np.log(np.maximum(self.classes.chances(linear)[:, ended], np.finfo(float).tiny))
-        if not observed:
-            return chance
-        low, high = self.runs.bounds_at(lower, upper, len(matrix))
-        columns = [self.output_names.index(name) for name in observed]
-        y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
-        coordinate, slope = with_slope(y, low[:, columns], high[:, columns])
-        places = [self.runs.modelled.index(column) for column in columns]
-        location, scale = (one[:, places] for one in self.law.at(matrix))
-        # What lies beyond a bound at some point cannot have come from there.
-        inside: NDArray[np.bool_] = np.all(np.isfinite(coordinate), axis=1)
-        chances = row_weights(
-            linear, self._linear(self._run_matrix)[self.runs.has_outputs], self.law.weights, self.choices.bandwidth
-        )
-        error = slope * [(errors or {}).get(name, 0.0) for name in observed]
-        kernels = kernels_of(self.law.rows, *smoothing(self.law.rows, self.law.weights))
-        found = log_density(
-            kernels, places, np.where(inside[:, None], coordinate, 0.0), location, scale, error, chances
-        )  # fmt: skip
-        steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1)
-        return np.where(inside, chance + found + steepness, -np.inf)
+        given, alone = (lower, upper), BedEffect.none(len(self.runs.modelled))
+        return observed_density(self, observed, self._matrix(x), errors or {}, outcome, given, alone)[0]
 
     def refits(self, count: int = 200, seed: int = 0) -> list["Emulator"]:
         """Fit anew to groups drawn with replacement, `count` times: how far the emulator itself is uncertain.
@@ -233,29 +212,20 @@ class Emulator(Parts):
         """Write everything into one readable JSON file, from which `load` gives the same draws."""
         write(FORMAT, content_of(self, self.statement), path)
 
-    def _checked_observation(
-        self, observed: Mapping[str, float], errors: Mapping[str, float], outcome: str | None
-    ) -> int:
-        """Place of the outcome of an observation. Raises ValueError for names and values that cannot be."""
-        modelled = [self.output_names[column] for column in self.runs.modelled]
-        if not (isinstance(observed, Mapping) and isinstance(errors, Mapping)):
-            raise ValueError(f"outputs and errors must be dicts by name; outputs that may be observed: {modelled}")
-        for name, value in observed.items():
-            if name not in modelled:
-                raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
-            finite_number(f"observed {name}", value)
-        for name, error in errors.items():
-            if name not in observed:
-                raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
-            finite_number(f"the error of {name}", error, at_least=0.0, at_most=LARGEST_ERROR)
-        if outcome is None:
-            return self.runs.output_outcome
-        if outcome not in self.outcome_names:
-            raise ValueError(f"outcome is {outcome!r}; allowed: {', '.join(self.outcome_names)}")
-        ended = self.outcome_names.index(outcome)
-        if observed and ended != self.runs.output_outcome:
-            raise ValueError(f"outcome is {outcome!r}, which has no outputs: leave {', '.join(observed)} out")
-        return ended
+    @cached_property
+    def row_points(self) -> Array:
+        """Standardised inputs of the runs with outputs [output_run_count, input_count]."""
+        return self._linear(self._run_matrix)[self.runs.has_outputs]
+
+    @property
+    def kernels(self) -> Kernels:
+        """The kernels about the residual rows whose sum is the density of an observed run."""
+        return Kernels.of(self.law.rows, *smoothing(self.law.rows, self.law.weights, DENSITY_FACTOR))
+
+    @property
+    def bed_effect(self) -> BedEffect:
+        """What runs of one group have in common, before any is seen. Raises ValueError where no group has two runs."""
+        return BedEffect.of_groups(self.kernels.whitened, self.law.weights, self.runs.group[self.runs.has_outputs])
 
     @cached_property
     def _run_matrix(self) -> Array:
@@ -273,8 +243,7 @@ class Emulator(Parts):
         """Draws at some points: y, outcome and row, as in Draws."""
         linear, columns = self._linear(matrix), list(self.runs.modelled)
         outcome = drawn_rows(self.classes.chances(linear), count, random)
-        run_linear = self._linear(self._run_matrix)[self.runs.has_outputs]
-        chances = row_weights(linear, run_linear, self.law.weights, self.choices.bandwidth)
+        chances = row_weights(linear, self.row_points, self.law.weights, self.choices.bandwidth)
         row = drawn_rows(chances, count, random)
         location, scale = self.law.at(matrix)
         size, root = smoothing(self.law.rows, self.law.weights)

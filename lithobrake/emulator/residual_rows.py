@@ -31,6 +31,12 @@ def row_weights(points: Array, row_points: Array, weights: Array, bandwidth: flo
     return nearness / nearness.sum(axis=1, keepdims=True)
 
 
+def log_row_weights(points: Array, row_points: Array, weights: Array, bandwidth: float) -> Array:
+    """Logarithms of the chances of rows [point_count, row_count]; one row for all points where they are alike."""
+    alike = points[:1] if np.isinf(bandwidth) else points
+    return np.log(np.maximum(row_weights(alike, row_points, weights, bandwidth), np.finfo(float).tiny))
+
+
 def drawn_rows(chances: Array, count: int, random: np.random.Generator) -> NDArray[np.int64]:
     """Places of rows drawn by their chances [point_count, row_count], shape [point_count, count]."""
     ends = np.cumsum(chances, axis=1)
@@ -43,12 +49,15 @@ def drawn_rows(chances: Array, count: int, random: np.random.Generator) -> NDArr
     return np.minimum(found, chances.shape[1] - 1)
 
 
-def smoothing(rows: Array, weights: Array) -> tuple[float, Array]:
-    """Size of the smoothing and root of the covariance that it follows, [output_count, output_count]."""
+def smoothing(rows: Array, weights: Array, factor: float = SMOOTHING_FACTOR) -> tuple[float, Array]:
+    """Size of the smoothing and root of the covariance that it follows, [output_count, output_count].
+
+    factor: of the normal rule.
+    """
     count, outputs = weights.sum() ** 2 / (weights**2).sum(), rows.shape[1]
     covariance = (rows * weights[:, None]).T @ rows / weights.sum()
     values, vectors = np.linalg.eigh(covariance)
-    return SMOOTHING_FACTOR * count ** (-1.0 / (outputs + 4)), vectors * np.sqrt(np.maximum(values, 0.0))
+    return factor * count ** (-1.0 / (outputs + 4)), vectors * np.sqrt(np.maximum(values, 0.0))
 
 
 def smoothed(rows: Array, size: float, root: Array, random: np.random.Generator) -> Array:

@@ -1,11 +1,20 @@
 """From bounces to inputs: against a posterior in closed form, and what is said where nothing is learnt."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from lithobrake import emulator
-from lithobrake.analysis import Observation, identifiability, infer, predictive_p_value
+from lithobrake.analysis import (
+    Observation,
+    bed_shares,
+    beds_statement,
+    identifiability,
+    infer,
+    predictive_p_value,
+)
 from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
@@ -50,6 +59,53 @@ def test_the_posterior_of_a_linear_law_is_met(model: Emulator, values: list[floa
     assert learnt["density"].sd_ratio == pytest.approx(1.0, abs=0.05)
     assert learnt["density"].information < 0.03
     assert found.statement().endswith("; the data say nothing about density.")
+
+
+BED = 0.4
+
+
+@pytest.fixture(scope="module")
+def on_beds() -> Emulator:
+    """The same response, of whose scatter beds have a part of the variance: 60 of 5 runs each."""
+    random, x = np.random.default_rng(6), sobol_sequence(INPUTS, 300, seed=2)
+    bed = np.arange(300) % 60
+    effects, rest = (stats.norm.ppf((random.permutation(count) + 0.5) / count) for count in (60, 300))
+    scatter = np.sqrt(BED) * effects[bed] + np.sqrt(1.0 - BED) * rest
+    return emulator.fit(INPUTS, x, SLOPE * x[:, 0] + SCATTER * scatter, groups=bed, output_names=["speed"])
+
+
+def test_bounces_on_one_bed_share_its_effect(on_beds: Emulator) -> None:
+    values = [0.9, 1.4, 0.4, 1.1]
+    alone = [Observation({"speed": value}) for value in values]
+    found = infer(on_beds, [replace(one, bed="tray") for one in alone], refit_count=0, point_count=1024)
+    # Their mean has the variance of the bed, and a fourth of the rest.
+    share = bed_shares(on_beds)["speed"]
+    precision = 1.0 + SLOPE**2 / (SCATTER**2 * (share + (1.0 - share) / 4))
+    mean = np.mean(values) * (1.0 - 1.0 / precision) / SLOPE
+    assert share == pytest.approx(BED, abs=0.12)
+    assert moments(found.points[:, 0], found.weights) == pytest.approx((mean, precision**-0.5), abs=0.1)
+    apart = infer(on_beds, alone, refit_count=0, point_count=1024)
+    assert apart.learnt()["friction"].sd_ratio < 0.85 * found.learnt()["friction"].sd_ratio
+    named = infer(on_beds, [replace(one, bed=str(k)) for k, one in enumerate(alone)], refit_count=0, point_count=1024)
+    assert (named.weights == apart.weights).all()
+
+
+def test_which_bounces_share_a_bed_is_said(on_beds: Emulator, model: Emulator) -> None:
+    one = Observation({"speed": 1.0}, bed="tray")
+    assert beds_statement(on_beds, [one]) is None
+    apart = beds_statement(on_beds, [one, Observation({"speed": 1.2})])
+    assert apart is not None
+    assert apart.startswith("The 2 bounces count as on beds of their own")
+    shared = beds_statement(on_beds, [one, one, Observation({"speed": 1.2})])
+    assert shared is not None
+    assert shared.startswith("Of the 3 bounces 2 share bed tray; of the scatter at one soil the bed has: speed ")
+
+
+def test_a_shared_bed_needs_runs_that_share_beds() -> None:
+    x = sobol_sequence(INPUTS, 40, seed=2)
+    lone = emulator.fit(INPUTS, x, x[:, 0] + 0.1 * np.random.default_rng(2).standard_normal(40))
+    with pytest.raises(ValueError, match="no bed of the emulator has two runs with outputs"):
+        infer(lone, [Observation({"y0": 1.0}, bed="tray")] * 2, refit_count=0)
 
 
 def test_many_bounces_take_points_near_those_that_carry_weight(model: Emulator) -> None:

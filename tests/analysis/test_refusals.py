@@ -74,14 +74,6 @@ def test_what_cannot_be_is_refused(what: str) -> None:
         call()
 
 
-def test_several_bounces_carry_a_warning_and_one_does_not() -> None:
-    one = analysis.Observation({"speed_out": 0.2})
-    assert analysis.shared_bed_warning([one]) is None
-    warning = analysis.shared_bed_warning([one] * 3)
-    assert warning is not None
-    assert warning.startswith("The 3 bounces count as on beds of their own; those of one landing share their bed")
-
-
 def test_what_is_at_the_edge_is_taken() -> None:
     assert analysis.runs_for_half_width(0.02, spread=0.0) == 20
     assert analysis.quantile_within([1.0, 3.0], 0.5, (0.0, 1.0)) == (2.0, -INF, INF)

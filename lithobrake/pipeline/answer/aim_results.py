@@ -27,7 +27,7 @@ UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
 # The words of bounces and of journeys.
 RESTS = (SETTLED, AT_REST)
 HOUR = 3600.0
-# More aims than these make no sentence.
+# More options than these make no sentence.
 NAMED = 3
 
 
@@ -163,30 +163,29 @@ def _best(
     parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
     others = tuple(aim for aim in found.not_worse if aim != found.best)
     difference = None if found.difference is None else finite_estimate(found.difference)
-    share, settled = float(found.shares[found.best]), parts[found.best].settled
-    # Refits that all have every lander at rest do not scatter, and say no more than so many beds can.
-    own = share_interval(found.own) if settled.share < 1.0 else settled
-    return parts, BestAim(found.best, share, own, others, found.runner_up, difference)
+    share = float(found.shares[found.best])
+    return parts, BestAim(found.best, share, share_interval(found.own), others, found.runner_up, difference)
 
 
 def aim_statement(table: AimResults) -> str:
-    """The best aim in a sentence, how sure it is, and what hard ground would say."""
+    """The options that cannot be distinguished from the best, the best's own share, and what hard ground says."""
     aims, within = table.aims, f" within {', '.join(table.within)}" if table.within else ""
     count = sum(aim.soil.allowed for aim in aims)
     best, hard = table.best_on_soil, table.best_on_hard
     if best is None:
-        return f"Of {len(aims)} aims {count} are allowed{within}, and at none of these a lander settles."
+        return f"Of {len(aims)} delivery options {count} are allowed{within}, and at none of these a lander is at rest."
+    said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
     part = aims[best.aim].soil
     # The largest of many shares is too high by its selection, so the sentence has the share without it.
     share = with_interval(best.own or part.settled, level=table.level)
-    said = [f"Of {count} aims{within} landers settle most often at {_words(table, best.aim)}: {share}"]
+    most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
+    first = f"{most} are at rest at {_words(table, best.aim)}: {share}"
     if part.distance_p95 is not None and part.time_p95 is not None:
         far, late = part.distance_p95.value, part.time_p95.value / HOUR
-        said[0] += f", {percent(FAR)} of these within {far:.3g} m and {late:.3g} h"
+        first += f", {percent(FAR)} of these within {far:.3g} m and {late:.3g} h"
     if part.missing >= 0.005:
-        said[0] += f"; {percent(part.missing)} have an unknown outcome{_rivals(table, best.aim)}"
-    if best.not_worse is not None:
-        said.append(_alike(table, best.not_worse, count - 1))
+        first += f"; {percent(part.missing)} have an unknown outcome{_rivals(table, best.aim)}"
+    said.append(first)
     on_hard = None if hard is None else aims[hard.aim].hard
     if hard is not None and on_hard is not None:
         where = "this one, too" if best.aim == hard.aim else _words(table, hard.aim)
@@ -194,25 +193,25 @@ def aim_statement(table: AimResults) -> str:
     return ". ".join(said) + "."
 
 
-def _alike(table: AimResults, places: Sequence[int], others: int) -> str:
-    """Which of the other allowed aims cannot be told from the best, all of them together."""
-    if not others:
-        return "No other aim is allowed"
+def _alike(table: AimResults, places: Sequence[int], count: int, within: str) -> str:
+    """Which of the allowed options cannot be distinguished from the best, it among them."""
     surely = f"with {percent(table.level)} confidence"
-    if not places:
-        return f"It is better than every other, {surely}"
-    named = f": {'; '.join(_words(table, place) for place in places)}" if len(places) <= NAMED else ""
-    return f"{len(places)} of the other {others} cannot be distinguished from it {surely}{named}"
+    if count == 1:
+        return f"Of {len(table.aims)} delivery options one is allowed{within}"
+    if len(places) == 1:
+        return f"One of {count} delivery options{within} is better than every other, {surely}"
+    named = f": {'; '.join(_words(table, place) for place in sorted(places))}" if len(places) <= NAMED else ""
+    return f"{len(places)} of {count} delivery options{within} cannot be distinguished from the best, {surely}{named}"
 
 
 def _rivals(table: AimResults, best: int) -> str:
-    """How many other aims would be better if all landers of unknown outcome settled there."""
+    """How many other options would be better if all landers of unknown outcome were at rest there."""
     least = table.aims[best].soil.settled.share
     count = sum(one.soil.settled.share + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
-    return f", and if all of these settled, as many as {count} other aims could be better" if count > 0 else ""
+    return f", and if all of these were at rest, as many as {count} other options could be better" if count > 0 else ""
 
 
 def _words(table: AimResults, place: int) -> str:
-    """An aim in words."""
+    """An option in words."""
     values = table.aims[place].values
     return ", ".join(f"{name} = {value:g}" for name, value in zip(table.names, values, strict=True))

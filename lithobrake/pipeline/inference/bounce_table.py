@@ -9,17 +9,17 @@ from lithobrake.study.units import conversion, run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
 
-# Columns of standard deviations begin so; that of the outcome.
-ERROR, OUTCOME = "error:", "outcome"
+# Columns of standard deviations begin so; those of words.
+ERROR, OUTCOME, BED = "error:", "outcome", "bed"
 
 
 def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
     """Read bounces, one a row, from a CSV file; an empty cell was not observed.
 
     Columns: outputs of the touchdown, `error:` and the name of one for its standard deviation, uncertain numbers of
-    [impact] by dotted key where they are known, and outcome. A unit in brackets behind a name is turned into that of
-    the study; without one numbers are in that unit. Raises ValueError for what is no number, a unit of another
-    quantity, two columns of one name, and no bounce.
+    [impact] by dotted key where they are known, outcome, and bed, a word that bounces on one bed share. A unit in
+    brackets behind a name is turned into that of the study; without one numbers are in that unit. Raises ValueError for
+    what is no number, a unit of another quantity, two columns of one name, and no bounce.
     """
     table = read_table(path, (), "write a line of names, and a line for each bounce")
     factors = {name: _factor(path, name, unit) for name, unit in table.units.items()}
@@ -31,7 +31,7 @@ def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
 
 def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
     """What the numbers of a column are multiplied by, to be in the unit of the study."""
-    own = (run_units() | {OUTCOME: PURE}).get(name.removeprefix(ERROR))
+    own = (run_units() | {OUTCOME: PURE, BED: PURE}).get(name.removeprefix(ERROR))
     if own is None:
         # The emulator refuses the name.
         return 1.0
@@ -46,7 +46,7 @@ def _bounce(
 ) -> Observation:
     given: dict[str, float] = {}
     for name, text in row.items():
-        if name != OUTCOME and text.strip():
+        if name not in (OUTCOME, BED) and text.strip():
             try:
                 given[name] = float(text) * factors.get(name, 1.0)
             except ValueError as error:
@@ -59,4 +59,4 @@ def _bounce(
     errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}
     known = {name: value for name, value in given.items() if "." in name and not name.startswith(ERROR)}
     outputs = {name: value for name, value in given.items() if name not in known and not name.startswith(ERROR)}
-    return Observation(outputs, errors, known, outcome)
+    return Observation(outputs, errors, known, outcome, (row.get(BED) or "").strip() or None)

@@ -12,10 +12,10 @@ from lithobrake.analysis import (
     LEVEL,
     Observation,
     Posterior,
+    beds_statement,
     identifiability,
     infer,
     predictive_p_value,
-    shared_bed_warning,
 )
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_json
@@ -120,10 +120,11 @@ class InferredStudy:
         ]
         return {
             "bounces": [
-                {"outputs": dict(one.outputs), "known": dict(one.known), "outcome": one.outcome} for one in seen
+                {"outputs": dict(one.outputs), "known": dict(one.known), "outcome": one.outcome, "bed": one.bed}
+                for one in seen
             ],
             "statement": found.statement(),
-            "warning": shared_bed_warning(seen),
+            "beds": beds_statement(self.model, seen),
             "level": LEVEL,
             "effective_count": found.effective_count,
             "is_reliable": found.is_reliable,

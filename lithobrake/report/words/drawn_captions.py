@@ -163,11 +163,11 @@ def samples(data: DrawnPage, colour_name: str | None) -> str:
 
 def aims(data: RunsPage, table: AimResults) -> str:
     """The figure of the aims."""
-    crossed = " Aims that the limits rule out are crossed." if table.within else ""
+    crossed = " Options that the limits rule out are crossed." if table.within else ""
     return (
-        f"{thousands(table.lander_count)} landers at each aim, followed until they rest; below each number its "
-        f"{percent(data.level)} interval, a frame about the best, dotted about "
-        f"those that cannot be distinguished from it.{crossed} {table.statement}"
+        f"{table.statement} {thousands(table.lander_count)} landers at each delivery option, followed until they rest; "
+        f"below each number its {percent(data.level)} interval. Dotted frames: options that cannot be distinguished "
+        f"from the best, which has a full frame.{crossed}"
     )
 
 

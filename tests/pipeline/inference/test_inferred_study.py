@@ -39,7 +39,9 @@ def test_a_file_of_bounces_is_read_row_by_row(tmp_path: Path) -> None:
     first, second = read_bounces(bounces(tmp_path, SEEN))
     assert first.outputs == {"speed_out": 0.12, "elevation_out": 0.5}
     assert (first.errors, first.outcome) == ({"speed_out": 0.002}, None)
-    assert (second.outputs, second.outcome) == ({}, "captured")
+    assert (second.outputs, second.outcome, second.bed) == ({}, "captured", None)
+    on_bed = read_bounces(bounces(tmp_path, "bed,speed_out\n tray 1 ,0.1\n,0.2\n"))
+    assert [one.bed for one in on_bed] == ["tray 1", None]
     known = read_bounces(bounces(tmp_path, "impact.speed [m/s],speed_out\n0.3,0.1\n"))[0]
     assert (known.known, known.outputs) == ({"impact.speed": 0.3}, {"speed_out": 0.1})
 
@@ -77,6 +79,7 @@ def test_a_unit_behind_the_name_of_a_column_is_converted(title: str, si: float, 
         ("spin_out [Hz]\n1\n", r"spin_out in the unit \[Hz\]; allowed: rad/s, mrad/s, deg/s"),
         ("error:speed_out [m]\n1\n", r"error:speed_out in the unit \[m\]; allowed: m/s"),
         ("outcome [s],speed_out\n,1\n", r"outcome in the unit \[s\]; allowed: -, 1, %"),
+        ("bed [m],speed_out\n,1\n", r"bed in the unit \[m\]; allowed: -, 1, %"),
         ("speed_out [M/S]\n0.1\n", r"unit \[M/S\]; allowed: m/s"),
         ("speed_out,speed_out\n0.1,0.2\n", "it has 2 columns speed_out"),
         ("speed_out [cm/s],speed_out [m/s]\n11,0.1\n", "it has 2 columns speed_out"),
@@ -100,7 +103,18 @@ def test_the_posterior_and_its_picture_are_written(folder: Path, tmp_path: Path)
     assert content["is_reliable"]
     assert 0.0 <= content["predictive_p_value"][0] <= 1.0
     assert content["predictive_p_value"][1] is None
+    assert content["bounces"][0]["bed"] is None
+    assert content["beds"].startswith("The 2 bounces count as on beds of their own")
     assert (folder / "posterior.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_bounces_that_share_a_bed_say_so(folder: Path, tmp_path: Path) -> None:
+    shared = "speed_out,elevation_out,bed\n0.12,0.5,a\n0.11,0.6,a\n"
+    content = InferredStudy.open(folder).infer(bounces(tmp_path, shared))
+    assert [one["bed"] for one in content["bounces"]] == ["a", "a"]
+    assert content["beds"].startswith(
+        "Of the 2 bounces 2 share bed a; of the scatter at one soil the bed has: speed_out "
+    )
 
 
 def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_name_and_version(
@@ -136,6 +150,7 @@ def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Pat
     lines = " ".join(said.output.split())
     assert lines.index("Of bounces whose speed_out, elevation_out, spin_out are seen") < lines.index("Posterior:")
     assert "grain.friction: one leaves" in lines
+    # Of two bounces on one bed one has no outputs, and says nothing of it.
     assert "The 2 bounces count as on beds of their own" in lines
     assert InferredStudy.open(folder).of_each_bounce == []
 
