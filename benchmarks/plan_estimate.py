@@ -19,9 +19,9 @@ from pathlib import Path
 
 from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
 
+from lithobrake.campaign import read_records
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.campaign import read_records
 from lithobrake.pipeline.planning.expected_time import landing_time, mean_journey_time, pour_time
 from lithobrake.pipeline.planning.pace import REFERENCE, probe
 from lithobrake.pipeline.site import with_site_gravity

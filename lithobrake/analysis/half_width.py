@@ -5,9 +5,9 @@ import math
 from lithobrake.analysis.confidence import t_quantile
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, whole_number
 
-# Standard deviation of a run's share of flights that return, as measured on studies with randomised impact points (0.14
-# to 0.21, docs/estimates.md): the range, and the larger one, which promises no more than a study keeps.
-SPREAD_RANGE = (0.14, 0.21)
+# Standard deviation of a run's share of flights that return, as measured on studies in which some do and some do not
+# (docs/estimates.md): the range, and the larger one, which promises no more than a study keeps.
+SPREAD_RANGE = (0.04, 0.21)
 SPREAD = SPREAD_RANGE[1]
 # Correlation of two runs on one bed in the mean over studies, of the return fraction of landings and of the fraction at
 # rest of journeys (docs/estimates.md).

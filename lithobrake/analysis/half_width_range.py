@@ -101,7 +101,8 @@ def half_width_range(
 
     bed [run_count]      of each run that is still to come, any labels
     values, values_bed   outcomes of the runs that there are, 0 to 1 or NaN, and their beds [known_count]
-    missing              fraction of the runs to come that will have no outcome
+    missing              fraction of the runs to come that will have no outcome; where some of the runs that there are
+                         have none, it is drawn by these
     correlation          of two runs on one bed, in the mean over studies; above 0
 
     Each run takes, with the probability of the root of the correlation, what its bed has in common. The correlation is
@@ -119,7 +120,11 @@ def half_width_range(
     study_count = min(max(MOST_RUNS // len(beds), FEWEST_STUDIES), STUDIES) if len(to_come) else 1
     weights = np.exp(-CORRELATIONS / correlation) * _likelihood(known, beds[: len(known)])
     correlations = random.choice(CORRELATIONS, study_count, p=weights / weights.sum())
-    widths = [_one(law, known, beds, missing, rho, random) for rho in correlations]
+    lost = int(np.isnan(known).sum())
+    # Jeffreys' prior for a fraction.
+    rates = random.beta(lost + 0.5, len(known) - lost + 0.5, study_count) if lost else np.full(study_count, missing)
+    pairs = zip(rates.tolist(), correlations.tolist(), strict=True)
+    widths = [_one(law, known, beds, rate, correlation, random) for rate, correlation in pairs]
     tail = 0.5 - 0.5 * LEVEL
     found = np.quantile([one for one in widths if one is not None] or [0.5], (tail, 0.5, 1.0 - tail))
     return HalfWidthRange(*found.tolist())
@@ -132,10 +137,12 @@ def _one(
     new, bed_count = beds[len(known) :], int(beds.max()) + 1
     drawn = law.study(random, len(new) + bed_count)
     own, common = drawn[: len(new)], drawn[len(new) :]
-    # What runs on a bed have in common is what some run on it has shown.
+    share = math.sqrt(correlation)
+    # What runs on a bed have in common is what some run on it has shown, if that one took it.
     shown = random.permutation(np.flatnonzero(np.isfinite(known)))
+    shown = shown[random.random(len(shown)) < share]
     common[beds[shown]] = known[shown]
-    alike = random.random(len(new)) < math.sqrt(correlation)
+    alike = random.random(len(new)) < share
     values = np.where(alike, common[new], own)
     values[random.random(len(new)) < missing] = np.nan
     bounds = plain_interval(np.concatenate([known, values]), beds)

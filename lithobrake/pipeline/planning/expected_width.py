@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,10 +18,12 @@ from lithobrake.pipeline.sequential_sampling import flown_shares
 from lithobrake.study import Study
 
 if TYPE_CHECKING:
-    from lithobrake.analysis.half_width_range import HalfWidthRange, RunLaw
+    from lithobrake.analysis.half_width_range import RunLaw
 
-# Fractions at rest: what they may be before a study has journeys, and of which the half width is told, too.
-LEAST_AT_REST, TOLD_AT_REST = 0.5, (1.0, 0.95, 0.8, 0.5)
+# Fraction at rest that may be expected at least, before a study has journeys.
+LEAST_AT_REST = 0.5
+# Fractions of which the half width is told, too: at rest, and of landings that return.
+TOLD_AT_REST, TOLD_OF_RETURNS = (1.0, 0.95, 0.8, 0.5), (1.0,)
 # Of studies with randomised impact points; where it lies hardly matters for the half width.
 RETURN_FRACTION = 0.75
 # Fewer answers say nothing of how they scatter.
@@ -35,7 +38,7 @@ class ExpectedHalfWidth:
     lower, upper     half widths of nine in ten such studies lie between; with runs that have ended, of studies which go
                      on as these
     median           half of them are wider
-    by_fraction      median half width by the fraction at rest; none for other answers, or with runs that have ended
+    by_fraction      median half width by the fraction that comes out; none with runs that have ended
     assumed          what it rests on, in a sentence
     own_run_count    runs with an outcome on which it rests; 0 before enough have ended
     missing          fraction of the runs to come that are taken to have no outcome
@@ -83,23 +86,18 @@ def expected_width(
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
     own = own if own >= FEWEST_ANSWERS and len(np.unique(bed)) > 1 else 0
-    law, words = _law_of_runs(values, bed) if own else _law_before(study)
+    law, words = law_of_runs(values, bed) if own else law_before(study)
     missing = _missing(study, soil, values)
     there, to_come = _runs(design, values, bed)
 
-    def foreseen(law: "RunLaw", missing: float = 0.0) -> "HalfWidthRange | None":
-        correlation = expected_correlation(study)
-        return half_width_range(
-            law, to_come, values=there[0], values_bed=there[1], missing=missing, correlation=correlation
-        )
-
-    found = foreseen(law, missing)
+    foreseen = partial(
+        half_width_range, bed=to_come, values=there[0], values_bed=there[1], correlation=expected_correlation(study)
+    )
+    found = foreseen(law, missing=missing)
     if found is None:
         return None
-    by_fraction: dict[str, float] = {}
-    for share in TOLD_AT_REST if study.journey is not None and not own else ():
-        told = foreseen(AllOrNothing(share, share))
-        by_fraction |= {f"{100 * share:.0f} %": told.median} if told else {}
+    told = () if own else TOLD_OF_RETURNS if study.journey is None else TOLD_AT_REST
+    widths = {f"{100 * share:.0f} %": foreseen(AllOrNothing(share, share)) for share in told}
     lost = f"; {100 * missing:.2g} % of the landings have no outcome" if missing else ""
     return ExpectedHalfWidth(
         run_count=study.design.run_count,
@@ -108,7 +106,7 @@ def expected_width(
         lower=found.lower,
         median=found.median,
         upper=found.upper,
-        by_fraction=by_fraction,
+        by_fraction={share: width.median for share, width in widths.items() if width},
         assumed=f"{words}{lost}.",
         own_run_count=own,
         missing=missing,
@@ -123,7 +121,7 @@ def expected_correlation(study: Study) -> float:
     return CORRELATION if study.journey is None else JOURNEY_CORRELATION
 
 
-def _law_before(study: Study) -> "tuple[RunLaw, str]":
+def law_before(study: Study) -> "tuple[RunLaw, str]":
     """What is taken of a run before enough have ended, in words too, but for the full stop."""
     from lithobrake.analysis.half_width import SPREAD_RANGE
     from lithobrake.analysis.half_width_range import AllOrNothing, Shares
@@ -139,11 +137,12 @@ def _law_before(study: Study) -> "tuple[RunLaw, str]":
         return AllOrNothing(0.0, 1.0), f"Assumed: a landing meets it or not, with any probability; {beds}"
     low, high = SPREAD_RANGE
     return Shares(RETURN_FRACTION, low, high), (
-        f"Assumed: the share of a landing's flights that return has a standard deviation of {low:g} to {high:g}; {beds}"
+        f"Assumed: some landings return and some do not, with a standard deviation of {low:g} to {high:g} of the share "
+        f"of flights that do; {beds}"
     )
 
 
-def _law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
+def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
     """The same by the runs that have ended."""
     from lithobrake.analysis import scatter_of
     from lithobrake.analysis.confidence import answered_runs
@@ -160,7 +159,7 @@ def _law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
 
 
 def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> float:
-    """Fraction of the runs to come that will have no outcome: as of those that have ended, else as foreseen."""
+    """Fraction of the runs to come that will have no outcome: that of those that have ended, else as foreseen."""
     if study.journey is not None:
         return 0.0
     if len(values) >= FEWEST_ANSWERS:

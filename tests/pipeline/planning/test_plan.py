@@ -335,12 +335,13 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     plan = plan_for(drawn(bed={"bed_count": 12}), folder, 2)
     found = plan.half_width
     assert found is not None
-    # t(11) at .95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd .14, rho .2 and sd .21.
-    least, most = 1.796 * 0.14 * (1 / 144) ** 0.5, 1.796 * 0.21 * (0.2 / 12 + 0.8 / 144) ** 0.5
+    # t(11) at .95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd .04, rho .2 and sd .21.
+    least, most = 1.796 * 0.04 * (1 / 144) ** 0.5, 1.796 * 0.21 * (0.2 / 12 + 0.8 / 144) ** 0.5
     assert least < found.lower < found.median < found.upper < most
     said = " ".join(plan_lines(plan))
-    assert "90 % interval of the return fraction (144 runs on 12 beds): 2." in said
-    assert "has a standard deviation of 0.14 to 0.21; the correlation of two on one bed is 0.02 in the mean" in said
+    assert "90 % interval of the return fraction (144 runs on 12 beds): " in said
+    assert "By the fraction that comes out: 8.7 at 100 %." in said
+    assert "a standard deviation of 0.04 to 0.21 of the share of flights that do; the correlation of two" in said
     assert plan.to_json()["half_width"]["own_run_count"] == 0
     one_bed = drawn(bed={"bed_count": 1})
     assert plan_for(one_bed, folder, 2).half_width is None
