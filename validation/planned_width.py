@@ -1,12 +1,18 @@
 """Does the half width come true that `lithobrake plan` promises? Fresh small studies, and those that are kept here.
 
-    python validation/planned_width.py [--work FOLDER]    makes studies that are missing, then compares
-    python validation/planned_width.py --page              the table of docs/estimates.md
+    python validation/planned_width.py [--work FOLDER]            makes studies that are missing, then compares
+    python validation/planned_width.py --folders FOLDER [FOLDER]  first keeps the outcomes of other finished journeys
+    python validation/planned_width.py --page                     the table of docs/estimates.md
 
 Fresh studies differ in lander, soil, arrival and body; they have as many beds as a study that does not say how many.
 Their outcomes and beds stand in planned_width_runs.json; a study that stands in it is not made again. planned_width.csv
 has a row a study: what is promised before a run and after the first third of the runs, and what came out. Earlier
 studies: those of journey_seed_pairs.csv, emulated_journeys.json and delivery_options.json, and those of showcase/.
+
+planned_width.json has in how many it does, and the correlation of two runs on one bed over all studies whose outcomes
+are known: the sum of the variances of beds over that of all variances, with its standard error by leaving out one study
+after another. For it the outcomes of journey_seed_pairs.py and emulated_journeys.py are kept, too (--folders: their
+working folders).
 """
 
 import csv
@@ -15,7 +21,7 @@ import math
 import sys
 import tempfile
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +32,8 @@ from harness import ROOT, SCENARIOS, Row, command_line, origin, read_rows, round
 
 from lithobrake.analysis import HalfWidthRange as HalfWidths
 from lithobrake.analysis import half_width_range
+from lithobrake.analysis.bed_components import bed_components
+from lithobrake.analysis.confidence import answered_runs
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_shares import return_fraction
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -122,18 +130,26 @@ def half(lower: float | None, upper: float | None) -> float:
 def make(work: Path) -> None:
     """Make the fresh studies that are missing."""
     for number, name in enumerate(JOURNEYS | LANDINGS):
-        if name in fresh():
+        if name in kept_runs():
             continue
         out, source = work / str(FIRST_SEED + number), StudySource.of_tables(tables(name, FIRST_SEED + number))
         run_study(source, out, until="runs" if name in JOURNEYS else "fly_runs", worker_count=1)
-        write_document(RUNS, fresh() | {name: answer_of(source.study, StudyFolder(out))})
+        write_document(RUNS, kept_runs() | {name: answer_of(source.study, StudyFolder(out))})
         print(name, flush=True)
 
 
-def fresh() -> dict[str, Row]:
-    """What is kept of the fresh studies."""
+def kept_runs() -> dict[str, Row]:
+    """Outcomes and beds of studies, fresh ones by their name, others by that of their folder."""
     kept: dict[str, Row] = json.loads(RUNS.read_text()) if RUNS.exists() else {}
     return kept
+
+
+def keep(folders: Iterable[Path]) -> None:
+    """Keep the outcomes of finished journeys in folders of these."""
+    for path in sorted(path for folder in folders for path in folder.glob("*/journeys.csv")):
+        table = JourneyTable.load(StudyFolder.only_read(path.parent))
+        one = {"values": table.rests.astype(int).tolist(), "bed": table.bed.tolist()}
+        write_document(RUNS, kept_runs() | {f"{path.parent.parent.name}/{path.parent.name}": one})
 
 
 def before(study: Study) -> HalfWidths:
@@ -184,8 +200,10 @@ def row_of(group: str, name: str, study: Study, share: float, half_width: float,
 
 def kept_studies() -> Iterator[Row]:
     """All studies, fresh ones first."""
-    for number, (name, runs) in enumerate(fresh().items()):
-        study = check_tables(tables(name, FIRST_SEED + number), SCENARIOS)
+    for name, runs in kept_runs().items():
+        if name not in JOURNEYS | LANDINGS:
+            continue
+        study = check_tables(tables(name, FIRST_SEED), SCENARIOS)
         known = [one for one in runs["values"] if one is not None]
         yield row_of("fresh", name, study, float(np.mean(known)), runs["half_width"], runs)
     for name in ("mission", "drawn_700", "drawn_170"):
@@ -238,6 +256,31 @@ def counted(rows: list[Row]) -> Row:
     return found
 
 
+def pooled(studies: list[Row]) -> Row:
+    """Correlation of two runs on one bed over studies in which runs differ, with its standard error."""
+    parts = []
+    for one in studies:
+        values = np.array([np.nan if value is None else value for value in one["values"]], dtype=float)
+        known, bed = answered_runs(values, np.array(one["bed"]))
+        if np.ptp(known) > 0.0:
+            found = bed_components(known, bed)
+            parts.append((found.bed_variance, found.bed_variance + found.within))
+    sums = np.array(parts)
+    left = sums.sum(axis=0) - sums
+    ratios = left[:, 0] / left[:, 1]
+    error = math.sqrt((len(sums) - 1) * float(ratios.var()))
+    return {"studies": len(sums), "correlation": float(sums[:, 0].sum() / sums[:, 1].sum()), "error": error}
+
+
+def correlations() -> Row:
+    """Of journeys and of landings."""
+    kept = kept_runs()
+    journeys = [one for name, one in kept.items() if name not in LANDINGS] + [showcase_runs(SHOWCASE / "mission")]
+    landings = [one for name, one in kept.items() if name in LANDINGS]
+    landings += [showcase_runs(SHOWCASE / name) for name in ("drawn_700", "drawn_170")]
+    return {"journeys": pooled(journeys), "landings": pooled(landings)}
+
+
 def promise(row: Row, when: str) -> str:
     """A range [points], in bold where what came out is not in it."""
     ends = f"{100 * row[f'{when} lower']:.1f} to {100 * row[f'{when} upper']:.1f}"
@@ -258,12 +301,16 @@ def page_table(rows: list[Row]) -> str:
 def main() -> None:
     """Make what is missing, then compare."""
     work = Path(tempfile.gettempdir()) / "lithobrake_planned_width"
-    options = command_line(__doc__, work=work, page=False).parse_args()
+    parser = command_line(__doc__, work=work, page=False)
+    parser.add_argument("--folders", nargs="+", type=Path, default=())
+    options = parser.parse_args()
     if not options.page:
+        keep(options.folders)
         make(options.work)
         rows = list(kept_studies())
         write_rows(TABLE, rows[0], rows)
-        write_document(TABLE.with_suffix(".json"), {**origin("validation/planned_width.py"), "inside": counted(rows)})
+        found = {"inside": counted(rows), "correlation": correlations()}
+        write_document(TABLE.with_suffix(".json"), {**origin("validation/planned_width.py"), **found})
     print(page_table(read_rows(TABLE, {"group": str, "study": str, "runs": int, "beds": int})))
 
 
