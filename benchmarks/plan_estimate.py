@@ -1,26 +1,32 @@
-"""How right `lithobrake plan` is: CPU times of a bed and of landings, expected and as they come.
+"""How right `lithobrake plan` is: CPU times of a bed, and of landings or journeys, expected and as they come.
 
     python benchmarks/plan_estimate.py first_bounce drawn_700 paper --beds 4 --landings 14
+    python benchmarks/plan_estimate.py quick mission aim --beds 4 --landings 24
 
 pours beds of each study of scenarios/ or validation/studies/, makes so many of its landings on the first, with slow
-grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. The
+grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. Of
+a study of journeys it follows so many of these on as many beds instead. `bed_costs` is how many landings or journeys a
+bed costs: what default_bed_count in lithobrake/study/bed_section.py stands on. The
 constants of expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
 import json
 import math
 import statistics
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
 
+from lithobrake.campaign import read_records
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import landing_time, pour_time
+from lithobrake.pipeline.planning.expected_time import landing_time, mean_journey_time, pour_time
 from lithobrake.pipeline.planning.pace import REFERENCE, probe
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.study import read_study
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.study import StudySource, load_tables, read_study
 from lithobrake.touchdown import Bed, land, pour_bed
 
 RESULTS = Path(__file__).with_suffix(".json")
@@ -39,6 +45,19 @@ def landed(bed: Bed, soil: ExpectedSoil, held: float, count: int) -> dict[str, f
     return {"held_speed": held, "cpu_s": statistics.fmean(found[1:]), "expected_s": statistics.fmean(expected[1:])}
 
 
+def followed(name: str, soil: ExpectedSoil, bed_count: int, count: int) -> dict[str, float]:
+    """Mean CPU time of journeys, found and expected [s], and how many touchdowns each has."""
+    tables = dict(load_tables(STUDIES[name]))
+    tables |= {"journey": tables["journey"] | {"count": count}, "bed": tables["bed"] | {"bed_count": bed_count}}
+    with tempfile.TemporaryDirectory() as folder:
+        run_study(StudySource.of_tables(tables), Path(folder), until="runs", worker_count=1)
+        records = read_records(Path(folder) / "runs.sqlite")
+    return {
+        "cpu_s": sum(one.cpu_s or 0.0 for one in records) / count, "expected_s": mean_journey_time(soil),
+        "touchdowns": len(records) / count,
+    }  # fmt: skip
+
+
 def measure(name: str, bed_count: int, count: int) -> Row:
     """Pour beds of a study and make so many of its landings on the first."""
     study = with_site_gravity(read_study(STUDIES[name]))
@@ -49,13 +68,17 @@ def measure(name: str, bed_count: int, count: int) -> Row:
     pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small), sides="walls"))
     pours = [timed(lambda seed=seed: pour_bed(replace(soil.recipe, seed=seed))) for seed in range(bed_count)]
     bed, seconds = pours[0][0], [seconds for _, seconds in pours]
-    landings = [landed(bed, soil, held, count) for held in HELD]
+    journeys = None if study.journey is None else followed(name, soil, bed_count, count)
+    landings = [landed(bed, soil, held, count) for held in HELD] if journeys is None else []
     paces.append(probe() / REFERENCE)
     pour = {"cpu_s": statistics.fmean(seconds), "each_cpu_s": seconds, "expected_s": pour_time(soil)}
     pour |= {"depth_m": bed.surface_height, "expected_depth_m": soil.depth}
+    # As the study makes them; grains are held where it says so.
+    held = study.contact.held_speed
+    one = journeys or min(landings, key=lambda row: abs(row["held_speed"] - held))
     return {
-        "grains": soil.recipe.grain_count, "paces": paces, "pour": pour,
-        "count": count, "landings": landings,
+        "grains": soil.recipe.grain_count, "paces": paces, "pour": pour, "bed_costs": pour["cpu_s"] / one["cpu_s"],
+        "count": count, "landings": landings, "journeys": journeys,
     }  # fmt: skip
 
 

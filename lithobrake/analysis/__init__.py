@@ -12,7 +12,13 @@ from lithobrake.analysis.failure_probability import (
     drawn_failures,
     failure_probability,
 )
-from lithobrake.analysis.half_width import expected_half_width, expected_half_widths, runs_for_half_width
+from lithobrake.analysis.half_width import (
+    best_runs_a_bed,
+    cost_over_best,
+    expected_half_width,
+    runs_for_half_width,
+)
+from lithobrake.analysis.half_width_range import HalfWidthRange, half_width_range
 from lithobrake.analysis.highest_density import DensityRegion, HighestDensity, highest_density
 from lithobrake.analysis.inference import LearntInput, Posterior, infer
 from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
@@ -35,13 +41,13 @@ from lithobrake.chaos.design import sample_inputs
 
 __all__ = [
     "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability",
-    "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation", "OutcomeModel",
-    "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult", "VarianceShares",
-    "bed_shares", "beds_statement", "best_choice", "chaos_variance", "direction_estimate", "dispersion_ellipses",
-    "drawn_counts", "drawn_failures", "expected_half_width", "expected_half_widths", "failure_inputs",
-    "failure_probability", "half_width_of", "highest_density", "identifiability", "infer", "mean_estimate",
-    "next_run_count", "predictive_p_value", "quantile_difference", "quantile_estimate", "quantile_estimates",
-    "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of",
-    "share_difference", "share_estimate", "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit",
-    "variance_shares", "wilson_interval",
+    "HalfWidthRange", "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation",
+    "OutcomeModel", "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult",
+    "VarianceShares", "bed_shares", "beds_statement", "best_choice", "best_runs_a_bed", "chaos_variance",
+    "cost_over_best", "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures",
+    "expected_half_width", "failure_inputs", "failure_probability", "half_width_of", "half_width_range",
+    "highest_density", "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value",
+    "quantile_difference", "quantile_estimate", "quantile_estimates", "quantile_within", "refit_interval",
+    "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of", "share_difference", "share_estimate",
+    "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
 ]  # fmt: skip

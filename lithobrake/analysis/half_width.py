@@ -5,12 +5,13 @@ import math
 from lithobrake.analysis.confidence import t_quantile
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, whole_number
 
-# Standard deviation of a run's share of flights that return, as measured on three studies with randomised impact points
-# (0.148, 0.211, 0.212): the range, and the larger one, which promises no more than a study keeps.
-SPREAD_RANGE = (0.15, 0.21)
+# Standard deviation of a run's share of flights that return, as measured on studies in which some do and some do not
+# (docs/estimates.md): the range, and the larger one, which promises no more than a study keeps.
+SPREAD_RANGE = (0.04, 0.21)
 SPREAD = SPREAD_RANGE[1]
-# Correlation of two runs on one bed.
-CORRELATION = 0.05
+# Correlation of two runs on one bed in the mean over studies, of the return fraction of landings and of the fraction at
+# rest of journeys (docs/estimates.md).
+CORRELATION, JOURNEY_CORRELATION = 0.02, 0.07
 # Narrower intervals than this part of the spread would take a million million runs.
 NARROWEST = 1e-6
 
@@ -31,19 +32,33 @@ def expected_half_width(
     return t_quantile(bed_count - 1) * math.sqrt(variance)
 
 
-def expected_half_widths(
-    run_count: int, bed_count: int, *, correlation: float = CORRELATION
-) -> tuple[float, float] | None:
-    """Least and largest half width to expect of the return fraction, by the spreads measured; None for one bed.
+def best_runs_a_bed(bed_cost: float, correlation: float = CORRELATION) -> float:
+    """Runs on each bed that give the narrowest interval for their time, sqrt(c (1 - rho) / rho), at least 1.
 
-    Raises ValueError as `expected_half_width` does.
+    bed_cost: of a bed, c, in runs, above 0; correlation of two runs on one bed, rho: 0 gives infinity, 1 gives 1.
+    Raises ValueError for numbers that cannot be. Source: [Cochran-1977], section 10.6.
     """
-    ends = [expected_half_width(run_count, bed_count, spread=one, correlation=correlation) for one in SPREAD_RANGE]
-    return None if ends[0] is None or ends[1] is None else (ends[0], ends[1])
+    finite_number("bed_cost", bed_cost, above=0.0)
+    _check_scatter(0.0, correlation)
+    return max(math.sqrt(bed_cost * (1.0 - correlation) / correlation), 1.0) if correlation else math.inf
+
+
+def cost_over_best(runs_a_bed: float, best: float, bed_cost: float, correlation: float = CORRELATION) -> float:
+    """Time for an interval of one width with so many runs on each bed, over that with another number of them.
+
+    runs_a_bed, best, bed_cost (in runs): above 0. Student's t, which falls with more beds, is left out.
+    Raises ValueError for numbers that cannot be. Source: [Cochran-1977], section 10.6.
+    """
+    for name, value in (("runs_a_bed", runs_a_bed), ("best", best), ("bed_cost", bed_cost)):
+        finite_number(name, value, above=0.0)
+    _check_scatter(0.0, correlation)
+    # Cost of a run with its part of the bed, times variance of the mean over that of independent runs.
+    costs = [(1.0 + bed_cost / one) * (1.0 + (one - 1.0) * correlation) for one in (runs_a_bed, best)]
+    return costs[0] / costs[1]
 
 
 def runs_for_half_width(
-    half_width: float, runs_per_bed: int = 10, *, spread: float = SPREAD, correlation: float = CORRELATION
+    half_width: float, runs_per_bed: int = 20, *, spread: float = SPREAD, correlation: float = CORRELATION
 ) -> int:
     """Fewest runs, a whole number of beds of so many, whose expected half width is at most this one.
 

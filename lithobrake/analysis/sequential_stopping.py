@@ -17,7 +17,7 @@ from lithobrake.vocabulary.given_numbers import finite_number, whole_number
 # Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
 # of their scatter is rough, so no look asks for more than twice the runs.
 SMALLEST_STEP, LARGEST_STEP = 1.1, 2.0
-# Drawn runs fill their beds with so many runs each: at other counts one bed has fewer than the others.
+# Counts of runs are multiples of this.
 RUNS_A_STEP = 10
 
 

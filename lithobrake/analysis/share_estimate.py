@@ -137,6 +137,19 @@ def share_estimate(
     return ShareEstimate(share, lower, upper, LEVEL, source, next_bed, if_missing, missing, emulator, why)
 
 
+def plain_interval(shares: ArrayLike, bed: ArrayLike) -> Bounds | None:
+    """The interval of `share_estimate` of shares alone, quickly; None on one bed, or without an outcome."""
+    h = numbers_or_nan("shares", shares)
+    beds, answered, w = numbered_beds(bed, len(h)), np.isfinite(h), np.ones_like(h)
+    if len(np.unique(beds[answered])) < 2:
+        return None
+    known = _mean_of(h[answered], w[answered], beds[answered])
+    if answered.all():
+        return _interval(known, known)
+    ends = (_mean_of(np.where(answered, h, end), w, beds) for end in (0.0, 1.0))
+    return _outer(_interval(known, known), _interval(*ends))
+
+
 def standard_error(values: Array, bed: Labels) -> float:
     """Standard error of the mean of values [run_count] on beds numbered from 0, in their unit.
 

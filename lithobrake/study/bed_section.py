@@ -7,8 +7,10 @@ from pydantic import Field
 from lithobrake.study.quantity import Number, Numbers, Section, Whole
 
 Metres = Annotated[float, Number("m", above=0)]
-# Ten landings on a bed cost least for what they tell, where a bed costs some six landings; an interval needs a dozen.
-RUNS_A_BED, FEWEST_BEDS, MOST_BEDS = 10, 12, 60
+# Runs on each bed with which an interval is narrowest for the time, by what a bed costs and how alike runs on it are
+# (docs/estimates.md). An interval needs a dozen beds.
+LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
+FEWEST_BEDS, MOST_BEDS = 12, 1000
 
 
 class Constant(Section):
@@ -73,9 +75,9 @@ class BedSection(Section):
     """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
     upper) or power_law (exponent or cumulative_exponent, lower, upper): the number of grains per diameter D falls with
     D**-exponent, and that of grains larger than D with D**-cumulative_exponent, 1 less. Both are written positive."""
-    bed_count: Annotated[int, Whole("", at_least=1, at_most=1000)] | None = None
-    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "drawn", on whose
-    beds land equally many runs, a tenth of these (rounded up), at least 12 and at most 60."""
+    bed_count: Annotated[int, Whole("", at_least=1, at_most=MOST_BEDS)] | None = None
+    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "drawn", a bed for
+    every 20 landings, or for every 4 journeys (rounded up), at least 12."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
@@ -84,9 +86,9 @@ class BedSection(Section):
     """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""
 
 
-def default_bed_count(run_count: int) -> int:
-    """How many beds a drawn study has of which nothing else is said: a tenth of the runs, within limits.
+def default_bed_count(run_count: int, runs_a_bed: int) -> int:
+    """How many beds a drawn study has of which nothing else is said: by so many runs on each, within limits.
 
     Source: [Cochran-1977], section 10.6.
     """
-    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // RUNS_A_BED)))
+    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // runs_a_bed)))

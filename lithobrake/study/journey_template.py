@@ -9,9 +9,8 @@ _STUDY = """\
 title = "CubeSat on Dimorphos"
 seed = 1
 
-# The ground: boxes of settled grains that repeat in both directions. More beds narrow the intervals most.
+# The ground: boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
 [bed]
-bed_count = 12
 grain_count = 96
 width = [0.56, 0.56]                                       # m; `lithobrake plan` says the smallest
 diameter = { distribution = "constant", value = 0.09 }     # m, of the sphere of equal volume

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, PrivateAttr, model_validator
 
-from lithobrake.study.bed_section import BedSection, default_bed_count
+from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, BedSection, default_bed_count
 from lithobrake.study.design_sections import (
     DEFAULT_METHOD,
     CampaignSection,
@@ -106,7 +106,12 @@ class Study(Section):
         """How many beds are landed on."""
         if self.bed.bed_count is not None:
             return self.bed.bed_count
-        return default_bed_count(self.design.run_count) if self.design.method == "drawn" else 1
+        return default_bed_count(self.design.run_count, self.runs_a_bed) if self.design.method == "drawn" else 1
+
+    @property
+    def runs_a_bed(self) -> int:
+        """How many runs each bed of a drawn study has where its file does not say how many beds there are."""
+        return LANDINGS_A_BED if self.journey is None else JOURNEYS_A_BED
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""

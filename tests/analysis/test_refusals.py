@@ -75,7 +75,7 @@ def test_what_cannot_be_is_refused(what: str) -> None:
 
 
 def test_what_is_at_the_edge_is_taken() -> None:
-    assert analysis.runs_for_half_width(0.02, spread=0.0) == 20
+    assert analysis.runs_for_half_width(0.02, 10, spread=0.0) == 20
     assert analysis.quantile_within([1.0, 3.0], 0.5, (0.0, 1.0)) == (2.0, -INF, INF)
     # Beds of no run may have every probability.
     assert analysis.upper_limit(0) == 1.0

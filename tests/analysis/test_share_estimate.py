@@ -10,7 +10,6 @@ from scipy import stats
 from lithobrake.analysis import (
     LEVEL,
     expected_half_width,
-    expected_half_widths,
     regression_terms,
     runs_for_half_width,
     share_estimate,
@@ -213,13 +212,8 @@ def test_what_cannot_be_is_refused() -> None:
 def test_half_widths_are_foreseen() -> None:
     # STUDENT(23) at .95 is 1.7139; 240 runs on 24 beds without an effect of beds.
     assert expected_half_width(240, 24, correlation=0.0) == pytest.approx(1.7139 * 0.21 / math.sqrt(240), rel=1e-4)
-    ends = expected_half_widths(240, 24, correlation=0.0)
-    assert ends == pytest.approx((1.7139 * 0.15 / math.sqrt(240), 1.7139 * 0.21 / math.sqrt(240)), rel=1e-4)
-    assert expected_half_widths(240, 1) is None
     assert expected_half_width(240, 1) is None
-    count = runs_for_half_width(0.02)
-    # The larger spread decides: no study is promised more than it keeps.
-    assert expected_half_widths(count, count // 10)[1] <= 0.02
+    count = runs_for_half_width(0.02, 10)
     assert expected_half_width(count, count // 10) <= 0.02 < expected_half_width(count - 10, count // 10 - 1)
     widths = [share_estimate(*runs(24, 10, seed, bed_spread=0.03)) for seed in range(30)]
     spread = math.hypot(0.03, 0.1 / math.sqrt(3.0))

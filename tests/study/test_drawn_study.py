@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.bed_section import default_bed_count
+from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
 
 TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
@@ -22,7 +22,7 @@ def study(changes: dict[str, dict[str, Any]]) -> Study:
 def test_the_drawn_method_draws_what_is_left_open() -> None:
     found = study({})
     assert (found.impact.azimuth_deg, found.impact.orientation) == ("random", "random")
-    assert (found.design.run_count, found.bed_count, found.design.side_runs) == (240, 24, False)
+    assert (found.design.run_count, found.bed_count, found.design.side_runs) == (240, 12, False)
 
 
 def test_sequence_is_an_alias_of_the_drawn_method() -> None:
@@ -48,9 +48,11 @@ def test_the_papers_method_has_its_defaults_still() -> None:
     assert found.bed_count == 1
 
 
-def test_beds_are_a_tenth_of_the_runs_within_limits() -> None:
-    counts = {8: 8, 12: 12, 120: 12, 121: 13, 240: 24, 600: 60, 5000: 60}
-    assert {runs: default_bed_count(runs) for runs in counts} == counts
+def test_beds_follow_from_the_runs_within_limits() -> None:
+    landings = {8: 8, 12: 12, 240: 12, 241: 13, 600: 30, 100_000: 1000}
+    journeys = {8: 8, 48: 12, 49: 13, 240: 60, 5000: 1000}
+    assert {runs: default_bed_count(runs, LANDINGS_A_BED) for runs in landings} == landings
+    assert {runs: default_bed_count(runs, JOURNEYS_A_BED) for runs in journeys} == journeys
 
 
 REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [

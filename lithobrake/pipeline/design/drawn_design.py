@@ -4,9 +4,9 @@ One scrambled Sobol sequence gives all numbers but the bed. Run r is its point r
 runs later leave every run as it was.
 
 Bed of a run. With a bed_count that is given, runs go through all beds in blocks, once in order and then each time in
-another order. Without it beds grow with the runs: the first 120 runs go in such blocks over 12 beds, then each bed is
-new for ten runs, and from 600 runs on blocks go over all 60. So the bed of run r follows from r and the seed alone, and
-at each multiple of ten runs, from 120 to 600, all beds have ten.
+another order. Without it beds grow with the runs: of landings the first 240 go in such blocks over 12 beds, then each
+bed is new for 20, up to 1000 beds; of journeys the first 48, then each bed is new for 4. So the bed of run r follows
+from r and the seed alone, and at each multiple of so many runs all beds have equally many.
 """
 
 import math
@@ -26,7 +26,7 @@ from lithobrake.pipeline.design.local_ground import on_local_ground
 from lithobrake.pipeline.design.place_region import Interval, place_region
 from lithobrake.pipeline.design.release_draws import RELEASE
 from lithobrake.study import Study, StudyError
-from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS, RUNS_A_BED
+from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, given_attitude, medians
 
@@ -235,9 +235,9 @@ def beds_of_runs(study: Study, count: int) -> list[int]:
     """Number of the bed of each of the first `count` runs; a larger count changes none."""
     if study.bed.bed_count is not None:
         return _in_blocks(study.seed, study.bed.bed_count, count)
-    few, many = FEWEST_BEDS * RUNS_A_BED, MOST_BEDS * RUNS_A_BED
+    few, many = FEWEST_BEDS * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
     first = _in_blocks(study.seed, FEWEST_BEDS, min(count, few))
-    growing = [run // RUNS_A_BED for run in range(few, min(count, many))]
+    growing = [run // study.runs_a_bed for run in range(few, min(count, many))]
     # A bed is as new as any other, so the order in which they were filled so far says nothing.
     return first + growing + _in_blocks(study.seed, MOST_BEDS, count - many)
 

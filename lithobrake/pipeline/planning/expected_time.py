@@ -166,8 +166,13 @@ def journey_time(soil: ExpectedSoil | None, pace: float) -> Span | None:
     """Time [s] of the touchdowns of one journey in the mean; None with a program of one's own."""
     if soil is None:
         return None
-    mean = pace * RESTING_GRAIN * statistics.fmean(soil.journey_steps(*landing) for landing in soil.landings[1:])
+    mean = pace * mean_journey_time(soil)
     return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
+
+
+def mean_journey_time(soil: ExpectedSoil) -> float:
+    """Time [s] of the touchdowns of one journey in the mean, on the reference machine."""
+    return RESTING_GRAIN * statistics.fmean(soil.journey_steps(*landing) for landing in soil.landings[1:])
 
 
 def landing_time(soil: ExpectedSoil, lander: "Lander", landing: "Landing") -> float:

@@ -1,110 +1,183 @@
-"""How wide the interval of a study's answer will be: the half width to expect, and what that stands on."""
+"""How wide the interval of a study's answer will be: a range that holds nine of ten studies, and what it rests on."""
 
-import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of_design
+from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.study_warnings import expected_loss
 from lithobrake.pipeline.sequential_sampling import flown_shares
+from lithobrake.study import Study
 
-# Of a run that is all or nothing, as captured or not, at worst: half of them are.
-YES_OR_NO = 0.5
-# Fractions of landers at rest that a plan of journeys tells the width of.
-LIKELY_AT_REST = (0.95, 0.8)
+if TYPE_CHECKING:
+    from lithobrake.analysis.half_width_range import RunLaw
+
+# Fraction at rest that may be expected at least, before a study has journeys.
+LEAST_AT_REST = 0.5
+# Fractions of which the half width is told, too: at rest, and of landings that return.
+TOLD_AT_REST, TOLD_OF_RETURNS = (1.0, 0.95, 0.8, 0.5), (1.0,)
+# Of studies with randomised impact points; where it lies hardly matters for the half width.
+RETURN_FRACTION = 0.75
 # Fewer answers say nothing of how they scatter.
 FEWEST_ANSWERS = 20
 
 
 @dataclass(frozen=True)
 class ExpectedHalfWidth:
-    """Half the interval of a share over so many runs on so many beds, as a share of 1.
+    """Half the interval of the answer of a study with so many runs on so many beds; shares of 1.
 
-    at_worst           of a share for which each run is all or nothing
-    typical            of the return fraction, for which each run has a share of its own, as that of the headings that
-                       return: least and largest, by the scatter of studies with randomised impact points; of journeys
-                       the fraction at rest, of 95 and of 80 %
-    spread             standard deviation of a run in these cases
-    correlation        of two runs on one bed, in both
-    own                of `answer`, by the scatter of the study's own runs; None before enough have ended
-    own_run_count      how many these are
-    level              probability that the interval stands for
+    answer           what it is of, in words
+    lower, upper     half widths of nine in ten such studies lie between; with runs that have ended, of studies which go
+                     on as these
+    median           half of them are wider
+    by_fraction      median half width by the fraction that comes out; none with runs that have ended
+    assumed          what it rests on, in a sentence
+    own_run_count    runs with an outcome on which it rests; 0 before enough have ended
+    missing          fraction of the runs to come that are taken to have no outcome
+    level            probability that the interval stands for
     """
 
     run_count: int
     bed_count: int
-    at_worst: float
-    typical: tuple[float, float]
-    spread: tuple[float, float]
-    correlation: float
-    own: float | None
-    own_run_count: int
     answer: str
+    lower: float
+    median: float
+    upper: float
+    by_fraction: Mapping[str, float]
+    assumed: str
+    own_run_count: int
+    missing: float
     level: float
-    of: str = "return fraction"
-    measured: str = "as measured with randomised impact points"
 
     def lines(self) -> list[str]:
         """The half width in words."""
-        counts = f"{self.run_count} runs on {self.bed_count} beds"
+        counts, ends = f"{self.run_count} runs on {self.bed_count} beds", (self.lower, self.upper)
         lines = [
-            f"Expected half-width of the {100 * self.level:.0f} % interval ({counts}): {_points(*self.typical)} for "
-            f"the {self.of}, at most {_points(self.at_worst)} for any share.",
-            f"  Assumed: the standard deviation of a run is {self.spread[0]:.2g} to {self.spread[1]:.2g} "
-            f"({self.measured}), at most {YES_OR_NO:g}; the correlation of runs on one bed is "
-            f"{self.correlation:g}; every landing has an outcome.",
+            f"Expected half-width of the {100 * self.level:.0f} % interval of {self.answer} ({counts}): "
+            f"{' to '.join(map(_points, ends))} points in nine of ten such studies."
         ]
-        if self.own is not None:
-            lines.append(
-                f"  By the {self.own_run_count} runs that have ended and flown: {_points(self.own)} for {self.answer}."
-            )
-        return lines
+        if self.by_fraction:
+            told = ", ".join(f"{_points(width)} at {share}" for share, width in self.by_fraction.items())
+            lines.append(f"  By the fraction that comes out: {told}.")
+        return [*lines, f"  {self.assumed}"]
 
 
-def expected_width(design: DrawnDesign, known: Mapping[str, Record], folder: StudyFolder) -> ExpectedHalfWidth | None:
+def expected_width(
+    design: DrawnDesign, known: Mapping[str, Record], folder: StudyFolder, soil: ExpectedSoil | None = None
+) -> ExpectedHalfWidth | None:
     """What to expect of a drawn study; None for another method, and for one bed, which gives no interval.
 
-    known: runs that have ended, by key; folder: where they may have flown.
+    known: runs that have ended, by key; folder: where they may have flown; soil: its beds, where it has any.
     """
     study = design.study
     if study.design.method != "drawn" or study.bed_count == 1:
         return None
-    from lithobrake.analysis import LEVEL, expected_half_width, expected_half_widths
-    from lithobrake.analysis.half_width import CORRELATION, SPREAD_RANGE
+    from lithobrake.analysis import LEVEL
+    from lithobrake.analysis.half_width_range import AllOrNothing, half_width_range
 
-    counts = study.design.run_count, study.bed_count
-    of_journeys: dict[str, Any] = {}
-    if study.journey is not None:
-        spreads = [math.sqrt(share * (1.0 - share)) for share in LIKELY_AT_REST]
-        widths = [expected_half_width(*counts, spread=spread) or math.inf for spread in spreads]
-        words = "that of fractions of 95 and of 80 %"
-        of_journeys = {"typical": tuple(widths), "spread": tuple(spreads), "of": "fraction at rest", "measured": words}
-    values, bed = answers_of_design(design, known, flown_shares(study, folder))
-    of_landings = {"typical": expected_half_widths(*counts) or (np.inf, np.inf), "spread": SPREAD_RANGE}
+    values, bed = answers_of(design.keys, known, flown_shares(study, folder))
+    own = int(np.isfinite(values).sum())
+    own = own if own >= FEWEST_ANSWERS and len(np.unique(bed)) > 1 else 0
+    law, words = law_of_runs(values, bed) if own else law_before(study)
+    missing = _missing(study, soil, values)
+    there, to_come = _runs(design, values, bed)
+
+    foreseen = partial(
+        half_width_range, bed=to_come, values=there[0], values_bed=there[1], correlation=expected_correlation(study)
+    )
+    found = foreseen(law, missing=missing)
+    if found is None:
+        return None
+    told = () if own else TOLD_OF_RETURNS if study.journey is None else TOLD_AT_REST
+    widths = {f"{100 * share:.0f} %": foreseen(AllOrNothing(share, share)) for share in told}
+    lost = f"; {100 * missing:.2g} % of the landings have no outcome" if missing else ""
     return ExpectedHalfWidth(
-        *counts,
-        **(of_landings | of_journeys),
-        at_worst=expected_half_width(*counts, spread=YES_OR_NO) or np.inf,
-        correlation=CORRELATION,
-        own=_own(values, bed, counts),
-        own_run_count=int(np.isfinite(values).sum()),
+        run_count=study.design.run_count,
+        bed_count=study.bed_count,
         answer=answer_words(study),
+        lower=found.lower,
+        median=found.median,
+        upper=found.upper,
+        by_fraction={share: width.median for share, width in widths.items() if width},
+        assumed=f"{words}{lost}.",
+        own_run_count=own,
+        missing=missing,
         level=LEVEL,
     )
 
 
-def _own(values: np.ndarray, bed: np.ndarray, counts: tuple[int, int]) -> float | None:
-    from lithobrake.analysis import expected_half_width, scatter_of
+def expected_correlation(study: Study) -> float:
+    """Correlation of two runs on one bed to expect before a study has runs."""
+    from lithobrake.analysis.half_width import CORRELATION, JOURNEY_CORRELATION
 
-    if np.isfinite(values).sum() < FEWEST_ANSWERS or (scatter := scatter_of(values, bed)) is None:
-        return None
-    return expected_half_width(*counts, spread=scatter[0], correlation=scatter[1])
+    return CORRELATION if study.journey is None else JOURNEY_CORRELATION
 
 
-def _points(*shares: float) -> str:
-    return f"+- {' to '.join(f'{100 * share:.2g}' for share in shares)} points"
+def law_before(study: Study) -> "tuple[RunLaw, str]":
+    """What is taken of a run before enough have ended, in words too, but for the full stop."""
+    from lithobrake.analysis.half_width import SPREAD_RANGE
+    from lithobrake.analysis.half_width_range import AllOrNothing, Shares
+
+    beds = f"the correlation of two on one bed is {expected_correlation(study):g} in the mean, as in studies so far"
+    if study.journey is not None:
+        law = AllOrNothing(1.0, LEAST_AT_REST)
+        return (
+            law,
+            f"Assumed: {100 * LEAST_AT_REST:.0f} to 100 % of the landers come to rest, most likely nearly all; {beds}",
+        )
+    if study.design.half_width_of is not None:
+        return AllOrNothing(0.0, 1.0), f"Assumed: a landing meets it or not, with any probability; {beds}"
+    low, high = SPREAD_RANGE
+    return Shares(RETURN_FRACTION, low, high), (
+        f"Assumed: some landings return and some do not, with a standard deviation of {low:g} to {high:g} of the share "
+        f"of flights that do; {beds}"
+    )
+
+
+def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
+    """The same by the runs that have ended."""
+    from lithobrake.analysis import scatter_of
+    from lithobrake.analysis.confidence import answered_runs
+    from lithobrake.analysis.half_width_range import LikeRuns
+
+    known, beds = answered_runs(values, bed)
+    scatter = scatter_of(values, bed)
+    shown = (
+        "all alike"
+        if scatter is None
+        else (f"standard deviation {scatter[0]:.2g}, correlation of two on one bed {scatter[1]:.2g}")
+    )
+    return LikeRuns(known, beds), f"By the {len(known)} runs that have ended: mean {known.mean():.2g}, {shown}"
+
+
+def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> float:
+    """Fraction of the runs to come that will have no outcome: that of those that have ended, else as foreseen."""
+    if study.journey is not None:
+        return 0.0
+    if len(values) >= FEWEST_ANSWERS:
+        return float(np.mean(~np.isfinite(values)))
+    if soil is None or soil.recipe.period is not None:
+        return 0.0
+    return expected_loss(soil.landings[1:], min(soil.recipe.width))
+
+
+def _runs(design: DrawnDesign, values: np.ndarray, bed: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Answers and beds of the runs that there are, and beds of those to come; landers that never touch down are 0."""
+    of_all, aloft = np.array(design.beds, dtype=float), np.empty(0)
+    if design.descents is not None:
+        aloft = of_all[~design.descents.touches_down]
+    there = np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
+    left = Counter(of_all.tolist()) - Counter(there[1].tolist())
+    return there, np.array(list(left.elements()))
+
+
+def _points(share: float) -> str:
+    return f"{100 * share:.2g}"

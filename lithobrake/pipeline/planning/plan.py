@@ -9,6 +9,7 @@ from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedGrains, PlannedTile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.runs_a_bed import RunsABed
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,7 @@ class Plan:
     bytes           of all files when finished, by what they hold
     free_bytes      where the folder is
     warnings        in sentences, the most important first
+    runs_a_bed      of a drawn study, beside the number that is best for the time; None for others
     grains          of the beds; None where all have one size
     tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
@@ -51,6 +53,7 @@ class Plan:
     free_bytes: int
     warnings: tuple[str, ...]
     site_slope_deg: float
+    runs_a_bed: RunsABed | None = None
     grains: PlannedGrains | None = None
     tile: PlannedTile | None = None
     delivery: str | None = None

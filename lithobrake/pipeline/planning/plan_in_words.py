@@ -22,6 +22,7 @@ def plan_lines(plan: Plan) -> list[str]:
     else:
         lines += [f"To make: {_made(plan)}."]
         lines += [f"Beds: {_beds(plan)}."] if plan.beds[0].total else []
+        lines += [plan.runs_a_bed.line()] if plan.runs_a_bed else []
         lines += [f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]

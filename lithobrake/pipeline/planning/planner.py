@@ -21,6 +21,7 @@ from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds, planned_grains, planned_tile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
+from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
@@ -90,7 +91,7 @@ def plan_of(
         made=made,
         beds=beds,
         runs=runs,
-        half_width=expected_width(design, known, folder),
+        half_width=expected_width(design, known, folder, soil),
         process_count=workers,
         seconds=expected_seconds(site, made, soil, ended, workers) if stale else {},
         basis=basis(made, soil, ended),
@@ -98,6 +99,7 @@ def plan_of(
         free_bytes=free,
         warnings=(*room, *study_warnings(design, site, soil)),
         site_slope_deg=site.slope_deg,
+        runs_a_bed=runs_a_bed(study, soil),
         grains=planned_grains(study),
         tile=planned_tile(study),
         delivery=_delivery(design),

@@ -13,7 +13,7 @@ from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchd
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.place_region import place_region, smallest_width
 from lithobrake.study import Study, check_tables
-from lithobrake.study.bed_section import default_bed_count
+from lithobrake.study.bed_section import LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
 
@@ -58,16 +58,17 @@ def test_beds_that_are_given_have_equally_many_runs(beds: int) -> None:
         assert max(counts.values()) - min(counts.values()) <= 1
 
 
-def test_beds_that_grow_with_the_runs_are_all_used_and_full_at_each_ten() -> None:
+def test_beds_that_grow_with_the_runs_are_all_used_and_full_at_each_twenty() -> None:
+    study = drawn(240)
     for run_count in range(2, 800):
-        counts = Counter(beds_of_runs(drawn(240), run_count))
-        assert set(counts) == set(range(default_bed_count(run_count)))
+        counts = Counter(beds_of_runs(study, run_count))
+        assert set(counts) == set(range(default_bed_count(run_count, LANDINGS_A_BED)))
         # The newest bed fills next, and only where one has yet to be filled are the others ahead of it.
         *filled, newest = (counts[bed] for bed in range(len(counts)))
         assert max(filled) - min(filled) <= 1
-        assert newest <= max(filled)
-        if run_count % 10 == 0 and 120 <= run_count <= 600:
-            assert set(counts.values()) == {10}
+        assert newest <= max(filled) or max(counts.values()) - min(counts.values()) <= 1
+        if run_count % LANDINGS_A_BED == 0 and run_count >= 12 * LANDINGS_A_BED:
+            assert set(counts.values()) == {LANDINGS_A_BED}
 
 
 def test_blocks_of_beds_have_an_order_of_their_own_that_the_seed_decides() -> None:
