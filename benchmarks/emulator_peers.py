@@ -1,0 +1,161 @@
+"""How near emulators come to laws that are known: `lithobrake.emulator.fit` beside what else one would take.
+
+    python benchmarks/emulator_peers.py [--cases ..] [--methods ..] [--runs 150 300] [--seeds 5] [--sir SIR2d.mat]
+
+fits each method to runs of each case of benchmarks/emulator_truths.py, and adds a row to
+benchmarks/results/emulator_peers.csv: the energy distance of its law from the truth at 60 points that were not run,
+over that of drawing one of the runs (200 draws each, without the bias of so few), or, of the published cases, the mean
+over 200 points of W2**2 between the laws over the variance of the output (4000 draws, 1000 levels). `capture` is the
+root mean square error of the chance of capture. SIR: the runs and the 100 validation points of UQLab's StochasticSIR.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from emulator_rivals import RIVALS
+from emulator_truths import PUBLISHED, TRUTHS, Case
+from harness import RESULTS, Row, add_row, command_line, timed, write_made
+
+from lithobrake import emulator
+from lithobrake.chaos import Uniform, latin_hypercube
+
+TABLE = RESULTS / "emulator_peers.csv"
+OWN, EXPANSION, ANY_RUN = "fit", "expansion", "any run"
+LEVELS = (np.arange(1000) + 0.5) / 1000
+SIR = "SIR"
+# Laws of outputs are compared where at least a tenth of the runs has some.
+MOST_CAPTURED = 0.9
+PUBLISHED_RUNS = {"bimodal": (400, 800, 1600), "brownian": (500, 1000), SIR: (500,)}
+
+
+def energy_distance(first: np.ndarray, second: np.ndarray) -> float:
+    """Energy distance of two samples [count, output_count], without bias."""
+
+    def within(one: np.ndarray) -> float:
+        return float(np.linalg.norm(one[:, None] - one, axis=2).sum() / (len(one) * (len(one) - 1)))
+
+    between = float(np.linalg.norm(first[:, None] - second, axis=2).mean())
+    return between - 0.5 * within(first) - 0.5 * within(second)
+
+
+def w2_error(draws: np.ndarray, truth: np.ndarray) -> float:
+    """Mean over points of W2**2 over the variance of the output; [point_count, draw_count] each."""
+    gaps = np.quantile(draws, LEVELS, axis=1) - np.quantile(truth, LEVELS, axis=1)
+    return float(np.mean(gaps**2) / truth.var())
+
+
+def with_outputs(draws: np.ndarray, count: int) -> np.ndarray:
+    """So many draws that have outputs at each point, again from the first where there are fewer."""
+    there = [one[~np.isnan(one[:, 0])] for one in draws]
+    return np.stack([one[np.arange(count) % max(len(one), 1)] for one in there])
+
+
+def any_run(x: np.ndarray, y: np.ndarray, points: np.ndarray, count: int) -> np.ndarray:
+    """One of the runs, whatever the inputs."""
+    return y[np.random.default_rng(11).integers(len(y), size=(len(points), count))]
+
+
+def drawn(method: str, case: Case, study: tuple, points: np.ndarray, count: int) -> tuple[np.ndarray, float, float]:
+    """Draws of a method [point_count, count, output_count], CPU time of its fit [s], and its error of captures."""
+    x, y, group = study
+    there, capture = ~np.isnan(y[:, 0]), float("nan")
+    if method == OWN:
+        model, cpu = timed(lambda: emulator.fit(case.inputs, x, y, groups=group, lower=case.lower))
+        if case.capture is not None:
+            everywhere = latin_hypercube(case.inputs, 500, seed=992)
+            chances = 1.0 - model.outcome_probability(everywhere)[:, model.runs.output_outcome]
+            capture = float(np.sqrt(np.mean((chances - case.capture(everywhere)) ** 2)))
+            return with_outputs(model.sample(points, 20 * count), count), cpu, capture
+        return model.sample(points, count), cpu, capture
+    if method == EXPANSION:
+        law, cpu = timed(
+            lambda: emulator.fit_stochastic_expansion(case.inputs, x, y[:, 0], groups=group, lower=case.lower)
+        )
+        return law.sample(points, count)[:, :, None], cpu, capture
+    if method == ANY_RUN:
+        share = float(np.mean(~there))
+        if case.capture is not None:
+            chances = case.capture(latin_hypercube(case.inputs, 500, seed=992))
+            capture = float(np.sqrt(np.mean((share - chances) ** 2)))
+        return any_run(x[there], y[there], points, count), 0.0, capture
+    sample, cpu = timed(lambda: RIVALS[method](x[there], y[there], group[there]))
+    return sample(points, count, np.random.default_rng(13)), cpu, capture
+
+
+def truth_row(name: str, case: Case, method: str, runs: int, seed: int) -> Row:
+    """Energy distance of one fit over that of drawing rows."""
+    points, study = latin_hypercube(case.inputs, 60, seed=991), case.study(runs, seed)
+    if case.capture is not None:
+        points = points[case.capture(points) < MOST_CAPTURED]
+    truth = case.conditional(points, 200, seed)
+    draws, cpu, capture = drawn(method, case, study, points, 200)
+    x, y, _ = study
+    there = ~np.isnan(y[:, 0])
+    rows = any_run(x[there], y[there], points, 200)
+    unit = y[there].std(axis=0)
+    own, of_rows = (
+        np.mean([energy_distance(a / unit, b / unit) for a, b in zip(one, truth, strict=True)]) for one in (draws, rows)
+    )
+    return _row(name, method, runs, seed, float(own / of_rows), cpu, capture)
+
+
+def published_row(name: str, case: Case, method: str, runs: int, seed: int) -> Row:
+    """W2 error of one fit."""
+    points = latin_hypercube(case.inputs, 200, seed=999)
+    truth = case.conditional(points, 4000, 5)[:, :, 0]
+    draws, cpu, _ = drawn(method, case, case.study(runs, seed), points, 4000)
+    return _row(name, method, runs, seed, w2_error(draws[:, :, 0], truth), cpu)
+
+
+def sir_row(path: Path, method: str, lower: float) -> Row:
+    """W2 error on the runs of the stochastic SIR model of a file."""
+    from scipy.io import loadmat
+
+    data = loadmat(path)
+    inputs = {"susceptible": Uniform(1200.0, 1800.0), "infected": Uniform(20.0, 200.0)}
+    y, truth = data["Ytrain"].reshape(-1, 1), data["Yval"][:, 0, :]
+    case = Case(inputs, lambda x, random: np.empty(0), lower=lower)
+    study = data["Xtrain"], y, np.arange(len(y))
+    draws, cpu, _ = drawn(method, case, study, data["Xval"], 4000)
+    return _row(SIR if np.isinf(lower) else f"{SIR}, lower=0", method, len(y), 0, w2_error(draws[:, :, 0], truth), cpu)
+
+
+def _row(
+    name: str, method: str, runs: int, seed: int, error: float, cpu: float, capture: float = float("nan")
+) -> Row:
+    return {
+        "case": name, "method": method, "runs": runs, "seed": seed, "error": error, "capture": capture, "fit_cpu_s": cpu
+    }  # fmt: skip
+
+
+def all_rows(cases: list[str], methods: list[str], runs: list[int], seeds: int, sir: Path) -> Iterator[Row]:
+    """Fit everything to everything, one after the other."""
+    for name in cases:
+        for method in methods:
+            if name == SIR:
+                yield from (sir_row(sir, method, lower) for lower in (-np.inf, 0.0))
+                continue
+            case, counts = (PUBLISHED | TRUTHS)[name], PUBLISHED_RUNS.get(name, runs)
+            if method == EXPANSION and name not in PUBLISHED:
+                continue
+            for count in counts:
+                made = published_row if name in PUBLISHED else truth_row
+                yield from (made(name, case, method, count, seed) for seed in range(seeds))
+
+
+def main() -> None:
+    """Make all rows, writing each as it comes."""
+    everything = [ANY_RUN, OWN, EXPANSION, *RIVALS]
+    options = command_line(
+        __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE
+    ).parse_args()
+    cases = [*options.cases, *([SIR] if options.sir.is_file() and SIR not in options.cases else [])]
+    options.out.unlink(missing_ok=True)
+    for row in all_rows(cases, options.methods, options.runs, options.seeds, options.sir):
+        add_row(options.out, row, 4)
+    write_made(options.out, f"benchmarks/emulator_peers.py --seeds {options.seeds} --sir SIR2d.mat")
+
+
+if __name__ == "__main__":
+    main()
