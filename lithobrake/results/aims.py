@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from lithobrake.results.shares import Estimate, ShareInterval
+from lithobrake.study.question_sections import SIDE
 
 
 @dataclass(frozen=True)
@@ -78,3 +79,9 @@ class AimResults:
     best_on_hard: BestAim | None
     statement: str
     """the best option and how sure it is, in sentences"""
+    sides: tuple[str, ...] = ()
+    """with aim.sides: the sides to choose from in words, of which the values of that name are places"""
+
+    def value_words(self, name: str, value: float) -> str:
+        """A value of a name in words; a side by its name."""
+        return self.sides[int(value)].partition(",")[0] if name == SIDE else f"{value:g}"

@@ -1,14 +1,14 @@
 """What is wrong with the aims that a study is to choose from, found before anything runs."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from lithobrake.study.journey_sections import arrival_key
+from lithobrake.study.lander_sides import directions_of_sides
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.question_sections import AimLimit, aim_results
 from lithobrake.study.study import Study
-from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.plain_text import closest, show
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
@@ -20,7 +20,8 @@ NEEDED = ("impact.speed", "impact.incidence_deg")
 def aim_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong with the table [aim]; none where the study has no grid."""
     grid = study.aim.grid
-    if not grid:
+    yield from _side_problems(study)
+    if not study.aim.names:
         if study.aim.within:
             yield "aim.within is given without aim.grid; say there between which values there is to choose"
         return
@@ -39,11 +40,11 @@ def aim_problems(study: Study) -> Iterator[str]:
             "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
             "of the two out"
         )
-    count = math.prod(len(values) for values in grid.values())
-    if len(grid) > MOST_AXES or count > MOST_AIMS:
+    axes, count = len(study.aim.names), len(study.aim.aims())
+    if axes > MOST_AXES or count > MOST_AIMS:
         yield (
-            f"aim.grid has {len(grid)} names and {count} aims; allowed: at most {MOST_AXES} and {MOST_AIMS}; leave "
-            "some values out"
+            f"aim.grid has {axes} names, with aim.sides, and {count} aims; allowed: at most {MOST_AXES} and "
+            f"{MOST_AIMS}; leave some values out"
         )
     yield from _value_problems(study, grid, inputs)
     yield from _limit_problems(study)
@@ -68,6 +69,20 @@ def _value_problems(
                 f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
                 "runs reach over; leave others out, or widen its distribution"
             )
+
+
+def _side_problems(study: Study) -> Iterator[str]:
+    """Sides that the lander does not have, or cannot be aimed with."""
+    sides, known = study.aim.sides, tuple(directions_of_sides(study.lander))
+    if not sides:
+        return
+    if study.journey is None:
+        yield "aim.sides goes with [journey], which the study does not have; add it, or leave the sides out"
+    if len(known) < 2:
+        yield f"aim.sides is {show(sides)}, and all sides of the lander are alike; leave it out"
+    elif not set(sides) <= set(known) or len(set(sides)) < len(sides):
+        named = ", ".join(f'"{name}"' for name in known)
+        yield f"aim.sides is {show(sides)}; allowed: some of {named}, each once; write them so"
 
 
 def _limit_problems(study: Study) -> Iterator[str]:

@@ -13,6 +13,8 @@ from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus
 
 # What comes of an aim, and may be limited as the aim itself is.
 SETTLED, AT_REST = JourneyStatus.SETTLED.value, JourneyEnd.AT_REST.value
+# The side that faces the ground, among the names of what is chosen.
+SIDE = "aim.sides"
 AIM_RESULTS = ("missing", "distance_p95", "time_p95")
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 
@@ -57,6 +59,10 @@ class AimSection(Section):
     """What is chosen, by dotted key, and the values to try, ascending: one to three uncertain numbers of [impact], or
     latitude_deg, longitude_deg, heading_deg of [site], with [journey] all of them as keys of [delivery]; all their
     combinations are aims. Everything else is drawn."""
+    sides: list[str] = Field(default=[])
+    """The side of the lander that faces the ground at the first touchdown, to choose from beside the grid; turned about
+    the vertical at random, without a pointing error. Of a box by its axes, "z", and "x or y" where edges are alike; of
+    a mesh "+x" to "-z". With [journey] only."""
     within: list[str] = Field(default=[])
     """What the best aim must keep, as in "incidence_deg < 45": a name of the grid without its table, or settled
     (with [journey] at_rest), missing (shares), distance_p95 [m], time_p95 [s]; compared with a number by <, <=, > or
@@ -65,10 +71,14 @@ class AimSection(Section):
     """Landers at each aim for each of the 50 fits of the emulator to beds drawn anew."""
 
     def aims(self) -> list[dict[str, float]]:
-        """All aims, the last name of the grid running fastest."""
-        if not self.grid:
-            return []
-        return [dict(zip(self.grid, values, strict=True)) for values in product(*self.grid.values())]
+        """All aims, the last of the names running fastest; a side by its place among `sides`."""
+        columns = [*self.grid.values(), *([list(map(float, range(len(self.sides))))] if self.sides else [])]
+        return [dict(zip(self.names, values, strict=True)) for values in product(*columns)] if columns else []
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is chosen, by dotted key."""
+        return (*self.grid, *([SIDE] if self.sides else []))
 
 
 @dataclass(frozen=True)

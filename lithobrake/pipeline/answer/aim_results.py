@@ -15,7 +15,8 @@ from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.results.shares import Estimate, ShareInterval
 from lithobrake.study import Study
-from lithobrake.study.question_sections import AT_REST, SETTLED, AimLimit
+from lithobrake.study.lander_sides import side_words
+from lithobrake.study.question_sections import AT_REST, SETTLED, SIDE, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import percent, with_interval
@@ -49,9 +50,9 @@ class Landers:
 
 def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults | None:
     """The results of every aim of a study on both grounds, and the best; None where it has no aims."""
-    if not study.aim.grid:
+    if not study.aim.names:
         return None
-    aims, units = study.aim.aims(), input_units()
+    aims, units = study.aim.aims(), {SIDE: "", **input_units()}
     limits = [limit for limit in map(AimLimit.of, study.aim.within) if limit]
     soil = _landers(folder, "soil", len(aims))
     on_soil, best_on_soil = _on_ground(soil, aims, limits, fitted, "soil")
@@ -60,8 +61,8 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
     if study.journey is None:
         on_hard, best_on_hard = _on_ground(_landers(folder, "hard", len(aims)), aims, limits, fitted, "hard")
     results = AimResults(
-        names=tuple(study.aim.grid),
-        units=tuple(units[name].removeprefix(PURE) for name in study.aim.grid),
+        names=study.aim.names,
+        units=tuple(units[name].removeprefix(PURE) for name in study.aim.names),
         within=tuple(study.aim.within),
         lander_count=soil.status.shape[1],
         refit_count=REFIT_COUNT,
@@ -74,6 +75,7 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
         best_on_soil=best_on_soil,
         best_on_hard=best_on_hard,
         statement="",
+        sides=tuple(side_words(study.lander, side) for side in study.aim.sides),
     )
     return replace(results, statement=aim_statement(results))
 
@@ -213,5 +215,5 @@ def _rivals(table: AimResults, best: int) -> str:
 
 def _words(table: AimResults, place: int) -> str:
     """An option in words."""
-    values = table.aims[place].values
-    return ", ".join(f"{name} = {value:g}" for name, value in zip(table.names, values, strict=True))
+    option = zip(table.names, table.aims[place].values, strict=True)
+    return ", ".join(f"{name} = {table.value_words(name, value)}" for name, value in option)

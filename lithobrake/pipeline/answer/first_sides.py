@@ -8,11 +8,12 @@ from lithobrake.analysis import quantile_estimate, share_estimate
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.design.drawn_design import AZIMUTH
-from lithobrake.pipeline.design.lander_attitude import seen, side_words, sides_down
+from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.journey_results import EndShare, RestQuantile
 from lithobrake.results.side_results import SideResults
 from lithobrake.study import Study
+from lithobrake.study.lander_sides import side_words, sides_down
 from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
@@ -31,7 +32,7 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
         own = side == name
         share = share_estimate(returns[own], bed[own], why=why)
         found[name] = SideResults(
-            words=side_words(study, name),
+            words=side_words(study.lander, name),
             landings=int(own.sum()),
             speed_ratio=_median(ratio[own], bed[own], why),
             returns=EndShare(int((returns[own] == 1.0).sum()), share.share, share.lower, share.upper, share.why),
@@ -61,7 +62,7 @@ def _sides(study: Study, runs: DesignRuns) -> np.ndarray:
     """The side that faces the ground at each touchdown [run_count]; "" where attitudes are not told."""
     if not {*ORIENTATION, AZIMUTH} <= runs.inputs.keys():
         return np.full(runs.run_count, "")
-    return sides_down(study, seen(runs.inputs)[0])
+    return sides_down(study.lander, seen(runs.inputs)[0])
 
 
 def _named(side: np.ndarray) -> list[str]:

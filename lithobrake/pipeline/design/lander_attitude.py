@@ -1,18 +1,16 @@
-"""The attitude of a study's lander at its touchdowns: terms that its symmetry leaves, and the side that is down."""
+"""The attitude of a study's lander at its touchdowns: terms that its symmetry leaves, and attitudes by a side."""
 
-import math
 from collections.abc import Mapping
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.attitude_terms import ALIKE, AttitudeTerms, orthonormal, seen_from_lander
+from lithobrake.geometry.attitude_terms import AttitudeTerms, orthonormal, seen_from_lander
 from lithobrake.pipeline.design.drawn_design import AZIMUTH, DrawnDesign
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import ORIENTATION, lander, medians
 from lithobrake.vocabulary.arrays import Array
 
-# Sides of a lander, by its own axes.
-SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
 # Names of the terms among the inputs of a touchdown.
 PREFIX = "attitude."
 
@@ -65,45 +63,17 @@ def independent_terms(design: DrawnDesign, inputs: Mapping[str, np.ndarray]) -> 
     return independent if independent.shape[1] else None
 
 
-def sides_down(study: Study, normal: Array) -> np.ndarray:
-    """Which side of the lander faces the ground most, [count]; "" for a ball. normal: seen from the lander [count, 3].
+def with_side_down(down: Array, azimuth_deg: Array, turn: Array) -> Array:
+    """Attitudes as quaternions w, x, y, z [count, 4] that turn a direction of the lander [count, 3] straight down.
 
-    Of a box by the axis that stands most upright, "z", or by those whose edges are alike, "x or y"; of a mesh one of
-    "+x" to "-z", by its own axes.
+    azimuth_deg: of the travel in the bed; turn: about the vertical, a uniform number of each, [count].
     """
-    section, axis = study.lander, np.abs(normal).argmax(axis=1)
-    if section.edges is not None:
-        words = np.array([_alike(section.edges, one) for one in range(3)])
-        found: np.ndarray = words[axis]
-        return found
-    if section.shape == "sphere":
-        return np.full(len(normal), "")
-    upward = np.take_along_axis(normal, axis[:, None], axis=1)[:, 0] > 0.0
-    sides: np.ndarray = np.array(SIDES)[2 * axis + upward]
-    return sides
-
-
-def directions_of_sides(study: Study) -> dict[str, list[list[float]]]:
-    """The sides of the lander, named as by `sides_down`, each with the directions of it that may face the ground."""
-    downs = [sign * axis for axis in np.eye(3) for sign in (1.0, -1.0)]
-    names = sides_down(study, -np.array(downs)).tolist()
-    found: dict[str, list[list[float]]] = {name: [] for name in dict.fromkeys(names) if name}
-    for name, down in zip(names, downs, strict=True):
-        if name:
-            found[name].append(down.tolist())
-    return found
-
-
-def side_words(study: Study, side: str) -> str:
-    """A side in words: of a box with the lengths of its face [m]."""
-    edges = study.lander.edges
-    if edges is None:
-        return side
-    first, second = (length for axis, length in enumerate(edges) if axis != "xyz".index(side[0]))
-    return f"{side}, {first:g} m x {second:g} m"
-
-
-def _alike(edges: tuple[float, float, float], axis: int) -> str:
-    """The axes of a box whose faces are like those of one."""
-    names = [name for name, edge in zip("xyz", edges, strict=True) if math.isclose(edge, edges[axis], rel_tol=ALIKE)]
-    return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+    least = np.eye(3)[np.abs(down).argmin(axis=1)]
+    east = np.cross(down, least)
+    east /= np.linalg.norm(east, axis=1, keepdims=True)
+    angle = 2.0 * np.pi * turn[:, None]
+    travel = np.cos(angle) * east + np.sin(angle) * np.cross(down, east)
+    into_frame = np.stack([travel, np.cross(-down, travel), -down], axis=1)
+    turned = Rotation.from_euler("z", azimuth_deg[:, None], degrees=True) * Rotation.from_matrix(into_frame)
+    quaternions: Array = np.roll(turned.as_quat(), 1, axis=1)
+    return quaternions

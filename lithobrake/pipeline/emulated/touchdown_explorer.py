@@ -6,7 +6,7 @@ import numpy as np
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.attitude_terms import AttitudeTerms
-from lithobrake.pipeline.design.lander_attitude import PREFIX, directions_of_sides, side_words
+from lithobrake.pipeline.design.lander_attitude import PREFIX
 from lithobrake.pipeline.emulate.explorer_tables import save_explorer, tables_of_refits
 from lithobrake.pipeline.emulated.arrivals import SPIN
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator
@@ -15,6 +15,7 @@ from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.study import Study
+from lithobrake.study.lander_sides import directions_of_sides, side_words
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 FILE = "touchdown_explorer.h5"
@@ -40,7 +41,7 @@ def _attitude(study: Study, terms: AttitudeTerms | None) -> ExplorerAttitude | N
     if terms is None:
         return None
     names = tuple(f"{PREFIX}{name}" for name in terms.ranges)
-    sides = {side_words(study, side): downs for side, downs in directions_of_sides(study).items()}
+    sides = {side_words(study.lander, side): downs for side, downs in directions_of_sides(study.lander).items()}
     return ExplorerAttitude(names, terms.axes.tolist(), terms.has_sides, terms.is_cube, sides)
 
 

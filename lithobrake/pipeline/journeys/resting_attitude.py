@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.pipeline.design.lander_attitude import SIDES
+from lithobrake.study.lander_sides import SIDES
 
 
 def side_down(attitude: Rotation, acceleration: np.ndarray) -> tuple[str, float]:

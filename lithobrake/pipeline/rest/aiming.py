@@ -26,7 +26,7 @@ SITE = "site."
 
 def aim_files(study: Study) -> list[str]:
     """What the stage writes: nothing where the study has no aims to choose from."""
-    return [FILE] if study.aim.grid else []
+    return [FILE] if study.aim.names else []
 
 
 def aim_dependencies(study: Study) -> dict[str, Any]:

@@ -88,9 +88,11 @@ def aim_figure(table: AimResults) -> Figure:
             cells = _Cells(places[shown, 0], places[shown, 1], across, up)
             drawn = _draw(axes, cells, [read[one] for one in shown], scale)
             _mark(axes, cells, table, shown, row.ground)
-            third = f"{labels[2].partition(' [')[0]} = {panel:g}" if len(labels) > 2 and number == 0 else ""
+            third = ""
+            if len(labels) > 2 and number == 0:
+                third = f"{labels[2].partition(' [')[0]} = {table.value_words(table.names[2], panel)}"
             axes.set_title("\n".join(filter(None, [third, row.title if column == 0 else ""])))
-            _label(axes, cells, labels, is_last=number == len(rows) - 1, is_first=column == 0)
+            _label(axes, cells, table, labels, is_last=number == len(rows) - 1, is_first=column == 0)
         bar = figure.colorbar(drawn, cax=figure.add_axes(layout.bar(number)))
         bar.ax.tick_params(labelsize=7.5)
         outline: Any = bar.outline
@@ -190,14 +192,19 @@ def _mark(axes: Axes, cells: _Cells, table: AimResults, shown: NDArray[np.int64]
             axes.add_patch(frame)
 
 
-def _label(axes: Axes, cells: _Cells, labels: Sequence[str], *, is_last: bool, is_first: bool) -> None:
+def _label(
+    axes: Axes, cells: _Cells, table: AimResults, labels: Sequence[str], *, is_last: bool, is_first: bool
+) -> None:
     """Write the values along the axes, and their names where a row or column of maps ends."""
     for side in axes.spines.values():
         side.set_visible(False)
     axes.tick_params(length=0)
-    axes.set_xticks(range(len(cells.across)), [f"{one:.3g}" for one in cells.across] if is_last else [])
     is_shown = is_first and len(labels) > 1
-    axes.set_yticks(range(len(cells.up)), [f"{one:.3g}" for one in cells.up] if is_shown else [])
+    for axis, values, name, has_words in (
+        (axes.xaxis, cells.across, table.names[0], is_last),
+        (axes.yaxis, cells.up, table.names[min(1, len(labels) - 1)], is_shown),
+    ):
+        axis.set_ticks(range(len(values)), [table.value_words(name, one) for one in values] if has_words else [])
     if is_last:
         axes.set_xlabel(labels[0])
     if is_shown:

@@ -8,8 +8,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, side_words, sides_down
+from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.study import Study, check_tables
+from lithobrake.study.lander_sides import directions_of_sides, side_words, sides_down
 from lithobrake.study.touchdown_model import ORIENTATION
 
 from ..journeys.soil_journeys import STUDY
@@ -58,8 +59,21 @@ def test_one_attitude_has_no_terms_and_a_pointed_one_has_those_of_its_cone() -> 
 
 def test_the_side_is_that_of_the_axis_nearest_to_the_normal() -> None:
     normal = np.array([[0.9, 0.3, -0.3], [-0.2, 0.8, 0.5], [0.1, 0.2, -0.9]])
-    assert sides_down(BOX, normal).tolist() == ["x", "y", "z"]
-    assert sides_down(PRISM, normal).tolist() == ["x or z", "y", "x or z"]
-    assert sides_down(BALL, normal).tolist() == ["", "", ""]
-    assert side_words(BOX, "z") == "z, 0.12 m x 0.1 m"
-    assert side_words(PRISM, "x or z") == "x or z, 0.14 m x 0.08 m"
+    assert sides_down(BOX.lander, normal).tolist() == ["x", "y", "z"]
+    assert sides_down(PRISM.lander, normal).tolist() == ["x or z", "y", "x or z"]
+    assert sides_down(BALL.lander, normal).tolist() == ["", "", ""]
+    assert side_words(BOX.lander, "z") == "z, 0.12 m x 0.1 m"
+    assert side_words(PRISM.lander, "x or z") == "x or z, 0.14 m x 0.08 m"
+
+
+@pytest.mark.parametrize("study", [BOX, PRISM])
+def test_a_chosen_side_is_down_whatever_the_azimuth(study: Study) -> None:
+    random = np.random.default_rng(2)
+    for side, downs in directions_of_sides(study.lander).items():
+        down, azimuth = np.array(downs)[random.integers(len(downs), size=40)], 360.0 * random.random(40)
+        turned = with_side_down(down, azimuth, random.random(40))
+        normal, travel = seen(dict(zip(ORIENTATION, turned.T, strict=True)) | {"impact.azimuth_deg": azimuth})
+        assert normal == pytest.approx(-down, abs=1e-12)
+        assert set(sides_down(study.lander, normal)) == {side}
+        # It comes from all sides.
+        assert np.linalg.norm(travel.mean(axis=0)) < 0.35

@@ -12,13 +12,19 @@ import lithobrake
 from lithobrake.campaign import read_records
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import served_models
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.emulated.delivery_options import option_arrivals
 from lithobrake.pipeline.emulated.emulated_journeys import COPIES, MOST_LANDINGS
+from lithobrake.pipeline.site import Site
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
 from lithobrake.results.emulated_results import EmulatedJourneys
 from lithobrake.study import StudyError
+from lithobrake.study.lander_sides import sides_down
 from lithobrake.study.reader import check_tables
+from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from ..journeys.bouncing_lander import TABLES, bounce, journey_tables
@@ -161,6 +167,29 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
     page = write_report(found.folder).read_text(encoding="utf-8")
     assert 'id="body-3d"' in page
     assert 'id="explorer"' not in page
+
+
+def test_a_side_is_an_option_like_any_other(results: StudyResults) -> None:
+    study = check_tables(journey_tables(aim={"grid": {"delivery.speed": [0.05]}, "sides": ["z", "x or y"]}), Path())
+    assert study.aim.aims() == [{"delivery.speed": 0.05, "aim.sides": 0.0}, {"delivery.speed": 0.05, "aim.sides": 1.0}]
+    design = DrawnDesign(study)
+    begin = option_arrivals(design, Site(study))
+    inputs = {name: begin.column(name) for name in (*ORIENTATION, "impact.azimuth_deg")}
+    sides = sides_down(study.lander, seen(inputs)[0])
+    half = len(sides) // 2
+    assert set(sides[:half]) == {"z"}
+    assert set(sides[half:]) == {"x or y"}
+    # What is not chosen is the same for both.
+    assert begin.column("impact.incidence_deg")[:half] == pytest.approx(begin.column("impact.incidence_deg")[half:])
+
+
+@pytest.mark.parametrize(
+    ("sides", "said"),
+    [(["z", "up"], r'aim.sides is .*; allowed: some of "x or y", "z", each once'), (["z", "z"], "each once")],
+)
+def test_sides_that_the_lander_does_not_have_are_refused(sides: list[str], said: str) -> None:
+    with pytest.raises(StudyError, match=said):
+        check_tables(journey_tables(aim={"sides": sides}), Path())
 
 
 @pytest.mark.parametrize(
