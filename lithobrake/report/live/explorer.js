@@ -33,7 +33,7 @@ function attitudeControl(explorer, changed) {
     ...choices.map(({ words }, place) => element("option", { value: place, textContent: words })));
   value.addEventListener("change", () => { explorer.attitude.downs = choices[value.value].downs; changed(); });
   return element("div", { className: "control" },
-    element("div", { className: "name" }, element("span", { textContent: "side toward the ground" }), value));
+    element("div", { className: "name" }, element("span", { textContent: "side down" }), value));
 }
 
 // Densities of an output by shown bin: of all draws, and the middle nine tenths of the refits.

@@ -54,7 +54,7 @@ INPUT_LABELS = {
     "delivery.latitude_deg": "latitude",
     "delivery.longitude_deg": "longitude",
     "delivery.heading_deg": "heading",
-    "aim.sides": "side toward the ground",
+    "aim.sides": "side down",
     "surface.gravity": "gravity",
     "surface.slope_deg": "slope",
     "surface.slope_azimuth_deg": "azimuth of the slope",
