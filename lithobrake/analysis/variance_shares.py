@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 TERMS_PER_RUN = 1 / 3
 # A scatter within beds that is less than this part of the whole is rounding.
 ROUNDING = 1e-12
+BOTH = "terms of first and second degree"
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,7 @@ class VarianceShares:
     place                 everything else: impact point, lack of fit and interactions, less chaos where it is known
     chaos                 what twins differ in; None without twins
     unbiased              values before the cut, by the names of the parts
+    terms                 of which degree the terms are that the runs could bear, in words
     """
 
     variance: float
@@ -53,6 +55,17 @@ class VarianceShares:
     place: IntervalEstimate
     chaos: IntervalEstimate | None
     unbiased: dict[str, float]
+    terms: str
+
+    @property
+    def soil_doubled(self) -> IntervalEstimate:
+        """At least so much would be the soil's with input distributions twice as wide, everything else as it is.
+
+        Terms of first degree have four times the variance then, those of higher degree more; each distribution is
+        widened on its own scale, that of the logarithm where it has one.
+        """
+        share = self.soil
+        return IntervalEstimate(*(4.0 * one / (1.0 + 3.0 * one) for one in (share.value, share.lower, share.upper)))
 
 
 class _Part(NamedTuple):
@@ -80,10 +93,11 @@ class _Part(NamedTuple):
 
 
 class _Terms(NamedTuple):
-    """Terms to regress on: matrix [run_count, term_count], and by part which of them make it up [term_count]."""
+    """Terms to regress on: matrix [run_count, term_count], by part which of them make it up [term_count], in words."""
 
     matrix: Array
     groups: dict[str, np.ndarray]
+    words: str
 
 
 class _Regression(NamedTuple):
@@ -133,10 +147,10 @@ def variance_shares(
     parts = dict(zip(used.groups, of_terms, strict=True)) | {"bed": _of_beds(components, 1.0 - explained / total)}
     if twins is not None:
         parts["chaos"] = _of_chaos(chaos_variance(twins), total)
-    return _printed(total, parts, [name for name in inputs if name in soil])
+    return _printed(total, parts, [name for name in inputs if name in soil], used.words)
 
 
-def _printed(total: float, parts: dict[str, _Part], soil: Collection[str]) -> VarianceShares:
+def _printed(total: float, parts: dict[str, _Part], soil: Collection[str], words: str) -> VarianceShares:
     """Parts by name, those of single soil inputs among them, as they are printed, with what they leave."""
     by_input = {name: parts.pop(name).estimate() for name in soil}
     printed = {name: part.estimate() for name, part in parts.items()}
@@ -151,6 +165,7 @@ def _printed(total: float, parts: dict[str, _Part], soil: Collection[str]) -> Va
         _completing(rest, list(printed.values())),
         printed.get("chaos"),
         {name: part.value for name, part in parts.items()} | {"place": rest.value},
+        words,
     )
 
 
@@ -188,12 +203,13 @@ def _affordable(
     """
     terms, indices = regression_terms(inputs, points)
     degree, squares = indices.sum(axis=1), (indices > 0).sum(axis=1) == 1
+    choices = ((degree > 0, BOTH), (squares, f"{BOTH}, without products"), (degree == 1, "terms of first degree"))
     for extra in (attitude, attitude[:, :0]):
-        for used in (degree > 0, squares, degree == 1):
+        for used, words in choices:
             count = int(used.sum()) + extra.shape[1]
             if count <= TERMS_PER_RUN * len(points):
                 groups = _groups(inputs, indices[used], soil, extra.shape[1])
-                return _Terms(np.hstack([terms[:, used], extra]), groups)
+                return _Terms(np.hstack([terms[:, used], extra]), groups, words)
     return None
 
 

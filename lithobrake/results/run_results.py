@@ -125,7 +125,11 @@ class VarianceParts:
     """
 
     soil: VariancePart
-    """inputs of grains and surface, and of the lander's contacts"""
+    """inputs of grains and surface, and of the lander's contacts: at least so much, by its terms"""
+    soil_doubled: VariancePart
+    """at least so much with input distributions of the soil twice as wide, each on its own scale"""
+    terms: str
+    """of which degree the terms of inputs are, in words"""
     soil_by_input: Mapping[str, VariancePart]
     """one of them alone"""
     arrival: VariancePart | None

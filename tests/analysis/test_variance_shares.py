@@ -125,6 +125,19 @@ def test_the_attitude_is_a_part_of_its_own() -> None:
         assert sum(part.value for part in parts) == pytest.approx(1.0)
 
 
+def test_soil_of_ranges_twice_as_wide_is_at_least_what_four_times_its_variance_is() -> None:
+    def shares(width: float) -> VarianceShares:
+        inputs = {"friction": Uniform(0.5 - 0.1 * width, 0.5 + 0.1 * width), "restitution": Uniform(0.0, 1.0)}
+        x, rng = sobol_sequence(inputs, 960, seed=3), np.random.default_rng(3)
+        y = 4.0 * x[:, 0] + x[:, 0] ** 2 + 0.5 * rng.standard_normal(960)
+        return variance_shares(inputs, x, y, np.arange(960) % 24, soil=tuple(inputs))
+
+    narrow, wide = shares(1.0), shares(2.0)
+    assert narrow.terms == "terms of first and second degree"
+    assert narrow.soil_doubled.value == pytest.approx(wide.soil.value, abs=0.03)
+    assert narrow.soil_doubled.lower < wide.soil.value < narrow.soil_doubled.upper
+
+
 def test_too_few_runs_leave_the_attitude_out_rather_than_the_soil() -> None:
     x, rng = sobol_sequence(INPUTS, 24, seed=1), np.random.default_rng(0)
     attitude, y, bed = rng.standard_normal((24, 6)), rng.standard_normal(24), np.arange(24) % 6

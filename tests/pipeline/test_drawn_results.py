@@ -48,7 +48,7 @@ def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: 
     returns, truth = results.summary["results"]["returns"], flown_share(8000)
     assert returns["lower"] < truth < returns["upper"]
     assert 0.02 < returns["upper"] - returns["lower"] < 0.15
-    assert (returns["from"], returns["level"], returns["why"]) == ("150 landings on 15 beds", 0.9, None)
+    assert (returns["from"], returns["level"], returns["why"]) == ("150 landings on 12 beds", 0.9, None)
     assert abs(returns["emulator"] - truth) < 0.05
     returning = results.summary["results"]["shares"]["returns"]
     assert returning["lower"] < truth < returning["upper"]
@@ -105,7 +105,9 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     found = results.summary["results"]
     assert set(found["variance_shares"]) == {"speed_out", "elevation_out", "spin_out", "returns"}
     parts = found["variance_shares"]["speed_out"]
-    whole = ("soil", "attitude", "bed", "place", "chaos")
+    # So few runs do not bear the attitude beside the soil.
+    assert parts["attitude"] is None
+    whole = ("soil", "bed", "place", "chaos")
     assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
     assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
         "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",

@@ -48,6 +48,8 @@ def variance_parts(found: VarianceShares, of: str) -> VarianceParts:
     """The parts of a variance, as they are printed; of: which landings they describe."""
     return VarianceParts(
         soil=variance_part(found.soil),
+        soil_doubled=variance_part(found.soil_doubled),
+        terms=found.terms,
         soil_by_input={name: variance_part(one) for name, one in found.soil_by_input.items()},
         arrival=None if found.arrival is None else variance_part(found.arrival),
         attitude=None if found.attitude is None else variance_part(found.attitude),

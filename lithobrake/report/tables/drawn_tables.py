@@ -23,6 +23,7 @@ from lithobrake.report.words.drawn_warnings import (
     missing_sentence,
     outcome_label,
 )
+from lithobrake.report.words.journey_captions import quantile_words
 from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
 from lithobrake.results.run_results import SideRuns, VarianceParts
@@ -84,7 +85,15 @@ def tables(data: DrawnPage) -> list[PageTable]:
 
 def landing_tables(data: RunsPage, *after_runs: PageTable) -> list[PageTable]:
     """Those of the landings themselves, or of the first ones of journeys, that have a row; others stand among them."""
-    first: tuple[Callable[[RunsPage], PageTable], ...] = (_answer, _inputs, _outputs, _directions, _variance, _runs)
+    first: tuple[Callable[[RunsPage], PageTable], ...] = (
+        _answer,
+        _inputs,
+        _outputs,
+        _directions,
+        _variance,
+        _sides,
+        _runs,
+    )
     made = [*(make(data) for make in first), *after_runs, beds_table(data), touchdowns_table(data)]
     found = [table for table in made if table.rows]
     side = data.results.runs.side_runs
@@ -172,12 +181,13 @@ def _variance(data: RunsPage) -> PageTable:
     known = [record for record in records.values() if record]
     inputs = list(dict.fromkeys(name for record in known for name in record.soil_by_input))
     names = [name for name in PART_WORDS if name != "soil" and any(name in one.parts for one in known)]
-    heads = ["soil, at least", *(f"of it {input_words(name)} alone" for name in inputs)]
+    heads = ["soil, at least", "with ranges twice as wide, at least"]
+    heads += [f"of it {input_words(name)} alone" for name in inputs]
     heads += [long_part_words(known[0], name) for name in names]
     rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
     note = (
         "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
-        f"brackets {percent(data.level)} intervals. Soil, delivery and attitude: terms of first and second degree, so "
+        f"brackets {percent(data.level)} intervals. Soil, delivery and attitude: {known[0].terms if known else ''}, so "
         "at least so much; what they do in another form is within everything else. Not detected: no more than "
         "nothing, but for chance. The return fraction is a mean over headings already: what headings do is in none "
         "of its parts."
@@ -186,11 +196,25 @@ def _variance(data: RunsPage) -> PageTable:
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
 
 
+def _sides(data: RunsPage) -> PageTable:
+    """What becomes of the landers by the side that faces the ground; of journeys the first touchdown."""
+    columns = ["side toward the ground", "landings", "median rebound speed over impact speed", "return fraction"]
+    rows = [
+        [one.words, str(one.landings), quantile_words(one.speed_ratio), with_interval(one.returns)]
+        for one in data.results.sides.values()
+    ]
+    note = (
+        "The side whose axis is nearest to the normal of the ground at the impact; in brackets "
+        f"{percent(data.level)} intervals, of each side by itself."
+    )
+    return PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))
+
+
 def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[str]) -> list[str]:
     """The parts of one output: soil, each soil input alone, the others by name."""
     if record is None:
-        return ["not known"] * (1 + len(inputs) + len(names))
-    found = [record.soil, *map(record.soil_by_input.get, inputs), *map(record.parts.get, names)]
+        return ["not known"] * (2 + len(inputs) + len(names))
+    found = [record.soil, record.soil_doubled, *map(record.soil_by_input.get, inputs), *map(record.parts.get, names)]
     return ["" if one is None else one.words() for one in found]
 
 

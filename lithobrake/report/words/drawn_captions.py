@@ -88,13 +88,19 @@ def variance(data: RunsPage) -> str:
     if others:
         soils = [f"{records[name].soil.words()} of {sign(name)}" for name in others]
         said.append(f"Soil, at least: {listing(soils)}.")
-    said.append(
-        "Soil, delivery and attitude: by terms of first and second degree; what they do otherwise is in everything "
-        "else."
-    )
+    said.append(floor_words(records[first]))
     if all(record.chaos is None for record in records.values()):
         said.append("Without auxiliary runs chaos is not known apart: it is within everything else.")
     return " ".join(said)
+
+
+def floor_words(record: VarianceParts) -> str:
+    """Of which degree the parts are lower bounds, and for which ranges."""
+    return (
+        f"Soil, delivery and attitude: by {record.terms}, for the ranges of the study file; what they do otherwise is "
+        f"in everything else. With soil ranges twice as wide the soil would be at least "
+        f"{record.soil_doubled.words()}."
+    )
 
 
 # Parts that are not detected.

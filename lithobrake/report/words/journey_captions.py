@@ -2,7 +2,7 @@
 
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
-from lithobrake.report.words.drawn_captions import scatter_words, variance
+from lithobrake.report.words.drawn_captions import floor_words, scatter_words, variance
 from lithobrake.report.words.drawn_warnings import landing_warnings
 from lithobrake.report.words.numbers import number
 from lithobrake.results.journey_results import RestQuantile
@@ -128,6 +128,7 @@ def end_variance(data: JourneyPage) -> str:
             "Delivery: the place and state of the first impact, but for its attitude; everything else holds the later "
             "touchdowns, which draw impact points anew."
         )
+        said.append(floor_words(next(iter(known.values()))))
     return " ".join(said)
 
 

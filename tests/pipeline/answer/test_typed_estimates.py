@@ -37,7 +37,18 @@ def test_parts_of_a_variance_have_share_and_bounds() -> None:
     found = variance_shares(inputs, x, x[:, 0] + 0.1 * RANDOM.standard_normal(120), BED, soil=["a"])
     assert found is not None
     table = to_json(typed.variance_parts(found, "the landings"))
-    assert list(table) == ["soil", "soil_by_input", "arrival", "attitude", "bed", "place", "chaos", "of"]
+    assert list(table) == [
+        "soil",
+        "soil_doubled",
+        "terms",
+        "soil_by_input",
+        "arrival",
+        "attitude",
+        "bed",
+        "place",
+        "chaos",
+        "of",
+    ]
     assert table["soil"] == {"share": found.soil.value, "lower": found.soil.lower, "upper": found.soil.upper}
     assert (list(table["soil_by_input"]), table["chaos"]) == (["a"], None)
 

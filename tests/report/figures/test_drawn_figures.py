@@ -19,7 +19,8 @@ def part(share: float) -> VariancePart:
 
 
 RECORD = VarianceParts(
-    soil=part(0.12), soil_by_input={"grain.friction": part(0.15), "grain.density": part(-0.01)}, arrival=part(0.2),
+    soil=part(0.12), soil_doubled=part(0.35), terms="terms of first degree",
+    soil_by_input={"grain.friction": part(0.15), "grain.density": part(-0.01)}, arrival=part(0.2),
     attitude=part(0.08), bed=part(0.0), place=part(0.6), chaos=None, of="the landings",
 )  # fmt: skip
 

@@ -168,7 +168,8 @@ def record() -> VarianceParts:
     """Parts of the variance that add up to 1."""
     alone = {"grain.friction": VariancePart(0.05, 0.01, 0.09), "grain.restitution": VariancePart(0.008, 0.0, 0.02)}
     return VarianceParts(
-        soil=VariancePart(0.06, 0.01, 0.11), soil_by_input=alone, arrival=None, attitude=None,
+        soil=VariancePart(0.06, 0.01, 0.11), soil_doubled=VariancePart(0.2, 0.04, 0.33), terms="terms of first degree",
+        soil_by_input=alone, arrival=None, attitude=None,
         bed=VariancePart(0.03, 0.0, 0.15), place=VariancePart(0.906, 0.8, 0.97),
         chaos=VariancePart(0.004, 0.003, 0.01), of="the landings",
     )  # fmt: skip
