@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from lithobrake.results.table import Table
     from lithobrake.touchdown import Outcome
 
-SUMMARY_FORMAT = 3
+SUMMARY_FORMAT = 4
 # Columns that a table has even without rows.
 _RUN = ("key", "outcome")
 _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
