@@ -6,7 +6,7 @@ A soil is drawn from the prior, and one or five synthetic landings on it, on one
 shares that the bed has of the variance of the speed. The emulator comes from 300 landings on 30 beds, another one every
 ten soils. How often 90 % intervals held the soil, and the rank of the soil among 99 draws of the posterior, which must
 be uniform (chi-square over ten steps). Kind "emulator": the emulator is the truth; a bed's effect is drawn, and five
-bounces on it, with as large a share of the bed as its runs have.
+bounces on it, with as large a share of the bed as its runs have. Points are weighted alone: no walkers follow.
 Writes benchmarks/results/inference_beds.csv, and .json beside it. Source: [Talts-2018]; [Modrak-2023].
 """
 
@@ -20,7 +20,7 @@ from harness import RESULTS, Row, command_line, rounded, table, write_made
 from inference_calibration import DRAWS, INPUTS, OBSERVED, REFITS, SOILS, STEPS, fitted, observation, random_soils
 from scipy import stats
 
-from lithobrake.analysis import LEVEL, Observation, bed_shares, infer
+from lithobrake.analysis import LEVEL, Observation, bed_shares, infer, inference
 from lithobrake.emulator import Emulator
 from lithobrake.emulator.coordinates import from_coordinate
 from lithobrake.emulator.residual_rows import smoothed
@@ -82,6 +82,8 @@ def emulated(model: Emulator, soil: np.ndarray, count: int, random: np.random.Ge
 def rows(given: tuple[Setting, int]) -> list[Row]:
     """What one setting gives, a row for each input."""
     setting, cases = given
+    # Of a few hundred posteriors some would take minutes each.
+    inference.can_walk = lambda: False
     random = np.random.default_rng([7, round(100 * setting.bed_share), setting.bounces, setting.one_bed])
     held, ranks, ratios, effective, shares = [], [], [], [], []
     for case, soil in enumerate(random_soils(cases, random)):
