@@ -6,7 +6,7 @@ A soil is drawn from the prior, and one or five synthetic landings on it, on one
 shares that the bed has of the variance of the speed. The emulator comes from 300 landings on 30 beds, another one every
 ten soils. How often 90 % intervals held the soil, and the rank of the soil among 99 draws of the posterior, which must
 be uniform (chi-square over ten steps). Kind "emulator": the emulator is the truth; a bed's effect is drawn, and five
-bounces on it, with as large a share of the bed as its runs have.
+bounces on it, with as large a share of the bed as its runs have. Points are weighted alone: no walkers follow.
 Writes benchmarks/results/inference_beds.csv, and .json beside it. Source: [Talts-2018]; [Modrak-2023].
 """
 
@@ -16,14 +16,12 @@ from multiprocessing import Pool
 from typing import NamedTuple
 
 import numpy as np
-from harness import RESULTS, Row, command_line, rounded, table, write_made
-from inference_calibration import DRAWS, INPUTS, OBSERVED, REFITS, SOILS, STEPS, fitted, observation, random_soils
+from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
+from inference_calibration import DRAWS, INPUTS, REFITS, SOILS, STEPS, emulated, fitted, observation, random_soils
 from scipy import stats
 
-from lithobrake.analysis import LEVEL, Observation, bed_shares, infer
+from lithobrake.analysis import LEVEL, Observation, bed_shares, infer, inference
 from lithobrake.emulator import Emulator
-from lithobrake.emulator.coordinates import from_coordinate
-from lithobrake.emulator.residual_rows import smoothed
 
 TABLE = RESULTS / "inference_beds.csv"
 COLUMNS = ("kind", "soil", "bed_share", "bounces", "one_bed", "cases", "input", "held", "chi_square_p", "sd_ratio",
@@ -43,7 +41,7 @@ class Setting(NamedTuple):
 
 
 def settings(soils: list[str]) -> Iterator[Setting]:
-    """All of them, the longest first."""
+    """All of them."""
     for soil in soils:
         for bed_share in BED_SHARES:
             for bounces, one_bed in ((5, True), (5, False), (1, False)):
@@ -60,72 +58,77 @@ def landed(setting: Setting, soil: np.ndarray, random: np.random.Generator) -> l
     return [observation(y, str(word)) for y, word in zip(found.y, found.outcome, strict=True)]
 
 
-def emulated(model: Emulator, soil: np.ndarray, count: int, random: np.random.Generator) -> list[Observation]:
-    """Bounces of the emulator itself on one bed, whose effect is drawn."""
-    kernels, before = model.kernels, model.bed_effect.before
-    values, vectors = np.linalg.eigh(np.eye(len(before)) - before)
-    row = random.choice(len(kernels.rows), count, p=model.law.weights / model.law.weights.sum())
-    size = kernels.size / np.sqrt(1.0 - kernels.size**2)
-    own = smoothed(kernels.whitened[row], size, np.eye(len(before)), random)
-    effect = random.multivariate_normal(np.zeros(len(before)), before)
-    whitened = effect + own @ (vectors * np.sqrt(values)) @ vectors.T
-    location, scale = model.law.at(model.terms.matrix(soil[None]))
-    columns = list(model.runs.modelled)
-    y = np.full((count, len(model.output_names)), np.nan)
-    y[:, columns] = from_coordinate(
-        location + scale * (whitened @ kernels.root.T), model.runs.lower[0, columns], model.runs.upper[0, columns]
+class Case(NamedTuple):
+    """One soil, by input: whether its intervals held it, its ranks, what is left of the deviations; points of weight,
+    and the share of the bed that the emulator's runs show.
+    """
+
+    held: list[bool]
+    ranks: list[int]
+    ratios: list[float]
+    effective: float
+    found_share: float
+
+
+def cases(given: tuple[Setting, int]) -> tuple[Setting, list[Case]]:
+    """Soils of one setting with one emulator, numbered."""
+    setting, number = given
+    # Of thousands of posteriors some would take minutes each.
+    inference.can_walk = lambda: False
+    random = np.random.default_rng([7, number, round(100 * setting.bed_share), setting.bounces, setting.one_bed])
+    model = fitted(replace(SOILS[setting.soil], rho=setting.bed_share), 100 + number)
+    found_share = bed_shares(model)["speed_out"]
+    return setting, [
+        Case(*judged(setting, model, soil, random), found_share) for soil in random_soils(CASES_AN_EMULATOR, random)
+    ]
+
+
+def judged(
+    setting: Setting, model: Emulator, soil: np.ndarray, random: np.random.Generator
+) -> tuple[list[bool], list[int], list[float], float]:
+    """What the posterior of one soil says of it, as the first entries of Case."""
+    is_simulator = setting.kind == "simulator"
+    seen = (
+        landed(setting, soil, random)
+        if is_simulator
+        else emulated(model, soil, setting.bounces, random, on_one_bed=True)
     )
-    words = random.choice(model.outcome_names, count, p=model.outcome_probability(soil[None])[0])
-    return [observation(values, str(word)) for values, word in zip(y, words, strict=True)]
+    seen = [replace(one, bed="one" if setting.one_bed else None) for one in seen]
+    seed = int(random.integers(2**31))
+    found = infer(model, seen, refit_count=REFITS if is_simulator else 0, point_count=POINTS, seed=seed)
+    learnt = found.learnt().values()
+    held = [one.after.lower <= value <= one.after.upper for one, value in zip(learnt, soil, strict=True)]
+    ranks = (found.sample(DRAWS, seed) < soil).sum(axis=0).tolist()
+    return held, ranks, [one.sd_ratio for one in learnt], found.effective_count
 
 
-def rows(given: tuple[Setting, int]) -> list[Row]:
-    """What one setting gives, a row for each input."""
-    setting, cases = given
-    random = np.random.default_rng([7, round(100 * setting.bed_share), setting.bounces, setting.one_bed])
-    held, ranks, ratios, effective, shares = [], [], [], [], []
-    for case, soil in enumerate(random_soils(cases, random)):
-        if case % CASES_AN_EMULATOR == 0:
-            model = fitted(replace(SOILS[setting.soil], rho=setting.bed_share), 100 + case)
-            shares.append(bed_shares(model)["speed_out"])
-        seen = (
-            landed(setting, soil, random)
-            if setting.kind == "simulator"
-            else emulated(model, soil, setting.bounces, random)
-        )
-        seen = [replace(one, bed="one" if setting.one_bed else None) for one in seen]
-        refits = REFITS if setting.kind == "simulator" else 0
-        found = infer(model, seen, refit_count=refits, point_count=POINTS, seed=case)
-        learnt = found.learnt().values()
-        held.append([one.after.lower <= value <= one.after.upper for one, value in zip(learnt, soil, strict=True)])
-        ratios.append([one.sd_ratio for one in learnt])
-        ranks.append((found.sample(DRAWS, case) < soil).sum(axis=0))
-        effective.append(found.effective_count)
-    return [
-        {
-            **setting._asdict(), "one_bed": int(setting.one_bed), "cases": cases, "input": key,
-            "held": float(np.mean(np.array(held)[:, column])),
-            "chi_square_p": float(
-                stats.chisquare(np.histogram(np.array(ranks)[:, column], STEPS, (0, DRAWS + 1))[0]).pvalue
-            ),
-            "sd_ratio": float(np.sqrt(np.mean(np.square(ratios)[:, column]))),
-            "effective": float(np.median(effective)), "found_share": float(np.mean(shares)),
-        }
-        for column, key in enumerate(INPUTS)
-    ]  # fmt: skip
+def rows(setting: Setting, found: list[Case]) -> Iterator[Row]:
+    """What the cases of one setting give, a row for each input."""
+    for column, key in enumerate(INPUTS):
+        counts = np.histogram([one.ranks[column] for one in found], STEPS, (0, DRAWS + 1))[0]
+        yield rounded({
+            **setting._asdict(), "one_bed": int(setting.one_bed), "cases": len(found), "input": key,
+            "held": float(np.mean([one.held[column] for one in found])),
+            "chi_square_p": float(stats.chisquare(counts).pvalue),
+            "sd_ratio": float(np.sqrt(np.mean([one.ratios[column] ** 2 for one in found]))),
+            "effective": float(np.median([one.effective for one in found])),
+            "found_share": float(np.mean([one.found_share for one in found])),
+        })  # fmt: skip
 
 
 def main() -> None:
-    """Measure and write, a setting as it comes."""
+    """Measure and write, the table anew with every emulator."""
     given = command_line(__doc__, cases=200, workers=4, soils=["weak"]).parse_args()
-    work = [(setting, given.cases) for setting in settings(given.soils)]
-    with table(TABLE, COLUMNS) as add, Pool(given.workers) as pool:
-        for found in pool.imap(rows, work, 1):
-            for row in found:
-                add(rounded(row))
-                print(row, flush=True)
-    command = f"benchmarks/inference_beds.py --cases {given.cases} --soils {' '.join(given.soils)}"
-    write_made(TABLE, command, cases=given.cases, level=LEVEL, points=POINTS, refits=REFITS, observed=list(OBSERVED))
+    of_setting: dict[Setting, list[Case]] = {setting: [] for setting in settings(given.soils)}
+    work = [(setting, number) for number in range(given.cases // CASES_AN_EMULATOR) for setting in of_setting]
+    with Pool(given.workers) as pool:
+        for setting, found in pool.imap_unordered(cases, work):
+            of_setting[setting] += found
+            done = [row for one, all_found in of_setting.items() if all_found for row in rows(one, all_found)]
+            write_rows(TABLE, COLUMNS, done)
+            command = f"benchmarks/inference_beds.py --cases {given.cases} --soils {' '.join(given.soils)}"
+            finished = min(map(len, of_setting.values()))
+            write_made(TABLE, command, finished_cases=finished, level=LEVEL, points=POINTS, refits=REFITS)
 
 
 if __name__ == "__main__":

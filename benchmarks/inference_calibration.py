@@ -2,8 +2,8 @@
 
     python benchmarks/inference_calibration.py [--cases 200]
 
-Emulator: soils are drawn from the prior and bounces from the emulator itself, which is then exact; the rank of the true
-soil among 99 draws of the posterior, and that of its likelihood, must be uniform (chi-square over ten steps).
+Emulator: soils are drawn from the prior and bounces by the density of the emulator, which is then exact; the rank of
+the true soil among 99 draws of the posterior, and that of its likelihood, must be uniform (chi-square over ten steps).
 Simulator: bounces come from synthetic landings, the emulator from 300 runs of them, another one every fifty cases; how
 often 90 % intervals held the truth, beside the inverse of a mean law with Gaussian error, as one without scatter would
 be made. Last how many bounces halve the uncertainty of each input, by an emulator of weak and of strong soil.
@@ -23,6 +23,7 @@ from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMI
 
 from lithobrake import emulator
 from lithobrake.analysis import LEVEL, Observation, identifiability, infer
+from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
 
 TABLE = RESULTS / "inference_calibration.csv"
 COLUMNS = ("kind", "soil", "bounces", "cases", "input", "held", "chi_square_p", "sd_ratio", "effective", "to_halve")
@@ -48,14 +49,33 @@ def observation(y: np.ndarray, outcome: str) -> Observation:
     return Observation({name: float(y[OUTPUT_NAMES.index(name)]) for name in OBSERVED})
 
 
+def emulated(
+    model: emulator.Emulator, soil: np.ndarray, count: int, random: np.random.Generator, *, on_one_bed: bool = False
+) -> list[Observation]:
+    """Bounces by the density of the emulator, all with one drawn effect of a bed, or without any."""
+    kernels = model.kernels
+    outputs = len(kernels.root)
+    before = model.bed_effect.before if on_one_bed else np.zeros((outputs, outputs))
+    values, vectors = np.linalg.eigh(np.eye(outputs) - before)
+    row = random.choice(len(kernels.rows), count, p=model.law.weights / model.law.weights.sum())
+    own = kernels.rows[row] + kernels.size * random.standard_normal((count, outputs))
+    effect = random.multivariate_normal(np.zeros(outputs), before)
+    standard = (effect + own @ (vectors * np.sqrt(values)) @ vectors.T) @ kernels.root.T
+    location, scale = model.law.at(model.terms.matrix(soil[None]))
+    columns = list(model.runs.modelled)
+    y = np.full((count, len(model.output_names)), np.nan)
+    bounds = (one[0, columns] for one in (model.runs.lower, model.runs.upper))
+    y[:, columns] = from_coordinate(location + scale * standard, *bounds)
+    words = random.choice(model.outcome_names, count, p=model.outcome_probability(soil[None])[0])
+    return [observation(one, str(word)) for one, word in zip(y, words, strict=True)]
+
+
 def emulator_rows(name: str, bounces: int, cases: int) -> Iterator[Row]:
     """Ranks of soils where the emulator is the truth, by input; the last row is of the likelihood."""
     model, random = fitted(SOILS[name], 1), np.random.default_rng(5)
     ranks, effective = [], []
     for case, soil in enumerate(random_soils(cases, random)):
-        drawn = model.draw(np.tile(soil, (bounces, 1)), 1, 1000 + case)
-        words = [model.outcome_names[place] for place in drawn.outcome[:, 0]]
-        seen = [observation(y, word) for y, word in zip(drawn.y[:, 0], words, strict=True)]
+        seen = emulated(model, soil, bounces, random)
         found = infer(model, seen, refit_count=0, point_count=POINTS, seed=case)
         draws = found.sample(DRAWS, case)
         of_likelihood = np.sum(
@@ -102,8 +122,6 @@ def inverse_of_the_mean(model: emulator.Emulator, y: np.ndarray, soil: np.ndarra
     terms = model.terms.matrix(x)
     centre = model.law.at(terms)[0]
     columns = [model.output_names.index(name) for name in OBSERVED]
-    from lithobrake.emulator.coordinates import to_coordinate
-
     lower, upper = model.runs.lower[0, columns], model.runs.upper[0, columns]
     seen = to_coordinate(y[columns], lower, upper)
     error = 0.1 * model.runs.coordinates.std(axis=0)

@@ -156,10 +156,10 @@ class Emulator(Parts):
     ) -> Array:
         """Logarithm of the density of one observed run at each x [point_count, input_count], shape [point_count].
 
-        That of what `draw` draws, with kernels three times as wide. observed: outputs by name, in their units, any of those
-        that have a law (riders have none); errors: standard deviation of each that was observed with one. outcome: how
-        the run ended; None: as runs with outputs do. An outcome without outputs has its chance alone. lower, upper: as
-        in `sample`.
+        That of what `draw` draws, with kernels three times as wide. observed: outputs by name, in their units, any of
+        those that have a law (riders have none); errors: standard deviation of each that was observed with one.
+        outcome: how the run ended; None: as runs with outputs do. An outcome without outputs has its chance alone.
+        lower, upper: as in `sample`.
         Raises ValueError for names and values that cannot be.
         """
         given, alone = (lower, upper), BedEffect.none(len(self.runs.modelled))

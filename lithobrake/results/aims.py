@@ -45,8 +45,8 @@ class BestAim:
     share_of_refits: float | None
     """share of the refits in which it is the best, no probability that it is; null on hard ground"""
     own: ShareInterval | None
-    """its share of landers at rest less what its selection among the aims adds, with bounds over refits; null on hard
-    ground, and where refits give none"""
+    """its share of landers at rest less what its selection among the options adds, with the error that all options
+    which cannot be distinguished from it have over refits; null on hard ground, and where refits give none"""
     not_worse: tuple[int, ...] | None
     """places of the other allowed options that cannot be distinguished from the best at the level, all of them
     together; null likewise"""
