@@ -1,7 +1,8 @@
 """Does the scrambled Sobol sequence make the return fraction scatter less than its interval says?
 
-    python validation/sequence_gain.py --repeats 40 --large 20 [--work FOLDER]    real studies, then synthetic ones
+    python validation/sequence_gain.py --repeats 30 --large 20 [--work FOLDER]    real studies, then synthetic ones
     python validation/sequence_gain.py --repeats 0 --large 0                      synthetic ones alone
+    python validation/sequence_gain.py --page                                     the tables of docs/estimates.md
 
 Real: the study of scenarios/first_bounce.toml with 60 landings on 12 beds, one repeat a seed. Each repeat is made twice
 on the same beds: with inputs, impact points, azimuths and attitudes from the sequence, and from independent random
@@ -17,6 +18,7 @@ For all: variance of the estimate over the repeats, over the mean of the varianc
 90 % interval of that ratio for real studies.
 """
 
+import json
 import math
 import sys
 import tempfile
@@ -138,8 +140,30 @@ def explained(work: Path) -> Row:
         left = y - waves @ np.linalg.lstsq(waves, y, rcond=None)[0]
         found[name] = 1.0 - float(left @ left) / (len(y) - waves.shape[1]) / float(y.var(ddof=1))
     correlation = bed_components(y, numbered_beds(beds, len(y))).correlation
-    parts = {"value": correlation.value, "lower": correlation.lower, "upper": correlation.upper}
-    return {"landings": len(y), "standard_deviation": float(y.std(ddof=1)), "by_coordinate": found, "bed": parts}
+    return {
+        "landings": len(y), "standard_deviation": float(y.std(ddof=1)), "by_coordinate": found,
+        "bed": {"value": correlation.value, "lower": correlation.lower, "upper": correlation.upper},
+        "half_width_with_attitude": {runs: with_attitude(design, files, runs) for runs in (RUNS, LARGE_RUNS)},
+    }  # fmt: skip
+
+
+def with_attitude(design: DrawnDesign, files: list[Any], runs: int) -> float:
+    """Mean half width of studies of so many landings by a regression on soil and attitude over that on soil alone."""
+    widths = []
+    for one in (one for one in files if len(one["y"]) == runs):
+        terms = regressions(design, one["x"])
+        found = [share_estimate(one["y"], one["bed"], terms=two) for two in terms]
+        widths.append([(two.upper or 1.0) - (two.lower or 0.0) for two in found])
+    soil, attitude = np.mean(widths, axis=0)
+    return float(attitude / soil)
+
+
+def regressions(design: DrawnDesign, x: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Terms and indices at points [run_count, coordinate_count]: of soil, and of soil and attitude."""
+    soil, indices = regression_terms(design.inputs, x[:, : len(design.inputs)])
+    # Its one term counts as linear.
+    one = np.eye(1, indices.shape[1], dtype=indices.dtype)
+    return [(soil, indices), (np.column_stack([soil, long_axis(x[:, -3])]), np.vstack([indices, one]))]
 
 
 def long_axis(uniforms: np.ndarray) -> np.ndarray:
@@ -173,11 +197,7 @@ def synthetic(runs: int, beds: int, parts: tuple[float, float, float], kind: str
         uniforms = np.column_stack([law.cdf(column) for law, column in zip(laws, x.T, strict=True)])
         bed = np.array(beds_of_runs(design.study, runs))
         y = outcomes(uniforms, bed, parts, np.random.default_rng([seed, runs]))
-        soil, indices = regression_terms(design.inputs, x[:, : len(design.inputs)])
-        attitude = np.column_stack([soil, long_axis(uniforms[:, -3])])
-        # Its one term counts as linear.
-        one = np.eye(1, indices.shape[1], dtype=indices.dtype)
-        for way, terms in enumerate(((soil, indices), (attitude, np.vstack([indices, one])))):
+        for way, terms in enumerate(regressions(design, x)):
             found = share_estimate(y, bed, terms=terms)
             assert found.lower is not None
             assert found.upper is not None
@@ -203,10 +223,32 @@ def synthetic_rows(count: int) -> Iterator[Row]:
                 print(runs, beds, parts, kind, flush=True)
 
 
+def page_tables() -> str:
+    """Both tables in Markdown: real studies, then synthetic ones."""
+    lines = ["| landings, beds | points | repeats | scatter | implied | ratio |", "|---" * 6 + "|"]
+    for name, one in json.loads(TABLE.with_suffix(".json").read_text())["real"].items():
+        runs, kind = name.split(", ")
+        low, high = one["ratio_interval"]
+        widths = f"{one['scatter_points']:.2f} | {one['implied_points']:.2f}"
+        lines.append(f"| {runs} | {kind} | {one['repeats']} | {widths} | {one['ratio']:.2f} ({low:.2f}-{high:.2f}) |")
+    lines += ["", "| landings | soil, attitude, beds | random | sequence | and attitude |", "|---" * 5 + "|"]
+    found: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
+    for row in read_rows(SYNTHETIC, {}, others=str):
+        of = (row["runs"], f"{float(row['soil']):g}, {float(row['attitude']):g}, {float(row['bed']):g}")
+        said = f"{float(row['ratio']):.2f} ({float(row['held']):.2f})"
+        found.setdefault(of, {})[row["points"], row["regression"]] = said
+    ways = (("random", "soil"), ("sequence", "soil"), ("sequence", "soil and attitude"))
+    lines += [f"| {' | '.join((*of, *(row[way] for way in ways)))} |" for of, row in found.items()]
+    return "\n".join(lines) + "\n"
+
+
 def main() -> None:
     """Make what is missing of the real studies, and all synthetic ones."""
     work = Path(tempfile.gettempdir()) / "lithobrake_sequence_gain"
-    options = command_line(__doc__, work=work, repeats=40, large=20, studies=400).parse_args()
+    options = command_line(__doc__, work=work, repeats=30, large=20, studies=400, page=False).parse_args()
+    if options.page:
+        print(page_tables())
+        return
     make(options.work, RUNS, BEDS, range(FIRST_SEED, FIRST_SEED + options.repeats), POINTS)
     make(options.work, LARGE_RUNS, LARGE_BEDS, range(FIRST_LARGE, FIRST_LARGE + options.large), POINTS[:1])
     command = f"validation/sequence_gain.py --repeats {options.repeats} --large {options.large}"

@@ -99,7 +99,7 @@ def plan_of(
         free_bytes=free,
         warnings=(*room, *study_warnings(design, site, soil)),
         site_slope_deg=site.slope_deg,
-        runs_a_bed=runs_a_bed(study, soil),
+        runs_a_bed=runs_a_bed(study, soil, ended),
         grains=planned_grains(study),
         tile=planned_tile(study),
         delivery=_delivery(design),

@@ -1,10 +1,14 @@
 """How many runs each bed of a study has, beside the number with which the interval is narrowest for the time."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from lithobrake.campaign import Record
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import landing_time, mean_journey_time, pour_time
+from lithobrake.pipeline.planning.expected_time import journey_time, pour_time, run_time
 from lithobrake.pipeline.planning.expected_width import expected_correlation
+from lithobrake.pipeline.planning.pace import machine_pace
 from lithobrake.study import Study
 from lithobrake.study.bed_section import FEWEST_BEDS
 
@@ -45,19 +49,21 @@ class RunsABed:
         )
 
 
-def runs_a_bed(study: Study, soil: ExpectedSoil | None) -> RunsABed | None:
-    """Those of a drawn study on several beds of its own; None for any other."""
+def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
+    """Those of a drawn study on several beds of its own; None for any other. ended: runs of this study that have."""
     from lithobrake.analysis import best_runs_a_bed, cost_over_best
 
     if study.design.method != "drawn" or study.bed_count == 1 or soil is None:
         return None
-    if study.journey is not None:
-        one, runs = mean_journey_time(soil), ("journey", "journeys")
+    pace = machine_pace() or 1.0
+    if study.journey is None:
+        span, runs = run_time(soil, ended, pace), ("landing", "landings")
     else:
-        landings = soil.landings[1:]
-        one = sum(landing_time(soil, *landing) for landing in landings) / len(landings)
-        runs = ("landing", "landings")
-    run_count, cost = study.design.run_count, pour_time(soil) / one
+        span, runs = journey_time(soil, pace), ("journey", "journeys")
+    if span is None:
+        return None
+    # A span reaches as many times below its middle as above it.
+    run_count, cost = study.design.run_count, pace * pour_time(soil) / math.sqrt(math.prod(span))
     count, correlation = run_count / study.bed_count, expected_correlation(study)
     best = min(best_runs_a_bed(cost, correlation), max(run_count / FEWEST_BEDS, 1.0))
     over_best = cost_over_best(count, best, cost, correlation) - 1.0

@@ -348,6 +348,21 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     assert plan_for(soft(), folder, 2).half_width is None
 
 
+def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: Path) -> None:
+    study = with_site_gravity(read_study(SCENARIOS / "quick.toml"))
+    plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
+    found, beds = plan.half_width, plan.runs_a_bed
+    assert found is not None
+    assert beds is not None
+    assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
+    # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at .95 is 1.714.
+    assert found.by_fraction["100 %"] == pytest.approx(0.5 * (1.0 - 0.1 ** (1 / 24)))
+    assert 1.714 * (0.25 / 96) ** 0.5 < found.by_fraction["50 %"] < 1.714 * (0.25 * (0.1 / 24 + 0.9 / 96)) ** 0.5
+    assert found.lower < found.by_fraction["100 %"] < found.by_fraction["50 %"] < found.upper
+    assert (beds.runs, beds.count, beds.correlation) == (("journey", "journeys"), 4.0, 0.07)
+    assert 0.2 < beds.bed_cost < 0.8
+
+
 def test_landings_that_leave_the_bed_widen_what_is_promised(tmp_path: Path) -> None:
     folder = StudyFolder.only_read(tmp_path / "out")
     flat = {"distribution": "uniform", "lower": 0.0, "upper": 88.0}
