@@ -12,12 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.coordinates import from_coordinate, with_slope
+from lithobrake.emulator.coordinates import with_slope
 from lithobrake.emulator.density import kernels_of, log_density
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
 from lithobrake.emulator.outcome_classes import fit_classes
-from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
@@ -94,13 +95,13 @@ class Emulator(Parts):
         share = self.scores.gain / self.scores.energy_of_rows
         return (
             f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}; the best of "
-            f"{len(BANDWIDTHS)} kernel widths) than drawing one of the {count} runs with outputs ({number} {groups})."
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) "
+            f"than drawing one of the {count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:
         """Chances of the outcomes at x [point_count, input_count], shape [point_count, outcome_count]."""
-        return self.classes.chances(self._linear(self._matrix(x)))
+        return self.classes.chances(self._matrix(x))
 
     def sample(
         self,
@@ -129,15 +130,15 @@ class Emulator(Parts):
         upper: ArrayLike | None = None,
     ) -> Draws:
         """Draw as `sample` does, and say with which outcome and from which run."""
-        matrix = self._matrix(x)
-        count = sample_count("count", count, len(matrix) * len(self.output_names))
-        low, high = self.runs.bounds_at(lower, upper, len(matrix))
+        points = checked_points(self.runs.inputs, x)
+        count = sample_count("count", count, len(points) * len(self.output_names))
+        low, high = self.runs.bounds_at(lower, upper, len(points))
         random = random_numbers(seed)
         parts = []
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
-        for start in range(0, len(matrix), step):
+        for start in range(0, len(points), step):
             block = slice(start, start + step)
-            parts.append(self._block(matrix[block], count, low[block], high[block], random))
+            parts.append(self._block(self.terms.matrix(points[block]), count, low[block], high[block], random))
         if not parts:
             empty = np.empty((0, count), dtype=np.int64)
             return Draws(np.empty((0, count, len(self.output_names))), empty, empty)
@@ -164,19 +165,21 @@ class Emulator(Parts):
         matrix = self._matrix(x)
         linear = self._linear(matrix)
         ended = self._checked_observation(observed, errors or {}, outcome)
-        chance = np.log(np.maximum(self.classes.chances(linear)[:, ended], np.finfo(float).tiny))
+        chance = np.log(np.maximum(self.classes.chances(matrix)[:, ended], np.finfo(float).tiny))
         if not observed:
             return chance
         low, high = self.runs.bounds_at(lower, upper, len(matrix))
         columns = [self.output_names.index(name) for name in observed]
         y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
-        coordinate, slope = with_slope(y, low[:, columns], high[:, columns])
+        possible = np.all((y > low[:, columns]) & (y < high[:, columns]), axis=1)
+        bent_low, bent_high = self.runs.bending(low, high)
+        coordinate, slope = with_slope(y, bent_low[:, columns], bent_high[:, columns])
         places = [self.runs.modelled.index(column) for column in columns]
         location, scale = (one[:, places] for one in self.law.at(matrix))
         # What lies beyond a bound at some point cannot have come from there.
-        inside: NDArray[np.bool_] = np.all(np.isfinite(coordinate), axis=1)
+        inside: NDArray[np.bool_] = possible & np.all(np.isfinite(coordinate), axis=1)
         chances = row_weights(
-            linear, self._linear(self._run_matrix)[self.runs.has_outputs], self.law.weights, self.choices.bandwidth
+            linear, self._linear(self._run_matrix)[self.runs.has_outputs], self.law.weights, self.choices.widths
         )
         error = slope * [(errors or {}).get(name, 0.0) for name in observed]
         kernels = kernels_of(self.law.rows, *smoothing(self.law.rows, self.law.weights))
@@ -199,15 +202,10 @@ class Emulator(Parts):
         """Fit anew with each run counted as often as weights say [run_count]."""
         counted = self.runs.checked_weights(weights)
         matrix = self._run_matrix
-        law = fit_law(
-            self.terms.indices,
-            matrix[self.runs.has_outputs],
-            self.runs.coordinates,
-            self.choices,
-            counted[self.runs.has_outputs],
-        )
-        linear, names = self._linear(matrix), self.outcome_names
-        classes = fit_classes(linear, self.runs.outcome, len(names), self.inverse_penalty, counted)
+        there, indices = self.runs.has_outputs, self.terms.indices
+        law = fit_law(TermTable(indices, matrix[there], counted[there]), self.runs.coordinates, self.choices)
+        factors, penalty = self.class_choice.factors(indices), self.class_choice.inverse_penalty
+        classes = fit_classes(matrix, factors, self.runs.outcome, len(self.outcome_names), penalty, counted)
         return replace(self, weights=counted, law=law, classes=classes)
 
     def mean_law(self, physical: bool = False) -> MeanLaw:
@@ -217,7 +215,7 @@ class Emulator(Parts):
         """
         target = self.runs.y[:, list(self.runs.modelled)] if physical else self.runs.coordinates
         there = self.runs.has_outputs
-        return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
+        return mean_law(self.runs.inputs, self.runs.x[there], target, self.choices.location, self.weights[there])
 
     def found_inputs(self, level: float = LEVEL, seed: int = 0) -> dict[str, bool]:
         """Say which inputs change the mean of any output: one test for all inputs and outputs together.
@@ -226,7 +224,7 @@ class Emulator(Parts):
         which is found may have next to no variance of an output of its own; which output it changes is not said.
         """
         there = self.runs.has_outputs
-        found = found_inputs(self.terms, self._run_matrix[there], self.runs.coordinates, level, seed)
+        found = found_inputs(self.runs.inputs, self.runs.x[there], self.runs.coordinates, level, seed)
         return dict(zip(self.runs.inputs, found.tolist(), strict=True))
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -272,16 +270,16 @@ class Emulator(Parts):
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
         """Draws at some points: y, outcome and row, as in Draws."""
         linear, columns = self._linear(matrix), list(self.runs.modelled)
-        outcome = drawn_rows(self.classes.chances(linear), count, random)
+        outcome = drawn_rows(self.classes.chances(matrix), count, random)
         run_linear = self._linear(self._run_matrix)[self.runs.has_outputs]
-        chances = row_weights(linear, run_linear, self.law.weights, self.choices.bandwidth)
+        chances = row_weights(linear, run_linear, self.law.weights, self.choices.widths)
         row = drawn_rows(chances, count, random)
         location, scale = self.law.at(matrix)
         size, root = smoothing(self.law.rows, self.law.weights)
         scatter = smoothed(self.law.rows[row], size, root, random)
         y = self.runs.y[row]
         coordinate = location[:, None] + scale[:, None] * scatter
-        y[:, :, columns] = from_coordinate(coordinate, lower[:, None, columns], upper[:, None, columns])
+        y[:, :, columns] = self.runs.outputs_of(coordinate, lower[:, None], upper[:, None])
         without = outcome != self.runs.output_outcome
         y[without] = np.nan
         # A place among the runs with outputs becomes one among all runs.
