@@ -121,9 +121,7 @@ def sir_row(path: Path, method: str, lower: float) -> Row:
     return _row(SIR if np.isinf(lower) else f"{SIR}, lower=0", method, len(y), 0, w2_error(draws[:, :, 0], truth), cpu)
 
 
-def _row(
-    name: str, method: str, runs: int, seed: int, error: float, cpu: float, capture: float = float("nan")
-) -> Row:
+def _row(name: str, method: str, runs: int, seed: int, error: float, cpu: float, capture: float = float("nan")) -> Row:
     return {
         "case": name, "method": method, "runs": runs, "seed": seed, "error": error, "capture": capture, "fit_cpu_s": cpu
     }  # fmt: skip

@@ -66,7 +66,9 @@ def process_and_residuals(x: np.ndarray, y: np.ndarray, group: np.ndarray) -> Sa
 
 def forest_rows(x: np.ndarray, y: np.ndarray, group: np.ndarray) -> Sampler:
     """Whole runs by the weights of a forest: how often a run shares a leaf with the point."""
-    forest = RandomForestRegressor(TREES, min_samples_leaf=LEAF, bootstrap=False, max_features=1.0 / 3.0, random_state=0)
+    forest = RandomForestRegressor(
+        TREES, min_samples_leaf=LEAF, bootstrap=False, max_features=1.0 / 3.0, random_state=0
+    )
     forest.fit(x, y / y.std(axis=0))
     leaves = forest.apply(x)
 

@@ -1,6 +1,7 @@
 """Bounded outputs as unbounded coordinates: logit between two bounds, logarithm beyond one, the output itself else.
 
-A law that is fitted in these coordinates cannot leave the bounds, whatever it draws.
+A law that is fitted in these coordinates cannot leave the bounds, whatever it draws. A bound far from all outputs
+bends no coordinate: draws beyond it are put onto the next number inside.
 """
 
 import numpy as np
@@ -43,4 +44,9 @@ def from_coordinate(coordinate: Array, lower: Array, upper: Array) -> Array:
     one_sided = np.where(has_lower, start + grown, end - 1.0 / grown)
     y = np.where(has_lower & has_upper, two_sided, np.where(has_lower | has_upper, one_sided, coordinate))
     # Rounding may put a draw onto a bound, which no output reaches.
+    return inside(y, lower, upper)
+
+
+def inside(y: Array, lower: Array, upper: Array) -> Array:
+    """Outputs with those beyond bounds put onto the next number inside."""
     return np.clip(y, np.nextafter(lower, np.inf), np.nextafter(upper, -np.inf))

@@ -3,18 +3,24 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.law import fit_law
+from lithobrake.emulator.distant_bounds import with_distant_bounds
+from lithobrake.emulator.law import Choices, fit_law
 from lithobrake.emulator.model import Emulator
-from lithobrake.emulator.outcome_classes import best_inverse_penalty, fit_classes
-from lithobrake.emulator.ridge_ladder import highest_degree, terms_up_to
+from lithobrake.emulator.outcome_classes import ClassChoice, best_class_choice, fit_classes
+from lithobrake.emulator.ridge_ladder import TermTable
+from lithobrake.emulator.scores import folds_of
+from lithobrake.emulator.terms import Terms, candidate_terms
 from lithobrake.emulator.training import checked_runs
-from lithobrake.emulator.validation import choices_by_groups, folds_of
+from lithobrake.emulator.validation import choices_by_groups
 
 OUTCOME_FOLDS = 5
+# A term of which a ridge leaves less than this is left out: it would cost time at every draw.
+TRACE = 1e-3
 
 
 @one_thread()
@@ -45,14 +51,25 @@ def fit(
     Raises ValueError for shapes, values and labels that do not fit together.
     """
     runs = checked_runs(inputs, x, y, groups, outcome, outcomes, lower, upper, riders, output_names)
-    terms = terms_up_to(runs.inputs, highest_degree(len(runs.y), len(runs.inputs)))
+    terms = candidate_terms(runs.inputs)
     matrix = terms.matrix(runs.x)
-    of_outputs = matrix[runs.has_outputs]
-    choices, scores = choices_by_groups(runs, terms.indices, of_outputs)
-    law = fit_law(terms.indices, of_outputs, runs.coordinates, choices, np.ones(len(runs.y)))
-    linear, class_count = matrix[:, : len(runs.inputs)], len(runs.outcome_names)
-    fold = folds_of(runs.group, OUTCOME_FOLDS)
-    inverse_penalty = best_inverse_penalty(linear, runs.outcome, class_count, fold)
-    ones = np.ones(len(runs.x))
-    classes = fit_classes(linear, runs.outcome, class_count, inverse_penalty, ones)
-    return Emulator(runs, terms, choices, inverse_penalty, ones, law, classes, scores)
+    runs = with_distant_bounds(runs, terms.indices, matrix[runs.has_outputs])
+    choices, scores = choices_by_groups(runs, terms.indices, matrix[runs.has_outputs])
+    fold, class_count = folds_of(runs.group, OUTCOME_FOLDS), len(runs.outcome_names)
+    class_choice = best_class_choice(
+        terms.indices, matrix, runs.outcome, runs.output_outcome, class_count, fold
+    )  # fmt: skip
+    used = used_terms(terms.indices, choices, class_choice)
+    terms, matrix, ones = Terms(terms.inputs, terms.indices[used]), matrix[:, used], np.ones(len(runs.x))
+    law = fit_law(TermTable(terms.indices, matrix[runs.has_outputs], ones[runs.has_outputs]), runs.coordinates, choices)
+    factors = class_choice.factors(terms.indices)
+    classes = fit_classes(matrix, factors, runs.outcome, class_count, class_choice.inverse_penalty, ones)
+    return Emulator(runs, terms, choices, class_choice, ones, law, classes, scores)
+
+
+def used_terms(indices: Indices, choices: Choices, class_choice: ClassChoice) -> NDArray[np.bool_]:
+    """Which terms [term_count] any of the ladders leaves more than a trace of, and all linear ones."""
+    used = (indices.sum(axis=1) == 1) | (class_choice.factors(indices) ** 2 > TRACE * class_choice.inverse_penalty)
+    for rung in (rung for ladder in (*choices.location, *choices.scale) for rung in ladder):
+        used |= rung.factors(indices) ** 2 > TRACE * rung.penalty
+    return np.asarray(used)

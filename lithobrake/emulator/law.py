@@ -4,33 +4,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.multi_index import Indices
-from lithobrake.emulator.ridge_ladder import Ladder, averaged_ridge, best_ladder
+from lithobrake.emulator.ridge_ladder import Ladder, Smoother, TermTable, best_ladder
 from lithobrake.vocabulary.arrays import Array
 
-# Added to squared residuals, as a share of their mean: a residual that happens to be near zero says little of the
-# scale, but its logarithm would weigh more than all others.
-LOGARITHM_FLOOR = 0.03
+# Added to a residual's size, as a share of the mean size: one that happens to be near zero says little of the scale,
+# but its logarithm would weigh more than all others. Only where the search for the scale begins.
+LOGARITHM_FLOOR = 0.15
+# A residual counts as no more than this many mean sizes of its place.
+LARGEST_SIZE = 4.0
+SCALE_STEPS = 3
 
 
 @dataclass(frozen=True)
 class Choices:
-    """What is chosen once and kept in every refit: ladders [coordinate_count] of location and scale, kernel's width."""
+    """What is chosen once and kept in every refit: ladders [coordinate_count] of location and scale, and widths
+    [input_count] of the kernel by which rows are drawn, in deviations of the standardised inputs.
+    """
 
     location: tuple[Ladder, ...]
     scale: tuple[Ladder, ...]
-    bandwidth: float
+    widths: tuple[float, ...]
 
     @property
     def follows_inputs(self) -> bool:
         """Whether anything of the law depends on the inputs."""
-        return bool(np.isfinite(self.bandwidth)) or any(self.location) or any(self.scale)
+        return bool(np.isfinite(self.widths).any()) or any(self.location) or any(self.scale)
 
 
 @dataclass(frozen=True)
 class Law:
-    """location [1 + term_count, coordinate_count]; log_scale [1 + input_count, coordinate_count]; rows, standardised
-    residuals [row_count, coordinate_count], and how often each counts, weights [row_count].
+    """location, log_scale [1 + term_count, coordinate_count]; rows, standardised residuals [row_count,
+    coordinate_count], and how often each counts, weights [row_count].
     """
 
     location: Array
@@ -40,51 +44,75 @@ class Law:
 
     def at(self, matrix: Array) -> tuple[Array, Array]:
         """Location and scale [point_count, coordinate_count] at terms but the constant [point_count, term_count]."""
-        log_scale = self.log_scale[0] + matrix[:, : len(self.log_scale) - 1] @ self.log_scale[1:]
-        return self.location[0] + matrix @ self.location[1:], np.exp(log_scale)
+        return (
+            self.location[0] + matrix @ self.location[1:],
+            np.exp(self.log_scale[0] + matrix @ self.log_scale[1:]),
+        )
 
 
-def rows_alone(coordinate_count: int) -> Choices:
+def rows_alone(coordinate_count: int, input_count: int) -> Choices:
     """Choices that draw one of the runs, whatever the inputs."""
-    return Choices(((),) * coordinate_count, ((),) * coordinate_count, float("inf"))
+    return Choices(((),) * coordinate_count, ((),) * coordinate_count, (np.inf,) * input_count)
 
 
-def best_choices(indices: Indices, matrix: Array, coordinates: Array, bandwidth: float = float("inf")) -> Choices:
-    """Ladders of location and scale, with a given width of the kernel.
+def best_choices(design: TermTable, coordinates: Array, *, fades: bool = True) -> Choices:
+    """Ladders of location and scale of coordinates [run_count, coordinate_count]; rows are drawn alike.
 
-    matrix: terms [run_count, term_count] with these indices; coordinates [run_count, coordinate_count].
+    fades: whether terms may fade as they are learnt to, which takes longest.
     """
-    inputs, ones = indices.shape[1], np.ones(len(matrix))
     locations, scales = [], []
     for y in coordinates.T:
-        location = best_ladder(indices, matrix, y)
-        log_square = _log_squares(averaged_ridge(indices, matrix, y, location, ones)[1], ones)
+        location = best_ladder(design, y, fades=fades)
+        scale = _best_scale(design, Smoother(design, location).left_out(y), fades)
         locations.append(location)
-        scales.append(best_ladder(indices[:inputs], matrix[:, :inputs], log_square))
-    return Choices(tuple(locations), tuple(scales), bandwidth)
+        scales.append(scale)
+    return Choices(tuple(locations), tuple(scales), (np.inf,) * design.indices.shape[1])
 
 
-def fit_law(indices: Indices, matrix: Array, coordinates: Array, choices: Choices, weights: Array) -> Law:
-    """Fit the law that was chosen to runs that count as often as their weights say [run_count]."""
-    inputs = indices.shape[1]
-    linear = matrix[:, :inputs]
-    locations, scales, rows = [], [], []
+def fit_law(design: TermTable, coordinates: Array, choices: Choices) -> Law:
+    """Fit the law that was chosen to coordinates [run_count, coordinate_count]."""
+    locations, scales, rows, weights = [], [], [], design.weights
     for y, location_ladder, scale_ladder in zip(coordinates.T, choices.location, choices.scale, strict=True):
-        location, residual = averaged_ridge(indices, matrix, y, location_ladder, weights)
-        log_square = _log_squares(residual, weights)
-        scale = 0.5 * averaged_ridge(indices[:inputs], linear, log_square, scale_ladder, weights)[0]
-        row = residual / np.exp(scale[0] + linear @ scale[1:])
+        smoother = Smoother(design, location_ladder)
+        residual = smoother.left_out(y)
+        scale = _scale_fit(design, Smoother(design, scale_ladder), np.abs(residual))
+        row = residual / np.exp(design.at(scale))
         mean = weights @ row / weights.sum()
         spread = np.sqrt(weights @ (row - mean) ** 2 / weights.sum())
         # Coordinates that do not scatter at all keep rows of zeros.
         rows.append((row - mean) / (spread if spread > 0.0 else 1.0))
         scale[0] += np.log(spread) if spread > 0.0 else 0.0
-        locations.append(location)
+        locations.append(smoother.coefficients(y))
         scales.append(scale)
     return Law(np.column_stack(locations), np.column_stack(scales), np.column_stack(rows), weights)
 
 
-def _log_squares(residual: Array, weights: Array) -> Array:
-    """Logarithms of squared residuals [run_count], kept from running to minus infinity."""
-    mean_square = weights @ residual**2 / weights.sum()
-    return np.log(residual**2 + LOGARITHM_FLOOR * (mean_square if mean_square > 0.0 else 1.0))
+def _best_scale(design: TermTable, residual: Array, fades: bool) -> Ladder:
+    """Ladder of the scale of residuals [run_count]."""
+    size = np.abs(residual)
+    first = best_ladder(design, _log_sizes(size, design.weights), fades=False)
+    logarithm = _scale_fit(design, Smoother(design, first), size)
+    return best_ladder(design, _working(size, design.at(logarithm)), fades=fades)
+
+
+def _scale_fit(design: TermTable, smoother: Smoother, size: Array) -> Array:
+    """Coefficients [1 + term_count] of the logarithm of the mean size of residuals [run_count].
+
+    From the regression of logarithms by steps of Newton on the likelihood of a mean that is multiplied, which tells
+    twice as much of a normal residual. Source: [McCullagh-1989], section 2.5 (working response).
+    """
+    logarithm = smoother.coefficients(_log_sizes(size, design.weights))
+    for _ in range(SCALE_STEPS):
+        logarithm = smoother.coefficients(_working(size, design.at(logarithm)))
+    return logarithm
+
+
+def _working(size: Array, logarithm: Array) -> Array:
+    """Logarithms of mean sizes with what single residuals [run_count] say of them."""
+    return logarithm + np.minimum(size * np.exp(-logarithm), LARGEST_SIZE) - 1.0
+
+
+def _log_sizes(size: Array, weights: Array) -> Array:
+    """Logarithms of sizes of residuals [run_count], kept from running to minus infinity."""
+    mean = weights @ size / weights.sum()
+    return np.log(size + LOGARITHM_FLOOR * (mean if mean > 0.0 else 1.0))

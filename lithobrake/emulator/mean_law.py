@@ -4,16 +4,20 @@ Squares of coefficients hold their noise too: the square of each standard error 
 them, so they are fitted by least squares, to the terms up to the degree that the ladder stands on.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.emulator.ridge_ladder import Ladder, Terms, degree_of
+from lithobrake.chaos.abstract_distribution import Distribution
+from lithobrake.chaos.counts import term_count
+from lithobrake.emulator.ridge_ladder import Ladder
+from lithobrake.emulator.terms import Terms, terms_up_to
 from lithobrake.vocabulary.arrays import Array
 
 # Least squares with fewer runs to a term has standard errors that are themselves hardly known.
 RUNS_PER_TERM = 4
+HIGHEST_DEGREE = 5
 
 
 @dataclass(frozen=True)
@@ -30,24 +34,28 @@ class MeanLaw:
     sobol_total: Array
 
 
-def mean_law(terms: Terms, matrix: Array, target: Array, ladders: Sequence[Ladder], weights: Array) -> MeanLaw:
+def mean_law(
+    inputs: Mapping[str, Distribution], x: Array, target: Array, ladders: Sequence[Ladder], weights: Array
+) -> MeanLaw:
     """Fit the mean law of targets [run_count, output_count] with these ladders [output_count].
 
-    matrix: terms [run_count, term_count]; weights: how often each run counts [run_count].
+    x: [run_count, input_count] in physical units; weights: how often each run counts [run_count].
     """
+    terms = terms_up_to(inputs, max(_degree(ladder, len(inputs), weights) for ladder in ladders))
+    matrix = terms.matrix(x)
     columns = [
-        _one_output(terms, matrix, y, _degree(ladder, terms, weights), weights)
+        _one_output(terms, matrix, y, _degree(ladder, len(inputs), weights), weights)
         for y, ladder in zip(target.T, ladders, strict=True)
     ]
     mean, variance, share, first, total = zip(*columns, strict=True)
     return MeanLaw(np.array(mean), np.array(variance), np.array(share), np.column_stack(first), np.column_stack(total))
 
 
-def _degree(ladder: Ladder, terms: Terms, weights: Array) -> int:
-    """Highest degree of the terms that a ladder stands on and the runs support."""
-    wanted = degree_of(ladder)
-    supported = [d for d in range(1, wanted + 1) if RUNS_PER_TERM * (terms.degrees <= d).sum() <= weights.sum()]
-    return max(supported, default=1)
+def _degree(ladder: Ladder, input_count: int, weights: Array) -> int:
+    """Highest degree that most of a ladder's weight stands on and the runs support, at least 1."""
+    degrees = [d for d in range(2, HIGHEST_DEGREE + 1) if sum(one.weight for one in ladder if one.degree >= d) > 0.5]
+    runs = RUNS_PER_TERM * np.array([term_count(input_count, d) - 1 for d in degrees])
+    return max([d for d, needed in zip(degrees, runs, strict=True) if needed <= weights.sum()], default=1)
 
 
 def _one_output(

@@ -13,13 +13,13 @@ from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.bed_effect import BedEffect
-from lithobrake.emulator.coordinates import from_coordinate
-from lithobrake.emulator.density import DENSITY_FACTOR, Kernels
+from lithobrake.emulator.density import Kernels
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
-from lithobrake.emulator.observed_density import observed_density
+from lithobrake.emulator.observed_density import density_kernels, observed_density
 from lithobrake.emulator.outcome_classes import fit_classes
-from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
@@ -94,13 +94,13 @@ class Emulator(Parts):
         share = self.scores.gain / self.scores.energy_of_rows
         return (
             f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}; the best of "
-            f"{len(BANDWIDTHS)} kernel widths) than drawing one of the {count} runs with outputs ({number} {groups})."
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) "
+            f"than drawing one of the {count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:
         """Chances of the outcomes at x [point_count, input_count], shape [point_count, outcome_count]."""
-        return self.classes.chances(self._linear(self._matrix(x)))
+        return self.classes.chances(self._matrix(x))
 
     def sample(
         self,
@@ -129,15 +129,15 @@ class Emulator(Parts):
         upper: ArrayLike | None = None,
     ) -> Draws:
         """Draw as `sample` does, and say with which outcome and from which run."""
-        matrix = self._matrix(x)
-        count = sample_count("count", count, len(matrix) * len(self.output_names))
-        low, high = self.runs.bounds_at(lower, upper, len(matrix))
+        points = checked_points(self.runs.inputs, x)
+        count = sample_count("count", count, len(points) * len(self.output_names))
+        low, high = self.runs.bounds_at(lower, upper, len(points))
         random = random_numbers(seed)
         parts = []
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
-        for start in range(0, len(matrix), step):
+        for start in range(0, len(points), step):
             block = slice(start, start + step)
-            parts.append(self._block(matrix[block], count, low[block], high[block], random))
+            parts.append(self._block(self.terms.matrix(points[block]), count, low[block], high[block], random))
         if not parts:
             empty = np.empty((0, count), dtype=np.int64)
             return Draws(np.empty((0, count, len(self.output_names))), empty, empty)
@@ -178,15 +178,10 @@ class Emulator(Parts):
         """Fit anew with each run counted as often as weights say [run_count]."""
         counted = self.runs.checked_weights(weights)
         matrix = self._run_matrix
-        law = fit_law(
-            self.terms.indices,
-            matrix[self.runs.has_outputs],
-            self.runs.coordinates,
-            self.choices,
-            counted[self.runs.has_outputs],
-        )
-        linear, names = self._linear(matrix), self.outcome_names
-        classes = fit_classes(linear, self.runs.outcome, len(names), self.inverse_penalty, counted)
+        there, indices = self.runs.has_outputs, self.terms.indices
+        law = fit_law(TermTable(indices, matrix[there], counted[there]), self.runs.coordinates, self.choices)
+        factors, penalty = self.class_choice.factors(indices), self.class_choice.inverse_penalty
+        classes = fit_classes(matrix, factors, self.runs.outcome, len(self.outcome_names), penalty, counted)
         return replace(self, weights=counted, law=law, classes=classes)
 
     def mean_law(self, physical: bool = False) -> MeanLaw:
@@ -196,7 +191,7 @@ class Emulator(Parts):
         """
         target = self.runs.y[:, list(self.runs.modelled)] if physical else self.runs.coordinates
         there = self.runs.has_outputs
-        return mean_law(self.terms, self._run_matrix[there], target, self.choices.location, self.weights[there])
+        return mean_law(self.runs.inputs, self.runs.x[there], target, self.choices.location, self.weights[there])
 
     def found_inputs(self, level: float = LEVEL, seed: int = 0) -> dict[str, bool]:
         """Say which inputs change the mean of any output: one test for all inputs and outputs together.
@@ -205,22 +200,17 @@ class Emulator(Parts):
         which is found may have next to no variance of an output of its own; which output it changes is not said.
         """
         there = self.runs.has_outputs
-        found = found_inputs(self.terms, self._run_matrix[there], self.runs.coordinates, level, seed)
+        found = found_inputs(self.runs.inputs, self.runs.x[there], self.runs.coordinates, level, seed)
         return dict(zip(self.runs.inputs, found.tolist(), strict=True))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file, from which `load` gives the same draws."""
         write(FORMAT, content_of(self, self.statement), path)
 
-    @cached_property
-    def row_points(self) -> Array:
-        """Standardised inputs of the runs with outputs [output_run_count, input_count]."""
-        return self._linear(self._run_matrix)[self.runs.has_outputs]
-
     @property
     def kernels(self) -> Kernels:
         """The kernels about the residual rows whose sum is the density of an observed run."""
-        return Kernels.of(self.law.rows, *smoothing(self.law.rows, self.law.weights, DENSITY_FACTOR))
+        return density_kernels(self)
 
     @property
     def bed_effect(self) -> BedEffect:
@@ -242,15 +232,15 @@ class Emulator(Parts):
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
         """Draws at some points: y, outcome and row, as in Draws."""
         linear, columns = self._linear(matrix), list(self.runs.modelled)
-        outcome = drawn_rows(self.classes.chances(linear), count, random)
-        chances = row_weights(linear, self.row_points, self.law.weights, self.choices.bandwidth)
+        outcome = drawn_rows(self.classes.chances(matrix), count, random)
+        chances = row_weights(linear, self.row_points, self.law.weights, self.choices.widths)
         row = drawn_rows(chances, count, random)
         location, scale = self.law.at(matrix)
         size, root = smoothing(self.law.rows, self.law.weights)
         scatter = smoothed(self.law.rows[row], size, root, random)
         y = self.runs.y[row]
         coordinate = location[:, None] + scale[:, None] * scatter
-        y[:, :, columns] = from_coordinate(coordinate, lower[:, None, columns], upper[:, None, columns])
+        y[:, :, columns] = self.runs.outputs_of(coordinate, lower[:, None], upper[:, None])
         without = outcome != self.runs.output_outcome
         y[without] = np.nan
         # A place among the runs with outputs becomes one among all runs.

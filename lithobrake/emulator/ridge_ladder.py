@@ -1,130 +1,159 @@
-"""Location and scale: ridges that walk from no inputs to a linear, a quadratic and, with many runs, a cubic law.
+"""Location and scale: ridges that walk from no inputs to all of them, and one that learns how its terms fade.
 
-A rung says which inputs a ridge uses, by what factor products and squares (and cubes) count beside the linear terms of
-an orthonormal basis, and under what penalty. Rungs are averaged by their evidence, the marginal likelihood of the data
-with the terms' coefficients as normal: one rung alone would follow the luck of its choice. The average is a polynomial
-chaos expansion again. Source: [Hoerl-1970] (ridge); [Hoeting-1999] (averaging).
+A rung says how far each input counts, how much less each further degree of it does, up to which total degree, and under
+what penalty. Rungs are averaged by their evidence, the marginal likelihood of the data with the terms' coefficients as
+normal: one rung alone would follow the luck of its choice. The average is a polynomial chaos expansion again.
+Source: [Hoerl-1970] (ridge); [Hoeting-1999] (averaging).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby, product
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.multi_index import Indices, multi_index_set
+from lithobrake.chaos.multi_index import Indices
+from lithobrake.emulator.fading_ridge import exponents, learnt
 from lithobrake.vocabulary.arrays import Array
 
-# Finer steps of factors and penalties gave the same errors.
-SECOND_FACTORS = (0.0, 0.4)
-THIRD_FACTORS = (0.0, 0.15)
-# Cubic terms of five inputs are 35: with fewer runs than this they are mostly noise.
-CUBIC_FROM = 500
-# With more inputs than this a ridge has no products and squares, and no ladder cubes: of thirty inputs there are 465,
-# for each of as many sets of inputs, which takes minutes and tells more than any runs do.
-MOST_OF_SECOND_DEGREE = 12
+# Of a rung that walks: the deviation of a square beside that of a linear term. Finer steps gave the same errors.
+FADE = 0.4
 # Penalties in units of the number of runs: of a term of an orthonormal basis 1 / (1 + penalty) is left.
 PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
+# With more inputs than this a ridge that walks has no products and squares: of thirty inputs there are 465, for each of
+# as many sets of inputs, which takes minutes and tells more than any runs do.
+MOST_OF_SECOND_DEGREE = 12
 # Rungs of less weight are left out of the average.
 LEAST_WEIGHT = 0.005
-
-
-@dataclass(frozen=True)
-class Terms:
-    """Multi-indices [term_count, input_count] by total degree, the constant left out: linear terms come first, in the
-    order of the inputs, and each has variance 1 over the law of its input.
-    """
-
-    inputs: dict[str, Distribution]
-    indices: Indices
-
-    @property
-    def degrees(self) -> NDArray[np.int64]:
-        """Total degree of each term [term_count]."""
-        return self.indices.sum(axis=1)
-
-    def matrix(self, points: Array) -> Array:
-        """Terms at points in physical units [count, input_count], shape [count, term_count]."""
-        return np.ascontiguousarray(basis_matrix(self.inputs, self.indices, points))
-
-
-def terms_up_to(inputs: Mapping[str, Distribution], degree: int) -> Terms:
-    """All terms up to a total degree, as far as the inputs determine them."""
-    highest = [int(min(degree, entry.highest_degree)) for entry in inputs.values()]
-    return Terms(dict(inputs), multi_index_set(len(inputs), degree, max_degrees=highest)[1:])
+# Of a learnt rung an input takes no part if less than this is left of each of its terms.
+LEAST_LEFT = 0.1
+# Of a run, what a fit has to leave of it for its residual to be inflated in full.
+LEAST_FREE = 0.05
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A ridge on these inputs: factors of second and third block, penalty, and weight in the average of a ladder."""
+    """A ridge: amplitude of each input, 0 where it is left out, and fade by each further degree [input_count], total
+    degree, penalty, and weight in the average of a ladder.
+    """
 
-    inputs: tuple[int, ...]
-    second: float
-    third: float
+    amplitudes: tuple[float, ...]
+    fades: tuple[float, ...]
+    degree: int
     penalty: float
     weight: float = 1.0
 
     def factors(self, indices: Indices) -> Array:
         """Factor of each term [term_count]; 0 leaves it out."""
-        others = [k for k in range(indices.shape[1]) if k not in self.inputs]
-        inside = (indices[:, others] == 0).all(axis=1)
-        return np.array([0.0, 1.0, self.second, self.third])[indices.sum(axis=1)] * inside
+        amplitudes, fades = np.array(self.amplitudes), np.array(self.fades)
+        each = np.where(indices > 0, amplitudes * fades ** np.maximum(indices - 1, 0), 1.0)
+        return np.prod(each, axis=1) * (indices.sum(axis=1) <= self.degree)
 
 
 # What of an average is not there is no inputs at all.
 Ladder = tuple[Rung, ...]
 
 
-def highest_degree(run_count: int, input_count: int) -> int:
-    """Total degree of the terms that a ladder looks at."""
-    return 3 if run_count > CUBIC_FROM and input_count <= MOST_OF_SECOND_DEGREE else 2
+class TermTable:
+    """Terms at runs that count as often as weights say: matrix [count, term_count], the constant left out."""
+
+    def __init__(self, indices: Indices, matrix: Array, weights: Array) -> None:
+        self.indices, self.matrix, self.weights, self.total = indices, matrix, weights, float(weights.sum())
+        self.centre = weights @ matrix / self.total
+        self.centred = matrix - self.centre
+        self.gram = self.centred.T @ (weights[:, None] * self.centred)
+
+    def of(self, chosen: NDArray[np.bool_]) -> "TermTable":
+        """That of some of the runs, chosen [count]."""
+        return TermTable(self.indices, self.matrix[chosen], self.weights[chosen])
+
+    def at(self, coefficients: Array) -> Array:
+        """What coefficients [1 + term_count] of an expansion give at the runs [count]."""
+        return np.asarray(coefficients[0] + self.matrix @ coefficients[1:])
 
 
-def best_ladder(indices: Indices, matrix: Array, target: Array) -> Ladder:
-    """Rungs and their weights for a target [count]; matrix: terms without the constant [count, term_count].
+@dataclass(frozen=True)
+class _Sums:
+    """Sums of squares of centred terms [term_count, term_count], with the target, and of the target, of count runs."""
 
-    Inputs are added one at a time, the one of most evidence first; all rungs on the way enter the average.
+    gram: Array
+    moments: Array
+    total: float
+    count: float
+
+
+def best_ladder(design: TermTable, target: Array, *, fades: bool = True) -> Ladder:
+    """Rungs and their weights for a target [count].
+
+    Inputs are added one at a time, the one of most evidence first; all rungs on the way enter the average, and so does
+    one with amplitudes and fades of most evidence, if fades is true.
     """
-    centred, y = matrix - matrix.mean(axis=0), target - target.mean()
-    gram, moments, total, count = centred.T @ centred, centred.T @ y, float(y @ y), len(y)
-    if total <= 1e-24 * count * float(np.abs(target).max()) ** 2:
+    y = target - design.weights @ target / design.total
+    weighted = design.weights * y
+    sums = _Sums(design.gram, design.centred.T @ weighted, float(y @ weighted), design.total)
+    if sums.total <= 1e-24 * sums.count * float(np.abs(target).max()) ** 2:
         return ()
-    # No inputs have the evidence 0, from which the others are counted.
+    return _averaged([*_walked(design.indices, sums), *([_fading(design.indices, sums)] if fades else [])])
+
+
+def fading_rung(design: TermTable, target: Array) -> Rung | None:
+    """The rung of learnt amplitudes and fades; None where the target [count] is constant or no input counts."""
+    y = target - design.weights @ target / design.total
+    weighted = design.weights * y
+    if float(y @ weighted) <= 0.0:
+        return None
+    sums = _Sums(design.gram, design.centred.T @ weighted, float(y @ weighted), design.total)
+    rung = _fading(design.indices, sums)[1]
+    return rung if any(rung.amplitudes) else None
+
+
+def _walked(indices: Indices, sums: _Sums) -> list[tuple[float, Rung]]:
+    """Rungs on growing sets of inputs, with their evidence over that of no inputs."""
     rungs: list[tuple[float, Rung]] = []
     used: tuple[int, ...] = ()
     left = set(range(indices.shape[1]))
     while left:
         best, added = -np.inf, 0
         for one in sorted(left):
-            found = list(_rungs(indices, tuple(sorted((*used, one))), gram, moments, total, count))
+            found = list(_rungs(indices, tuple(sorted((*used, one))), sums))
             rungs += found
             most = max(evidence for evidence, _ in found)
             best, added = (most, one) if most > best else (best, added)
         used, left = (*used, added), left - {added}
-    return _averaged(rungs)
+    return rungs
 
 
-def _rungs(
-    indices: Indices, inputs: tuple[int, ...], gram: Array, moments: Array, total: float, count: int
-) -> Iterator[tuple[float, Rung]]:
+def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[tuple[float, Rung]]:
     """Rungs on these inputs with their evidence, the logarithm of their marginal likelihood over that of no inputs."""
-    degree = int(indices.sum(axis=1).max()) if len(inputs) <= MOST_OF_SECOND_DEGREE else 1
-    seconds, thirds = SECOND_FACTORS if degree > 1 else (0.0,), THIRD_FACTORS if degree > 2 else (0.0,)
-    for second, third in product(seconds, thirds):
-        factors = Rung(inputs, second, third, 0.0).factors(indices)
+    amplitudes = tuple(float(k in inputs) for k in range(indices.shape[1]))
+    amplitudes = tuple(FADE * one for one in amplitudes)
+    fades = (FADE,) * len(amplitudes)
+    for degree in (1, 2) if len(inputs) <= MOST_OF_SECOND_DEGREE else (1,):
+        factors = Rung(amplitudes, fades, degree, 0.0).factors(indices) / FADE
         kept = factors > 0.0
         scaled = factors[kept]
-        values, vectors = np.linalg.eigh(scaled[:, None] * gram[np.ix_(kept, kept)] * scaled)
-        squares = (vectors.T @ (scaled * moments[kept])) ** 2
+        values, vectors = np.linalg.eigh(scaled[:, None] * sums.gram[np.ix_(kept, kept)] * scaled)
+        squares = (vectors.T @ (scaled * sums.moments[kept])) ** 2
         values = np.maximum(values, 0.0)
-        ridges = count * np.array(PENALTIES)[:, None]
-        unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=1) / total, 1e-12)
-        evidences = -0.5 * ((count - 1.0) * np.log(unexplained) + np.log1p(values / ridges).sum(axis=1))
+        ridges = sums.count * np.array(PENALTIES)[:, None]
+        unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=1) / sums.total, 1e-12)
+        evidences = -0.5 * ((sums.count - 1.0) * np.log(unexplained) + np.log1p(values / ridges).sum(axis=1))
         for penalty, evidence in zip(PENALTIES, evidences.tolist(), strict=True):
-            yield evidence, Rung(inputs, second, third, penalty)
+            yield evidence, Rung(amplitudes, fades, degree, penalty * FADE**2)
+
+
+def _fading(indices: Indices, sums: _Sums) -> tuple[float, Rung]:
+    """The rung of most evidence, less what its parameters would gain by luck. Source: [Schwarz-1978]."""
+    inputs = indices.shape[1]
+    evidence, logarithms = learnt(indices, sums.gram, sums.moments, sums.total, int(sums.count))
+    amplitudes, fades = np.exp(logarithms[:inputs]), np.exp(logarithms[inputs:-1])
+    squares = np.exp(2.0 * exponents(indices) @ logarithms[:-1] - logarithms[-1])
+    kept = np.max((indices > 0) * squares[:, None], axis=0) > LEAST_LEFT
+    cost = 0.5 * np.log(sums.count) * (1.0 + 2.0 * kept.sum())
+    degree = int(indices.sum(axis=1).max())
+    rung = Rung(tuple((amplitudes * kept).tolist()), tuple(fades.tolist()), degree, float(np.exp(logarithms[-1])))
+    return evidence - float(cost), rung
 
 
 def _averaged(rungs: list[tuple[float, Rung]]) -> Ladder:
@@ -136,43 +165,40 @@ def _averaged(rungs: list[tuple[float, Rung]]) -> Ladder:
     kept = weights >= LEAST_WEIGHT
     share = weights.sum() / weights[kept].sum() if kept.any() else 1.0
     return tuple(
-        Rung(rung.inputs, rung.second, rung.third, rung.penalty, float(weight * share))
+        Rung(rung.amplitudes, rung.fades, rung.degree, rung.penalty, float(weight * share))
         for (_, rung), weight, keep in zip(rungs, weights, kept, strict=True)
         if keep
     )
 
 
-def averaged_ridge(
-    indices: Indices, matrix: Array, target: Array, ladder: Ladder, weights: Array
-) -> tuple[Array, Array]:
-    """Coefficients [1 + term_count], the constant first, and leave-one-out residuals [count] of one target [count].
+class Smoother:
+    """The average of the ridges of a ladder, which is one linear smoother: of any target, at one cost."""
 
-    weights: how often each run counts [count]. The residual of a run leaves out one of its copies.
-    """
-    total = weights.sum()
-    mean, centre = weights @ target / total, weights @ matrix / total
-    centred = matrix - centre
-    gram = centred.T @ (weights[:, None] * centred)
-    # The average of ridges is one linear smoother, of which this is the inverse that ridges have in common.
-    inverse = np.zeros_like(gram)
-    # Rungs that differ in their penalty alone have their eigenvectors in common.
-    for _, alike in groupby(ladder, key=lambda rung: (rung.inputs, rung.second, rung.third)):
-        rungs = list(alike)
-        factors = rungs[0].factors(indices)
-        kept = np.nonzero(factors)[0]
-        scaled = factors[kept]
-        values, vectors = np.linalg.eigh(scaled[:, None] * gram[np.ix_(kept, kept)] * scaled)
-        damped = sum(rung.weight / (np.maximum(values, 0.0) + rung.penalty * total) for rung in rungs)
-        inverse[np.ix_(kept, kept)] += scaled[:, None] * ((vectors * damped) @ vectors.T) * scaled
-    slopes = inverse @ (centred.T @ (weights * (target - mean)))
-    leverage = 1.0 / total + ((centred @ inverse) * centred).sum(axis=1)
-    # A run that its fit passes through has no residual to inflate.
-    residual = (target - mean - centred @ slopes) / np.maximum(1.0 - leverage, 0.05)
-    return np.append(mean - centre @ slopes, slopes), residual
+    def __init__(self, design: TermTable, ladder: Ladder) -> None:
+        self.design = design
+        # What the ridges have in common is the inverse that takes moments to slopes.
+        self.inverse = np.zeros_like(design.gram)
+        # Rungs that differ in their penalty alone have their eigenvectors in common.
+        for _, alike in groupby(ladder, key=lambda rung: (rung.amplitudes, rung.fades, rung.degree)):
+            rungs = list(alike)
+            factors = rungs[0].factors(design.indices)
+            kept = np.nonzero(factors)[0]
+            scaled = factors[kept]
+            values, vectors = np.linalg.eigh(scaled[:, None] * design.gram[np.ix_(kept, kept)] * scaled)
+            damped = sum(rung.weight / (np.maximum(values, 0.0) + rung.penalty * design.total) for rung in rungs)
+            self.inverse[np.ix_(kept, kept)] += scaled[:, None] * ((vectors * damped) @ vectors.T) * scaled
 
+    def coefficients(self, target: Array) -> Array:
+        """Coefficients of a target [count], the constant first, [1 + term_count]."""
+        design = self.design
+        mean = design.weights @ target / design.total
+        slopes = self.inverse @ (design.centred.T @ (design.weights * (target - mean)))
+        return np.append(mean - design.centre @ slopes, slopes)
 
-def degree_of(ladder: Ladder) -> int:
-    """Total degree that most of a ladder's weight stands on, at least 1."""
-    if sum(rung.weight for rung in ladder if rung.third > 0.0) > 0.5:
-        return 3
-    return 2 if sum(rung.weight for rung in ladder if rung.second > 0.0) > 0.5 else 1
+    def left_out(self, target: Array) -> Array:
+        """Residuals of a target [count] at each run by the fit without it, or without one of its copies, [count]."""
+        design = self.design
+        fitted = design.at(self.coefficients(target))
+        leverage = 1.0 / design.total + ((design.centred @ self.inverse) * design.centred).sum(axis=1)
+        # A run that its fit passes through has no residual to inflate.
+        return (target - fitted) / np.maximum(1.0 - leverage, LEAST_FREE)

@@ -5,23 +5,30 @@ runs of a group hang together, as long as inputs were drawn without regard to th
 inputs and outputs of each permutation gives one limit for all. Source: [Westfall-1993] (largest statistic).
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.emulator.mean_law import RUNS_PER_TERM
-from lithobrake.emulator.ridge_ladder import Terms
+from lithobrake.emulator.terms import Terms, terms_up_to
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers
 
 PERMUTATIONS = 399
 
 
-def found_inputs(terms: Terms, matrix: Array, targets: Array, level: float, seed: int) -> NDArray[np.bool_]:
+def found_inputs(
+    inputs: Mapping[str, Distribution], x: Array, targets: Array, level: float, seed: int
+) -> NDArray[np.bool_]:
     """Say for each input [input_count] whether it changes the mean of any target [run_count, target_count].
 
-    matrix: terms [run_count, term_count]. level: chance that no input is found where none has an effect.
+    x: [run_count, input_count] in physical units. level: chance that no input is found where none has an effect.
     """
+    terms = terms_up_to(inputs, 2)
+    matrix = terms.matrix(x)
     finite_number("level", level, above=0.0, below=1.0)
     random = random_numbers(seed)
     varying = targets[:, np.ptp(targets, axis=0) > 0.0]

@@ -18,7 +18,7 @@ from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.coordinates import from_coordinate, with_slope
+from lithobrake.emulator.coordinates import with_slope
 from lithobrake.emulator.latent_likelihood import LatentProblem, branches, problem_of
 from lithobrake.emulator.latent_terms import LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
@@ -70,7 +70,7 @@ class StochasticExpansion:
     @property
     def log_likelihood(self) -> float:
         """Sum over the runs of the logarithm of the density of the output that they had [1 / unit of the output]."""
-        slopes = with_slope(self.runs.y, self.runs.lower, self.runs.upper)[1][:, 0]
+        slopes = with_slope(self.runs.y, *self.runs.bending(self.runs.lower, self.runs.upper))[1][:, 0]
         logarithms = self._problem.log_densities(self.coefficients, self.noise)[0]
         return float(self._problem.weights @ (logarithms + np.log(slopes)))
 
@@ -84,7 +84,7 @@ class StochasticExpansion:
         random = random_numbers(seed)
         polynomials = self.terms.drawn(shape[0] * shape[1], random).reshape(-1, *shape)
         coordinates = np.einsum("pk,kpc->pc", by_power, polynomials) + self.noise * random.standard_normal(shape)
-        return from_coordinate(coordinates, *self.runs.bounds_at(lower, upper, shape[0]))
+        return self._outputs(coordinates, lower, upper)
 
     def density(
         self, x: ArrayLike, y: ArrayLike, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
@@ -121,15 +121,14 @@ class StochasticExpansion:
             middle = 0.5 * (low + high)
             below = self._averaged(special.ndtr, middle, means) < wanted
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return from_coordinate(0.5 * (low + high), *self.runs.bounds_at(lower, upper, len(means)))
+        return self._outputs(0.5 * (low + high), lower, upper)
 
     def mean(self, x: ArrayLike, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None) -> Array:
         """Mean output at each x [point_count, input_count], shape [point_count]."""
         means, weights = self._means(x), self.terms.rule[1]
-        bounds = self.runs.bounds_at(lower, upper, len(means))
         mean = np.zeros(len(means))
         for node, share in zip(*hermite(NOISE_NODES).gauss_rule(), strict=True):
-            mean += share * (from_coordinate(means + self.noise * node, *bounds) @ weights)
+            mean += share * (self._outputs(means + self.noise * node, lower, upper) @ weights)
         return mean
 
     @one_thread()
@@ -177,7 +176,16 @@ class StochasticExpansion:
                 f"y has shape {values.shape}, but must be [value_count] or [{len(means)}, value_count], without NaN"
             )
         low, high = self.runs.bounds_at(lower, upper, len(means))
-        return means, *with_slope(np.broadcast_to(values, (len(means), values.shape[-1])), low, high)
+        table = np.broadcast_to(values, (len(means), values.shape[-1]))
+        coordinate, slope = with_slope(table, *self.runs.bending(low, high))
+        # Beyond a bound that bends nothing there is as little as beyond another one.
+        coordinate = np.where(table <= low, -np.inf, np.where(table >= high, np.inf, coordinate))
+        return means, coordinate, np.where(np.isinf(coordinate), 0.0, slope)
+
+    def _outputs(self, coordinates: Array, lower: ArrayLike | None, upper: ArrayLike | None) -> Array:
+        """Outputs of coordinates [point_count, any] at points with these bounds."""
+        low, high = self.runs.bounds_at(lower, upper, len(coordinates))
+        return self.runs.outputs_of(coordinates[:, :, None], low[:, None], high[:, None])[:, :, 0]
 
     def _averaged(self, function: Callable[[Array], Array], coordinates: Array, means: Array) -> Array:
         """Average over the latent variable of a function of distances from the expansion in units of the noise."""

@@ -12,14 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.threads import one_thread
+from lithobrake.emulator.distant_bounds import with_distant_bounds
 from lithobrake.emulator.latent_likelihood import LatentProblem, problem_of
 from lithobrake.emulator.latent_terms import LATENTS, LatentTerms, latent_terms
+from lithobrake.emulator.scores import folds_of, mean_by_groups
 from lithobrake.emulator.stochastic_expansion import StochasticExpansion
+from lithobrake.emulator.terms import candidate_terms
 from lithobrake.emulator.training import TrainingRuns, checked_runs
-from lithobrake.emulator.validation import folds_of
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import whole_number
 
-HIGHEST_DEGREE = 3
+HIGHEST_DEGREE = 5
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
 RUNS_PER_TERM = 5
 # Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
@@ -45,7 +48,7 @@ def fit_stochastic_expansion(
     x: [run_count, input_count] in physical units.
     y: [run_count]; NaN where a run has no output: the law is that of runs with one.
     groups, lower, upper: as in `fit`.
-    degree: of the terms of the inputs, from 0, no inputs, to 3; None chooses by groups left out.
+    degree: of the terms of the inputs, from 0, no inputs, to 5; None chooses by groups left out.
     latent: distribution of the latent variable, "normal" or "uniform"; None chooses likewise.
     Raises ValueError for shapes and values that do not fit together, too few runs, and an output without scatter.
     """
@@ -54,9 +57,11 @@ def fit_stochastic_expansion(
     if latent is not None and latent not in LATENTS:
         raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
     runs = checked_runs(inputs, x, y, groups, None, None, lower, upper, (), (output_name,))
+    candidate = candidate_terms(runs.inputs)
+    runs = with_distant_bounds(runs, candidate.indices, candidate.matrix(runs.x[runs.has_outputs]))
     weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
     tried = [_held_out(problem_of(runs, terms, weights), group) for terms in _candidates(runs, degree, latent)]
-    chosen = max(tried, key=lambda one: one.logarithm)
+    chosen = _simplest(tried, group)
     shares = NOISE_SHARES[: chosen.share_count]
     noise, coefficients = list(problem_of(runs, chosen.terms, weights).path(shares))[-1]
     return StochasticExpansion(runs, chosen.terms, coefficients, noise, chosen.logarithm, weights)
@@ -64,13 +69,33 @@ def fit_stochastic_expansion(
 
 @dataclass(frozen=True)
 class _HeldOut:
-    """Terms, how many shares of the noise are gone down for the best, and mean logarithm of the density of a run of
-    groups left out.
+    """Terms, how many shares of the noise are gone down for the best, and logarithm of the density of each run where
+    its group is left out [run_count].
     """
 
     terms: LatentTerms
     share_count: int
-    logarithm: float
+    logarithms: Array
+
+    @property
+    def logarithm(self) -> float:
+        """Their mean."""
+        return float(self.logarithms.mean())
+
+
+def _simplest(tried: list[_HeldOut], group: NDArray[np.int64]) -> _HeldOut:
+    """Of those that the best does not beat by more than a standard error, the one of the fewest terms.
+
+    Of many that are tried, the best is so by luck too.
+    """
+    best = max(tried, key=lambda one: one.logarithm)
+    close = []
+    for one in tried:
+        gain, error = mean_by_groups(best.logarithms - one.logarithms, group)
+        if gain <= error:
+            close.append(one)
+    fewest = min(len(one.terms.indices) for one in close)
+    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithm)
 
 
 def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
@@ -92,14 +117,13 @@ def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
     """Follow the noise down until runs in groups left out are foretold worse than before."""
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]
-    best = _HeldOut(problem.terms, 0, -np.inf)
+    best = _HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
     # All folds go down together, so that what single runs make of a little noise need not be found.
     for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
-        total = sum(
-            problem.of(test).log_densities(coefficients, noise)[0].sum()
-            for test, (noise, coefficients) in zip(tests, steps, strict=True)
-        )
-        if total <= best.logarithm * len(group):
+        logarithms = np.empty(len(group))
+        for test, (noise, coefficients) in zip(tests, steps, strict=True):
+            logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
+        if logarithms.mean() <= best.logarithm:
             break
-        best = _HeldOut(problem.terms, count, float(total) / len(group))
+        best = _HeldOut(problem.terms, count, logarithms)
     return best

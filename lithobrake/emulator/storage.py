@@ -4,6 +4,7 @@ Nothing in the file is executed, and whoever has lost this program can still rea
 """
 
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,9 @@ from lithobrake.chaos.storage import (
     numbers_from_json,
 )
 from lithobrake.emulator.law import Choices, Law
-from lithobrake.emulator.outcome_classes import OutcomeClasses
-from lithobrake.emulator.ridge_ladder import Ladder, Rung, Terms
+from lithobrake.emulator.outcome_classes import ClassChoice, OutcomeClasses
+from lithobrake.emulator.ridge_ladder import Ladder, Rung
+from lithobrake.emulator.terms import Terms
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
 from lithobrake.vocabulary.arrays import Array
@@ -35,11 +37,16 @@ class Parts:
     runs: TrainingRuns
     terms: Terms
     choices: Choices
-    inverse_penalty: float
+    class_choice: ClassChoice
     weights: Array
     law: Law
     classes: OutcomeClasses
     scores: Scores
+
+    @cached_property
+    def row_points(self) -> Array:
+        """Standardised inputs of the runs with outputs [output_run_count, input_count]."""
+        return self.terms.matrix(self.runs.x[self.runs.has_outputs])[:, : len(self.runs.inputs)]
 
 
 def content_of(model: Parts, statement: str) -> dict[str, Any]:
@@ -50,13 +57,14 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
         "scores": {key: getattr(model.scores, key) for key in SCORES},
         "crps_skill": model.scores.crps_skill.tolist(),
         "band_90": model.scores.band_90.tolist(),
-        "bandwidth": _finite(model.choices.bandwidth),
+        "kernel_widths": [_finite(width) for width in model.choices.widths],
         "location_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.location],
         "scale_ladders": [[asdict(rung) for rung in ladder] for ladder in model.choices.scale],
         "multi_indices": model.terms.indices.tolist(),
         "location": model.law.location.tolist(),
         "log_scale": model.law.log_scale.tolist(),
-        "class_inverse_penalty": model.inverse_penalty,
+        "class_inverse_penalty": model.class_choice.inverse_penalty,
+        "class_rung": None if model.class_choice.rung is None else asdict(model.class_choice.rung),
         "class_intercepts": model.classes.intercepts.tolist(),
         "class_slopes": model.classes.slopes.tolist(),
         "class_never": model.classes.never.tolist(),
@@ -75,23 +83,22 @@ def parts_of(content: dict[str, Any]) -> Parts:
     linear = multi_index_set(inputs, 1)[1:]
     if not np.array_equal(indices[:inputs], linear) or (indices[inputs:].sum(axis=1) < 2).any():
         raise ValueError("multi_indices must begin with the linear terms in the order of the inputs")
-    bandwidth = content["bandwidth"]
     choices = Choices(
         tuple(_ladder_from_json(rows, inputs) for rows in content["location_ladders"]),
         tuple(_ladder_from_json(rows, inputs) for rows in content["scale_ladders"]),
-        float("inf") if bandwidth is None else float(bandwidth),
+        _widths_from_json(content["kernel_widths"], inputs),
     )
     weights = column_from_json("weights", content["weights"], len(runs.x))
     law = Law(
         _table("location", content["location"], (1 + len(indices), modelled)),
-        _table("log_scale", content["log_scale"], (1 + inputs, modelled)),
+        _table("log_scale", content["log_scale"], (1 + len(indices), modelled)),
         _table("rows", content["rows"], (len(runs.y), modelled)),
         weights[runs.has_outputs],
     )
     count = len(runs.outcome_names)
     classes = OutcomeClasses(
         column_from_json("class_intercepts", content["class_intercepts"], count),
-        _table("class_slopes", content["class_slopes"], (count, inputs)),
+        _table("class_slopes", content["class_slopes"], (count, len(indices))),
         column_from_json("class_never", content["class_never"], count),
     )
     scores = Scores(
@@ -102,8 +109,11 @@ def parts_of(content: dict[str, Any]) -> Parts:
     )
     if len(choices.location) != modelled or len(choices.scale) != modelled:
         raise ValueError("location_ladders and scale_ladders must have one entry for each modelled output")
-    penalty = float(content["class_inverse_penalty"])
-    return Parts(runs, Terms(runs.inputs, indices), choices, penalty, weights, law, classes, scores)
+    rung = content["class_rung"]
+    class_choice = ClassChoice(
+        float(content["class_inverse_penalty"]), None if rung is None else _ladder_from_json([rung], inputs)[0]
+    )
+    return Parts(runs, Terms(runs.inputs, indices), choices, class_choice, weights, law, classes, scores)
 
 
 def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
@@ -112,6 +122,7 @@ def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
         "inputs": inputs_to_json(runs.inputs),
         "output_names": list(runs.output_names),
         "riders": [runs.output_names[k] for k in runs.riders],
+        "distant_bounds": [runs.output_names[k] for k in runs.distant],
         "outcome_names": list(runs.outcome_names),
         "output_outcome": runs.outcome_names[runs.output_outcome],
         "group": runs.group.tolist(),
@@ -145,6 +156,7 @@ def runs_from_json(content: dict[str, Any]) -> TrainingRuns:
         _table_from_json("upper", content["upper"], (count, len(names)), np.inf),
         names,
         tuple(names.index(rider) for rider in content["riders"]),
+        tuple(names.index(output) for output in content["distant_bounds"]),
     )
 
 
@@ -153,11 +165,19 @@ def _finite(value: float) -> float | None:
 
 
 def _ladder_from_json(rows: Any, input_count: int) -> Ladder:
-    """Rungs of a ladder; raises ValueError for inputs that are not there."""
-    ladder = tuple(Rung(**{**row, "inputs": tuple(row["inputs"])}) for row in rows)
-    if not {one for rung in ladder for one in rung.inputs} <= set(range(input_count)):
-        raise ValueError(f"a ladder has inputs outside 0 to {input_count - 1}")
+    """Rungs of a ladder; raises ValueError for other inputs than there are."""
+    ladder = tuple(Rung(tuple(row.pop("amplitudes")), tuple(row.pop("fades")), **row) for row in map(dict, rows))
+    if any(len(numbers) != input_count for rung in ladder for numbers in (rung.amplitudes, rung.fades)):
+        raise ValueError(f"a rung must have amplitudes and fades for each of {input_count} inputs")
     return ladder
+
+
+def _widths_from_json(values: Any, input_count: int) -> tuple[float, ...]:
+    """Widths of a kernel, null where it does not look at an input."""
+    widths = tuple(float("inf") if value is None else float(value) for value in values)
+    if len(widths) != input_count or not min(widths) > 0.0:
+        raise ValueError(f"kernel_widths must be {input_count} numbers above 0, or null")
+    return widths
 
 
 def _table_to_json(bounds: Array) -> list[list[float | None]]:

@@ -11,7 +11,7 @@ from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distribution_registry import checked_inputs
 from lithobrake.chaos.training import check_magnitude
-from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
+from lithobrake.emulator.coordinates import from_coordinate, inside, to_coordinate
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
@@ -27,7 +27,7 @@ class TrainingRuns:
     """Runs of a model. x [run_count, input_count]; outcome [run_count], places among the outcome names; group
     [run_count], numbers from 0; y, lower, upper [output_run_count, output_count] of the runs with outputs alone.
 
-    riders: columns of y that are drawn with their row unchanged.
+    riders: columns of y that are drawn with their row unchanged. distant: columns whose bounds bend no coordinate.
     """
 
     inputs: dict[str, Distribution]
@@ -41,6 +41,7 @@ class TrainingRuns:
     upper: Array
     output_names: tuple[str, ...]
     riders: tuple[int, ...]
+    distant: tuple[int, ...] = ()
 
     @cached_property
     def has_outputs(self) -> NDArray[np.bool_]:
@@ -55,8 +56,19 @@ class TrainingRuns:
     @cached_property
     def coordinates(self) -> Array:
         """Coordinates of the modelled outputs [output_run_count, modelled_count]."""
-        columns = list(self.modelled)
-        return to_coordinate(self.y[:, columns], self.lower[:, columns], self.upper[:, columns])
+        columns, (low, high) = list(self.modelled), self.bending(self.lower, self.upper)
+        return to_coordinate(self.y[:, columns], low[:, columns], high[:, columns])
+
+    def bending(self, lower: Array, upper: Array) -> tuple[Array, Array]:
+        """Of bounds [..., output_count] those that bend a coordinate, infinite for the others."""
+        unbent = np.isin(np.arange(self.y.shape[1]), self.distant)
+        return np.where(unbent, -np.inf, lower), np.where(unbent, np.inf, upper)
+
+    def outputs_of(self, coordinates: Array, lower: Array, upper: Array) -> Array:
+        """Modelled outputs of coordinates [..., modelled_count] between bounds [..., output_count] of all outputs."""
+        columns, (low, high) = list(self.modelled), self.bending(lower, upper)
+        y = from_coordinate(coordinates, low[..., columns], high[..., columns])
+        return inside(y, lower[..., columns], upper[..., columns])
 
     def bounds_at(self, lower: ArrayLike | None, upper: ArrayLike | None, count: int) -> tuple[Array, Array]:
         """Bounds [count, output_count] at points: those given, or those of the runs where they never differed."""
@@ -174,7 +186,7 @@ def _check_resolution(runs: TrainingRuns) -> None:
     columns = list(runs.modelled)
     y, low, high = (table[:, columns] for table in (runs.y, runs.lower, runs.upper))
     with np.errstate(over="ignore", invalid="ignore"):
-        back = from_coordinate(runs.coordinates, low, high)
+        back = runs.outputs_of(runs.coordinates, runs.lower, runs.upper)
         lost = ~(np.abs(back - y).max(axis=0) <= ROUNDING * np.ptp(y, axis=0))
     lost &= np.ptp(y, axis=0) > 0.0
     if lost.any():

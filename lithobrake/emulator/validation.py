@@ -1,19 +1,21 @@
 """What a law is worth on groups that it has not seen, beside drawing one of the runs whatever the inputs."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.multi_index import Indices
-from lithobrake.emulator.coordinates import from_coordinate
 from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, rows_alone
-from lithobrake.emulator.residual_rows import BANDWIDTHS, row_weights
+from lithobrake.emulator.residual_rows import kernels, row_weights
+from lithobrake.emulator.ridge_ladder import TermTable
+from lithobrake.emulator.scores import crps, energy_scores, folds_of, mean_by_groups, pit
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.vocabulary.arrays import Array
 
 # Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
-MOST_FOLDS = 24
+MOST_FOLDS = 12
 # Rows of an ensemble whose mutual distances are taken; of more than this every second, third, ... one.
 MOST_MEMBERS = 300
 BAND = (0.05, 0.95)
@@ -47,74 +49,91 @@ class _Fold:
     rows: Law
 
 
-def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
-    """Fold of each run [run_count], whole groups together, numbered from 0."""
-    numbers = np.unique(group, return_inverse=True)[1]
-    # Neighbours in a sequence of runs fall into different folds.
-    return np.asarray(numbers % min(most, int(numbers.max()) + 1), dtype=np.int64)
-
-
 def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tuple[Choices, Scores]:
-    """Choose law and width of the kernel, leaving groups out; matrix [output_run_count, term_count].
+    """Choose law and kernel, leaving groups out; matrix [output_run_count, term_count].
 
-    Where the law is not better than rows alone by more than a standard error, rows alone are chosen: the best of
-    several widths may be better by luck.
+    Each fold is scored by a law and a kernel that are chosen without it, so that the gain is what fresh runs would
+    show. Where it is not more than its standard error, rows alone are chosen.
     """
-    group, outputs = runs.group[runs.has_outputs], runs.coordinates.shape[1]
-    folds = _folds(runs, indices, matrix, folds_of(group, MOST_FOLDS))
-    energy, energy_of_rows = np.empty((len(BANDWIDTHS), len(group))), np.empty(len(group))
+    group, design = runs.group[runs.has_outputs], TermTable(indices, matrix, np.ones(len(matrix)))
+    folds = _folds(runs, design, folds_of(group, MOST_FOLDS))
+    tried = kernels(len(runs.inputs))
+    energies, energy_of_rows = np.empty((len(tried), len(group))), np.empty(len(group))
     for fold in folds:
-        energy[:, fold.test] = _energies(runs, matrix, fold, fold.law, BANDWIDTHS)
-        energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, BANDWIDTHS[:1])[0]
-    best = int(np.argmin(energy.mean(axis=1)))
-    gain, error = _mean_by_groups(energy_of_rows - energy[best], group)
-    choices = best_choices(indices, matrix, runs.coordinates, BANDWIDTHS[best])
-    if gain <= error:
-        choices, energy[best], gain, error = rows_alone(outputs), energy_of_rows, 0.0, 0.0
-    skill, held, places = _calibration(runs, matrix, folds, choices)
-    return choices, Scores(float(energy[best].mean()), float(energy_of_rows.mean()), gain, error, skill, held, places)
+        energies[:, fold.test] = _energies(runs, matrix, fold, fold.law, tried)
+        energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, tried[:1])[0]
+    energy, widths = np.empty(len(group)), []
+    for fold in folds:
+        own = _best_kernel(energies[:, ~fold.test], group[~fold.test])
+        energy[fold.test] = energies[own, fold.test]
+        widths.append(tried[own])
+    gain, error = mean_by_groups(energy_of_rows - energy, group)
+    choices = rows_alone(runs.coordinates.shape[1], len(runs.inputs))
+    if gain > error:
+        choices = replace(best_choices(design, runs.coordinates), widths=tried[_best_kernel(energies, group)])
+    else:
+        energy, gain, error, widths = energy_of_rows, 0.0, 0.0, [choices.widths] * len(folds)
+        folds = [replace(fold, law=fold.rows) for fold in folds]
+    skill, held, places = _calibration(runs, matrix, folds, widths)
+    return choices, Scores(float(energy.mean()), float(energy_of_rows.mean()), gain, error, skill, held, places)
 
 
-def _folds(runs: TrainingRuns, indices: Indices, matrix: Array, fold: NDArray[np.int64]) -> list[_Fold]:
+def _best_kernel(energies: Array, group: NDArray[np.int64]) -> int:
+    """The kernel of least energy [kernel_count, run_count], if it beats the first, none, by a standard error."""
+    best = int(np.argmin(energies.mean(axis=1)))
+    gain, error = mean_by_groups(energies[0] - energies[best], group)
+    return best if gain > error else 0
+
+
+def _folds(runs: TrainingRuns, design: TermTable, fold: NDArray[np.int64]) -> list[_Fold]:
     """Fit anew without each fold, and choose anew too: a choice must not have seen what it is tested on."""
     folds = []
     for number in range(int(fold.max()) + 1):
         test = fold == number
-        rest, kept, ones = matrix[~test], runs.coordinates[~test], np.ones((~test).sum())
+        rest, kept = design.of(~test), runs.coordinates[~test]
         laws = [
-            fit_law(indices, rest, kept, choices, ones)
-            for choices in (best_choices(indices, rest, kept), rows_alone(kept.shape[1]))
+            fit_law(rest, kept, choices)
+            for choices in (best_choices(rest, kept), rows_alone(kept.shape[1], len(runs.inputs)))
         ]
         folds.append(_Fold(test, laws[0], laws[1]))
     return folds
 
 
-def _energies(runs: TrainingRuns, matrix: Array, fold: _Fold, law: Law, bandwidths: tuple[float, ...]) -> Array:
-    """Energy scores [bandwidth_count, case_count] of the runs that a law has not seen, in units of the spread."""
+def _energies(runs: TrainingRuns, matrix: Array, fold: _Fold, law: Law, tried: Sequence[Sequence[float]]) -> Array:
+    """Energy scores [kernel_count, case_count] of the runs that a law has not seen, in units of the spread."""
     spread = runs.coordinates.std(axis=0)
     unit = np.where(spread > 0.0, spread, 1.0)
     location, scale = law.at(matrix[fold.test])
     observed = (runs.coordinates[fold.test] - location) / unit
     inputs = len(runs.inputs)
-    thinned = slice(None, None, -(-len(law.rows) // MOST_MEMBERS))
+    # Of one output the score costs no mutual distances.
+    thinned = slice(None, None, 1 if scale.shape[1] == 1 else -(-len(law.rows) // MOST_MEMBERS))
     rows, points = law.rows[thinned], matrix[~fold.test][thinned, :inputs]
-    weights = [row_weights(matrix[fold.test, :inputs], points, np.ones(len(rows)), one) for one in bandwidths]
+    weights = [row_weights(matrix[fold.test, :inputs], points, np.ones(len(rows)), one) for one in tried]
+    if scale.shape[1] == 1:
+        return np.stack([crps(scale / unit * rows[:, 0], one, observed[:, 0]) for one in weights])
     return energy_scores(rows, np.stack(weights), scale / unit, observed)
 
 
-def _calibration(runs: TrainingRuns, matrix: Array, folds: list[_Fold], choices: Choices) -> tuple[Array, Array, Array]:
-    """CRPS skill and share in the 90 % band [modelled_count], and PIT [output_run_count, modelled_count]."""
+def _calibration(
+    runs: TrainingRuns, matrix: Array, folds: Sequence[_Fold], widths: Sequence[Sequence[float]]
+) -> tuple[Array, Array, Array]:
+    """CRPS skill and share in the 90 % band [modelled_count], and PIT [output_run_count, modelled_count].
+
+    widths: of the kernel of each fold.
+    """
     columns, inputs = list(runs.modelled), len(runs.inputs)
     y, places = runs.y[:, columns], np.empty(runs.coordinates.shape)
     losses, losses_of_rows = np.empty(y.shape), np.empty(y.shape)
-    for fold in folds:
-        test, law = fold.test, fold.law if choices.follows_inputs else fold.rows
-        weights = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, choices.bandwidth)
-        alike = row_weights(matrix[test, :inputs], matrix[~test, :inputs], law.weights, float("inf"))
+    alike = rows_alone(len(columns), inputs).widths
+    for fold, own in zip(folds, widths, strict=True):
+        test, law = fold.test, fold.law
+        points, others = matrix[test, :inputs], matrix[~test, :inputs]
+        weights, equal = (row_weights(points, others, law.weights, one) for one in (own, alike))
         members, members_of_rows = (_members(runs, matrix, test, one) for one in (law, fold.rows))
         for j in range(len(columns)):
             losses[test, j] = crps(members[:, :, j], weights, y[test, j])
-            losses_of_rows[test, j] = crps(members_of_rows[:, :, j], alike, y[test, j])
+            losses_of_rows[test, j] = crps(members_of_rows[:, :, j], equal, y[test, j])
             places[test, j] = pit(members[:, :, j], weights, y[test, j])
     worst = losses_of_rows.mean(axis=0)
     skill = 1.0 - losses.mean(axis=0) / np.where(worst > 0.0, worst, 1.0)
@@ -124,53 +143,6 @@ def _calibration(runs: TrainingRuns, matrix: Array, folds: list[_Fold], choices:
 def _members(runs: TrainingRuns, matrix: Array, test: NDArray[np.bool_], law: Law) -> Array:
     """Outputs that each row of a law gives at the runs under test, [case_count, row_count, modelled_count]."""
     location, scale = law.at(matrix[test])
-    low, high = (bound[test][:, None, list(runs.modelled)] for bound in (runs.lower, runs.upper))
-    return from_coordinate(location[:, None] + scale[:, None] * law.rows, low, high)
-
-
-def _mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
-    """Mean of values [run_count] and its standard error, as groups and not runs are independent."""
-    numbers = np.unique(group, return_inverse=True)[1]
-    sums = np.bincount(numbers, weights=values - values.mean())
-    count = len(sums)
-    return float(values.mean()), float(np.sqrt(count / (count - 1.0) * (sums**2).sum()) / len(values))
-
-
-def energy_scores(points: Array, weights: Array, scales: Array, observed: Array) -> Array:
-    """Energy score of ensembles that share their members, [weighting_count, case_count]; the smaller, the better.
-
-    points [member_count, output_count], which case i stretches by scales [case_count, output_count]; weights
-    [weighting_count, case_count, member_count] sum to 1; observed [case_count, output_count], from the ensemble's
-    location. Source: [Gneiting-2007], Eq 22.
-    """
-    squares = (points[:, None] - points) ** 2
-    scores = np.empty(weights.shape[:2])
-    for case, (scale, seen) in enumerate(zip(scales, observed, strict=True)):
-        weight = weights[:, case]
-        distances = np.sqrt(((seen - scale * points) ** 2).sum(axis=1))
-        spread = np.sqrt(squares @ scale**2)
-        scores[:, case] = weight @ distances - 0.5 * ((weight @ spread) * weight).sum(axis=1)
-    return scores
-
-
-def crps(values: Array, weights: Array, observed: Array) -> Array:
-    """Continuous ranked probability score of ensembles, [case_count]: values, weights [case_count, member_count].
-
-    Source: [Gneiting-2007], Eq 21.
-    """
-    order = np.argsort(values, axis=1)
-    sorted_values, sorted_weights = (
-        np.take_along_axis(values, order, axis=1),
-        np.take_along_axis(weights, order, axis=1),
+    return runs.outputs_of(
+        location[:, None] + scale[:, None] * law.rows, runs.lower[test][:, None], runs.upper[test][:, None]
     )
-    below = np.cumsum(sorted_weights, axis=1) - 0.5 * sorted_weights
-    spread = (sorted_weights * sorted_values * (2.0 * below - 1.0)).sum(axis=1)
-    return (weights * np.abs(values - observed[:, None])).sum(axis=1) - spread
-
-
-def pit(values: Array, weights: Array, observed: Array) -> Array:
-    """Probability integral transform [case_count]: the ensemble's chance of less than what was observed.
-
-    Uniform between 0 and 1 where ensembles are right.
-    """
-    return (weights * ((values < observed[:, None]) + 0.5 * (values == observed[:, None]))).sum(axis=1)

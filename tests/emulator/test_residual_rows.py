@@ -8,7 +8,7 @@ from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed,
 
 def test_near_rows_are_drawn_more_often() -> None:
     rows = np.array([[-1.0], [0.0], [1.0]])
-    chances = row_weights(np.array([[-1.0], [1.0], [50.0]]), rows, np.ones(3), 0.5)
+    chances = row_weights(np.array([[-1.0], [1.0], [50.0]]), rows, np.ones(3), [0.5 * np.sqrt(2.0)])
     np.testing.assert_allclose(chances.sum(axis=1), 1.0)
     assert (np.diff(chances[0]) < 0.0).all()
     assert (np.diff(chances[1]) > 0.0).all()

@@ -212,7 +212,7 @@ def test_a_damaged_file_is_refused(tmp_path: Path, key: str, value: object) -> N
         ({"y": np.full(RUNS, 7.0)}, "y does not scatter"),
         ({"y": np.zeros(3)}, "y has shape"),
         ({"lower": 1.0}, "y is"),
-        ({"degree": 4}, "degree is 4, but must be a whole number from 0 to 3"),
+        ({"degree": 6}, "degree is 6, but must be a whole number from 0 to 5"),
         ({"degree": 1.5}, "degree is 1.5"),
         ({"latent": "gamma"}, "latent is 'gamma', but must be one of normal, uniform"),
         ({"groups": np.zeros(RUNS)}, "groups hold one group"),

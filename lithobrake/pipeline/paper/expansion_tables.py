@@ -83,10 +83,10 @@ def expansion_tables(
     return {
         **input_tables(inputs, terms),
         "multi_indices": terms.astype(float),
-        "bandwidth": np.array([np.inf]),
+        "kernel_widths": np.full(len(inputs), np.inf),
         "row_inputs": np.zeros((len(rows), len(inputs))),
         "location": location,
-        "log_scale": np.zeros((refits, len(inputs) + 1, count)),
+        "log_scale": np.zeros((refits, len(terms) + 1, count)),
         "rows": np.repeat(rows[None], refits, axis=0),
         "row_weights": np.full((refits, len(rows)), 1.0 / len(rows)),
         "smoothing_size": np.zeros(refits),

@@ -41,7 +41,8 @@ class Law {
     this.classTerms = this.class_slopes.shape[2];
     this.grows ??= new Float64Array(this.outputs);
     this.withOutputs = facts.outcomeNames.indexOf(facts.outputOutcome);
-    this.kernelWidth = this.bandwidth[0] * Math.sqrt(2 * this.inputs);
+    // Inputs by whose nearness rows are drawn.
+    this.near = Array.from(this.kernel_widths.keys()).filter((input) => Number.isFinite(this.kernel_widths[input]));
     this.polynomial = new Float64Array(this.degree + 1);
     this.factors = new Float64Array(this.inputs * (this.degree + 1));
     this.nearness = new Float64Array(this.rowCount);
@@ -51,15 +52,19 @@ class Law {
     this.scale = new Float64Array(this.outputs);
     const alike = (_, refit) => this.accumulated(refit, null, new Float64Array(this.rowCount));
     this.fixedEnds = Array.from({ length: this.refits }, alike);
-    // Terms that no refit uses cost time alone: all of degree two and more, where the law is linear.
+    // Terms that no refit uses cost time alone.
     this.used = Array.from({ length: this.terms }, (_, term) => term).filter((term) => this.isUsed(term));
   }
 
   isUsed(term) {
     for (let refit = 0; refit < this.refits; refit++)
       for (let k = 0; k < this.outputs; k++)
-        if (this.location[(refit * (this.terms + 1) + term + 1) * this.outputs + k] !== 0) return true;
-    return term < Math.max(this.inputs, this.classTerms);
+        for (const table of [this.location, this.log_scale])
+          if (table[(refit * (this.terms + 1) + term + 1) * this.outputs + k] !== 0) return true;
+    if (term < this.classTerms)
+      for (let row = 0; row < this.refits * this.classes; row++)
+        if (this.class_slopes[row * this.classTerms + term] !== 0) return true;
+    return term < this.inputs;
   }
 
   germOf(input, x) {
@@ -103,19 +108,17 @@ class Law {
 
   // Locations and scales [output_count] of the coordinates, into this.where and this.scale.
   placeAt(refit, terms) {
-    const { used, outputs, inputs, location, log_scale, where, scale } = this;
-    let first = refit * (this.terms + 1) * outputs;
-    for (let k = 0; k < outputs; k++) where[k] = location[first + k];
+    const { used, outputs, location, log_scale, where, scale } = this;
+    const first = refit * (this.terms + 1) * outputs;
+    for (let k = 0; k < outputs; k++) [where[k], scale[k]] = [location[first + k], log_scale[first + k]];
     for (let one = 0; one < used.length; one++) {
       const factor = terms[used[one]], start = first + (used[one] + 1) * outputs;
-      for (let k = 0; k < outputs; k++) where[k] += factor * location[start + k];
+      for (let k = 0; k < outputs; k++) {
+        where[k] += factor * location[start + k];
+        scale[k] += factor * log_scale[start + k];
+      }
     }
-    first = refit * (inputs + 1) * outputs;
-    for (let k = 0; k < outputs; k++) {
-      let sum = log_scale[first + k];
-      for (let input = 0; input < inputs; input++) sum += terms[input] * log_scale[first + (input + 1) * outputs + k];
-      scale[k] = Math.exp(sum);
-    }
+    for (let k = 0; k < outputs; k++) scale[k] = Math.exp(scale[k]);
   }
 
   // Chances of the outcomes [class_count].
@@ -123,8 +126,8 @@ class Law {
     let largest = -Infinity, total = 0, never = 0;
     for (let c = 0; c < this.classes; c++) {
       let logit = this.class_intercepts[refit * this.classes + c];
-      for (let term = 0; term < this.classTerms; term++)
-        logit += terms[term] * this.class_slopes[(refit * this.classes + c) * this.classTerms + term];
+      for (const term of this.used)
+        if (term < this.classTerms) logit += terms[term] * this.class_slopes[(refit * this.classes + c) * this.classTerms + term];
       const unmet = this.class_never[refit * this.classes + c];
       never += unmet;
       into[c] = unmet > 0 ? -Infinity : logit;
@@ -138,16 +141,16 @@ class Law {
 
   // How near each row is to a point, the same for all refits; without a kernel all are alike.
   nearnessAt(terms) {
-    if (!Number.isFinite(this.kernelWidth)) return null;
+    if (!this.near.length) return null;
     let least = Infinity;
     for (let row = 0; row < this.rowCount; row++) {
       let square = 0;
-      for (let input = 0; input < this.inputs; input++)
-        square += (terms[input] - this.row_inputs[row * this.inputs + input]) ** 2;
+      for (const input of this.near)
+        square += ((terms[input] - this.row_inputs[row * this.inputs + input]) / this.kernel_widths[input]) ** 2;
       least = Math.min(least, this.nearness[row] = square);
     }
     for (let row = 0; row < this.rowCount; row++)
-      this.nearness[row] = Math.exp(-0.5 * (this.nearness[row] - least) / this.kernelWidth ** 2);
+      this.nearness[row] = Math.exp(-0.5 * (this.nearness[row] - least));
     return this.nearness;
   }
 

@@ -63,9 +63,9 @@ def given_of(models: list[Emulator], **facts: Any) -> dict[str, Any]:
 
 
 @needs_node
-@pytest.mark.parametrize("bandwidth", [np.inf, 0.65])
-def test_a_draw_of_the_browser_is_that_of_python(model: Emulator, bandwidth: float) -> None:
-    wide = replace(model, choices=replace(model.choices, bandwidth=bandwidth))
+@pytest.mark.parametrize("widths", [(np.inf,) * 5, (2.0,) * 5, (0.4, np.inf, np.inf, 0.8, np.inf)])
+def test_a_draw_of_the_browser_is_that_of_python(model: Emulator, widths: tuple[float, ...]) -> None:
+    wide = replace(model, choices=replace(model.choices, widths=widths))
     models, random = [wide, *wide.refits(2, seed=3)], np.random.default_rng(2)
     x = np.column_stack([law.ppf(random.random(40)) for law in INPUTS.values()])
     given = given_of(models)
