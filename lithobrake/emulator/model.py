@@ -14,10 +14,10 @@ from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.threads import one_thread
 from lithobrake.emulator.bed_effect import BedEffect
 from lithobrake.emulator.coordinates import from_coordinate
-from lithobrake.emulator.density import DENSITY_FACTOR, Kernels
+from lithobrake.emulator.density import Kernels
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
-from lithobrake.emulator.observed_density import observed_density
+from lithobrake.emulator.observed_density import kernels_of, observed_density
 from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import BANDWIDTHS, drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.significance import found_inputs
@@ -212,15 +212,10 @@ class Emulator(Parts):
         """Write everything into one readable JSON file, from which `load` gives the same draws."""
         write(FORMAT, content_of(self, self.statement), path)
 
-    @cached_property
-    def row_points(self) -> Array:
-        """Standardised inputs of the runs with outputs [output_run_count, input_count]."""
-        return self._linear(self._run_matrix)[self.runs.has_outputs]
-
     @property
     def kernels(self) -> Kernels:
         """The kernels about the residual rows whose sum is the density of an observed run."""
-        return Kernels.of(self.law.rows, *smoothing(self.law.rows, self.law.weights, DENSITY_FACTOR))
+        return kernels_of(self)
 
     @property
     def bed_effect(self) -> BedEffect:
@@ -243,7 +238,8 @@ class Emulator(Parts):
         """Draws at some points: y, outcome and row, as in Draws."""
         linear, columns = self._linear(matrix), list(self.runs.modelled)
         outcome = drawn_rows(self.classes.chances(linear), count, random)
-        chances = row_weights(linear, self.row_points, self.law.weights, self.choices.bandwidth)
+        run_linear = self._linear(self._run_matrix)[self.runs.has_outputs]
+        chances = row_weights(linear, run_linear, self.law.weights, self.choices.bandwidth)
         row = drawn_rows(chances, count, random)
         location, scale = self.law.at(matrix)
         size, root = smoothing(self.law.rows, self.law.weights)
