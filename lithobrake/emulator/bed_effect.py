@@ -3,7 +3,7 @@
 In coordinates in which residual rows have covariance 1, a run is a bed's effect and a rest of its own. Given runs on a
 bed, the next has the effect's best linear prediction on top, and the rows narrowed to what is left of the covariance:
 any number of runs has the covariance of beds drawn at random, and the first on a bed has the emulator's own law.
-Source: [Searle-1992], sections 3.6 and 7.4 (best linear prediction).
+Source: [Searle-1992], section 3.6 (analysis of variance) and chapter 7 (best linear prediction).
 """
 
 from collections.abc import Sequence

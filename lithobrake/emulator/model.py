@@ -16,7 +16,7 @@ from lithobrake.emulator.bed_effect import BedEffect
 from lithobrake.emulator.density import Kernels
 from lithobrake.emulator.law import fit_law
 from lithobrake.emulator.mean_law import MeanLaw, mean_law
-from lithobrake.emulator.observed_density import density_kernels, observed_density
+from lithobrake.emulator.observed_density import kernels_of, observed_density
 from lithobrake.emulator.outcome_classes import fit_classes
 from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
 from lithobrake.emulator.ridge_ladder import TermTable
@@ -210,7 +210,7 @@ class Emulator(Parts):
     @property
     def kernels(self) -> Kernels:
         """The kernels about the residual rows whose sum is the density of an observed run."""
-        return density_kernels(self)
+        return kernels_of(self)
 
     @property
     def bed_effect(self) -> BedEffect:

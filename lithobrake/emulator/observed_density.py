@@ -17,6 +17,11 @@ from lithobrake.vocabulary.given_numbers import finite_number
 LARGEST_ERROR = 1e100
 
 
+def kernels_of(model: Parts) -> Kernels:
+    """The kernels about the residual rows whose sum is the density of an observed run."""
+    return Kernels.of(model.law.rows, *smoothing(model.law.rows, model.law.weights, DENSITY_FACTOR))
+
+
 def observed_density(
     model: Parts,
     observed: Mapping[str, float],
@@ -46,7 +51,7 @@ def observed_density(
     location, scale = (one[:, places] for one in model.law.at(matrix))
     # What lies beyond a bound at some point cannot have come from there.
     inside = possible & np.all(np.isfinite(coordinate), axis=1)
-    kernels = density_kernels(model)
+    kernels = kernels_of(model)
     standard = (np.where(inside[:, None], coordinate, 0.0) - location) / scale
     blur = slope * [errors.get(name, 0.0) for name in observed] / scale
     left = standard - bed.mean @ kernels.root[places].T
@@ -55,11 +60,6 @@ def observed_density(
     steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
-
-
-def density_kernels(model: Parts) -> Kernels:
-    """The kernels about the residual rows whose sum is the density of an observed run."""
-    return Kernels.of(model.law.rows, *smoothing(model.law.rows, model.law.weights, DENSITY_FACTOR))
 
 
 def _checked_outcome(
