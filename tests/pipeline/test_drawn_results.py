@@ -48,7 +48,7 @@ def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: 
     returns, truth = results.summary["results"]["returns"], flown_share(8000)
     assert returns["lower"] < truth < returns["upper"]
     assert 0.02 < returns["upper"] - returns["lower"] < 0.15
-    assert (returns["from"], returns["level"], returns["why"]) == ("150 landings on 15 beds", 0.9, None)
+    assert (returns["from"], returns["level"], returns["why"]) == ("150 landings on 12 beds", 0.9, None)
     assert abs(returns["emulator"] - truth) < 0.05
     returning = results.summary["results"]["shares"]["returns"]
     assert returning["lower"] < truth < returning["upper"]
