@@ -59,10 +59,12 @@ class ExpectedHalfWidth:
 
     def lines(self) -> list[str]:
         """The half width in words."""
-        counts, ends = f"{self.run_count} runs on {self.bed_count} beds", (self.lower, self.upper)
+        width = f"{_points(self.lower)} to {_points(self.upper)} points in nine of ten such studies"
+        if self.lower == self.upper:
+            width = f"{_points(self.lower)} points"
         lines = [
-            f"Expected half-width of the {100 * self.level:.0f} % interval of {self.answer} ({counts}): "
-            f"{' to '.join(map(_points, ends))} points in nine of ten such studies."
+            f"Expected half-width of the {100 * self.level:.0f} % interval of {self.answer} ({self.run_count} runs on "
+            f"{self.bed_count} beds): {width}."
         ]
         if self.by_fraction:
             told = ", ".join(f"{_points(width)} at {share}" for share, width in self.by_fraction.items())

@@ -81,7 +81,9 @@ class Stopping:
 
 def rare(out: Path, name: str = "fast", model: NoisyLander | None = None, **options: Any) -> dict[str, Any]:
     model = model or NoisyLander()
-    source = StudySource.of_tables(synthetic_tables(limit_states=CONDITIONS), function_identity(model))
+    tables = synthetic_tables(limit_states=CONDITIONS)
+    tables["bed"]["bed_count"] = 15
+    source = StudySource.of_tables(tables, function_identity(model))
     return rare_failure(source, out, name, **{"landing_count": 200, "worker_count": 1, "model": model, **options})
 
 
