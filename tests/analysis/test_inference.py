@@ -109,7 +109,8 @@ def test_a_shared_bed_needs_runs_that_share_beds() -> None:
 
 
 def test_many_bounces_take_points_near_those_that_carry_weight(model: Emulator) -> None:
-    values = [1.5] * 30
+    # They scatter as the law does: thirty that are alike would speak for soils with less scatter.
+    values = (1.5 + SCATTER * stats.norm.ppf((np.arange(30) + 0.5) / 30)).tolist()
     found = infer(model, [Observation({"speed": value}) for value in values], refit_count=0, point_count=1024)
     assert found.is_reliable
     assert len(found.points) == 1024

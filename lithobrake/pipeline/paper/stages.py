@@ -26,7 +26,7 @@ from lithobrake.pipeline.runs.stages import PARTS as RUN_PARTS
 from lithobrake.pipeline.stage import Stage, same_files
 from lithobrake.study import Study
 
-PARTS = ("pipeline/paper", "analysis", *RUN_PARTS)
+PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
 
 
 def _design(*names: str) -> Callable[[Study], Any]:
