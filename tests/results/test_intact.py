@@ -18,7 +18,7 @@ from lithobrake.results.intact import intact_file
 
 BODY = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 SUMMARY = {
-    "format_version": 3,
+    "format_version": 4,
     "study": {},
     "results": {"headline": ["75 % return"], "answer": ["75 % return"], "beds": [{"mass": 1.0}]},
     "provenance": {},
