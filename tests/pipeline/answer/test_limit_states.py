@@ -53,7 +53,7 @@ def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator
         truth = share_faster(speed)
         assert found[name]["lower"] < truth < found[name]["upper"], (name, truth)
     rare = found["fastest"]
-    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 15.0))
+    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 12.0))
     assert rare["upper"] >= rare["tail_limit"]
 
 
