@@ -7,15 +7,17 @@ benchmarks/results/emulator_peers.csv: the energy distance of its law from the t
 over that of drawing one of the runs (200 draws each, without the bias of so few), or, of the published cases, the mean
 over 200 points of W2**2 between the laws over the variance of the output (4000 draws, 1000 levels). `capture` is the
 root mean square error of the chance of capture. SIR: the runs and the 100 validation points of UQLab's StochasticSIR.
+Rows that are there are kept, so that one method is measured anew when its own are taken out (--anew fit expansion).
 """
 
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 from emulator_rivals import RIVALS
 from emulator_truths import PUBLISHED, TRUTHS, Case
-from harness import RESULTS, Row, add_row, command_line, timed, write_made
+from harness import RESULTS, Row, add_row, command_line, read_rows, timed, write_made
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform, latin_hypercube
@@ -23,7 +25,8 @@ from lithobrake.chaos import Uniform, latin_hypercube
 TABLE = RESULTS / "emulator_peers.csv"
 OWN, EXPANSION, ANY_RUN = "fit", "expansion", "any run"
 LEVELS = (np.arange(1000) + 0.5) / 1000
-SIR = "SIR"
+SIR, BOUNDED_SIR = "SIR", "SIR, lower=0"
+KINDS = {"case": str, "method": str, "runs": int, "seed": int}
 # Laws of outputs are compared where at least a tenth of the runs has some.
 MOST_CAPTURED = 0.9
 PUBLISHED_RUNS = {"bimodal": (400, 800, 1600), "brownian": (500, 1000), SIR: (500,)}
@@ -118,7 +121,7 @@ def sir_row(path: Path, method: str, lower: float) -> Row:
     case = Case(inputs, lambda x, random: np.empty(0), lower=lower)
     study = data["Xtrain"], y, np.arange(len(y))
     draws, cpu, _ = drawn(method, case, study, data["Xval"], 4000)
-    return _row(SIR if np.isinf(lower) else f"{SIR}, lower=0", method, len(y), 0, w2_error(draws[:, :, 0], truth), cpu)
+    return _row(SIR if np.isinf(lower) else BOUNDED_SIR, method, len(y), 0, w2_error(draws[:, :, 0], truth), cpu)
 
 
 def _row(name: str, method: str, runs: int, seed: int, error: float, cpu: float, capture: float = float("nan")) -> Row:
@@ -127,31 +130,43 @@ def _row(name: str, method: str, runs: int, seed: int, error: float, cpu: float,
     }  # fmt: skip
 
 
-def all_rows(cases: list[str], methods: list[str], runs: list[int], seeds: int, sir: Path) -> Iterator[Row]:
-    """Fit everything to everything, one after the other."""
+def _key(row: Row) -> tuple[str, str, int, int]:
+    return row["case"], row["method"], row["runs"], row["seed"]
+
+
+def wanted(cases: list[str], methods: list[str], runs: list[int], seeds: int) -> Iterator[tuple[str, str, int, int]]:
+    """Case, method, number of runs and seed of all rows; the expansion has one output, and so the published cases."""
     for name in cases:
-        for method in methods:
-            if name == SIR:
-                yield from (sir_row(sir, method, lower) for lower in (-np.inf, 0.0))
-                continue
-            case, counts = (PUBLISHED | TRUTHS)[name], PUBLISHED_RUNS.get(name, runs)
-            if method == EXPANSION and name not in PUBLISHED:
-                continue
-            for count in counts:
-                made = published_row if name in PUBLISHED else truth_row
-                yield from (made(name, case, method, count, seed) for seed in range(seeds))
+        names = (SIR, BOUNDED_SIR) if name == SIR else (name,)
+        for case, method, count in product(names, methods, PUBLISHED_RUNS.get(name, runs)):
+            if method != EXPANSION or name not in TRUTHS:
+                yield from ((case, method, count, seed) for seed in range(1 if name == SIR else seeds))
+
+
+def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
+    """The row of one fit."""
+    if name in (SIR, BOUNDED_SIR):
+        return sir_row(sir, method, 0.0 if name == BOUNDED_SIR else -np.inf)
+    made = published_row if name in PUBLISHED else truth_row
+    return made(name, (PUBLISHED | TRUTHS)[name], method, runs, seed)
 
 
 def main() -> None:
     """Make all rows, writing each as it comes."""
     everything = [ANY_RUN, OWN, EXPANSION, *RIVALS]
     options = command_line(
-        __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE
-    ).parse_args()
+        __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE,
+        anew=[""],
+    ).parse_args()  # fmt: skip
     cases = [*options.cases, *([SIR] if options.sir.is_file() and SIR not in options.cases else [])]
+    kept = [row for row in read_rows(options.out, KINDS) if row["method"] not in options.anew]
     options.out.unlink(missing_ok=True)
-    for row in all_rows(cases, options.methods, options.runs, options.seeds, options.sir):
+    for row in kept:
         add_row(options.out, row, 4)
+    there = {_key(row) for row in kept}
+    for name, method, runs, seed in wanted(cases, options.methods, options.runs, options.seeds):
+        if (name, method, runs, seed) not in there:
+            add_row(options.out, measured(name, method, runs, seed, options.sir), 4)
     write_made(options.out, f"benchmarks/emulator_peers.py --seeds {options.seeds} --sir SIR2d.mat")
 
 

@@ -33,21 +33,21 @@ class Choices:
 
 @dataclass(frozen=True)
 class Law:
-    """location, log_scale [1 + term_count, coordinate_count]; rows, standardised residuals [row_count,
+    """location, log_scale [1 + term_count, coordinate_count]; scale_limits [2, coordinate_count], least and greatest
+    logarithm at the runs, beyond which no polynomial is trusted; rows, standardised residuals [row_count,
     coordinate_count], and how often each counts, weights [row_count].
     """
 
     location: Array
     log_scale: Array
+    scale_limits: Array
     rows: Array
     weights: Array
 
     def at(self, matrix: Array) -> tuple[Array, Array]:
         """Location and scale [point_count, coordinate_count] at terms but the constant [point_count, term_count]."""
-        return (
-            self.location[0] + matrix @ self.location[1:],
-            np.exp(self.log_scale[0] + matrix @ self.log_scale[1:]),
-        )
+        log_scale = self.log_scale[0] + matrix @ self.log_scale[1:]
+        return self.location[0] + matrix @ self.location[1:], np.exp(np.clip(log_scale, *self.scale_limits))
 
 
 def rows_alone(coordinate_count: int, input_count: int) -> Choices:
@@ -75,8 +75,11 @@ def fit_law(design: TermTable, coordinates: Array, choices: Choices) -> Law:
     for y, location_ladder, scale_ladder in zip(coordinates.T, choices.location, choices.scale, strict=True):
         smoother = Smoother(design, location_ladder)
         residual = smoother.left_out(y)
-        scale = _scale_fit(design, Smoother(design, scale_ladder), np.abs(residual))
-        row = residual / np.exp(design.at(scale))
+        of_scale = Smoother(design, scale_ladder)
+        scale = _scale_fit(design, of_scale, np.abs(residual))
+        seen = _working(np.abs(residual), design.at(scale))
+        # A run that has drawn the scale to itself must not make its own row smaller.
+        row = residual / np.exp(seen - of_scale.left_out(seen))
         mean = weights @ row / weights.sum()
         spread = np.sqrt(weights @ (row - mean) ** 2 / weights.sum())
         # Coordinates that do not scatter at all keep rows of zeros.
@@ -84,15 +87,17 @@ def fit_law(design: TermTable, coordinates: Array, choices: Choices) -> Law:
         scale[0] += np.log(spread) if spread > 0.0 else 0.0
         locations.append(smoother.coefficients(y))
         scales.append(scale)
-    return Law(np.column_stack(locations), np.column_stack(scales), np.column_stack(rows), weights)
+    at_runs = np.array([design.at(one)[weights > 0.0] for one in scales])
+    limits = np.array([at_runs.min(axis=1), at_runs.max(axis=1)])
+    return Law(np.column_stack(locations), np.column_stack(scales), limits, np.column_stack(rows), weights)
 
 
 def _best_scale(design: TermTable, residual: Array, fades: bool) -> Ladder:
     """Ladder of the scale of residuals [run_count]."""
     size = np.abs(residual)
-    first = best_ladder(design, _log_sizes(size, design.weights), fades=False)
+    first = best_ladder(design, _log_sizes(size, design.weights), fades=False, doubt=True)
     logarithm = _scale_fit(design, Smoother(design, first), size)
-    return best_ladder(design, _working(size, design.at(logarithm)), fades=fades)
+    return best_ladder(design, _working(size, design.at(logarithm)), fades=fades, doubt=True)
 
 
 def _scale_fit(design: TermTable, smoother: Smoother, size: Array) -> Array:

@@ -18,10 +18,10 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
     """Tables of emulators that share runs and choices, as refits do; the first axis of a law's own is the emulator.
 
     multi_indices [term_count, input_count], without the constant; kernel_widths [input_count], infinite where nearness
-    in an input does not count; row_inputs [row_count, input_count], standardised; location, log_scale, rows,
-    row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root [model_count,
-    coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run, infinite where they bend no
-    coordinate. Raises ValueError for no emulator.
+    in an input does not count; row_inputs [row_count, input_count], standardised; location, log_scale, scale_limits,
+    rows, row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root
+    [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run, infinite where
+    they bend no coordinate. Raises ValueError for no emulator.
     """
     if not models:
         raise ValueError("models are none, but must be at least one emulator: give those of refits")
@@ -36,6 +36,7 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
         "row_inputs": linear,
         "location": np.stack([model.law.location for model in models]),
         "log_scale": np.stack([model.law.log_scale for model in models]),
+        "scale_limits": np.stack([model.law.scale_limits for model in models]),
         "rows": np.stack([model.law.rows for model in models]),
         "row_weights": np.stack([model.law.weights for model in models]),
         "smoothing_size": np.array([size for size, _ in smooth]),

@@ -83,18 +83,20 @@ class _Sums:
     count: float
 
 
-def best_ladder(design: TermTable, target: Array, *, fades: bool = True) -> Ladder:
+def best_ladder(design: TermTable, target: Array, *, fades: bool = True, doubt: bool = False) -> Ladder:
     """Rungs and their weights for a target [count].
 
     Inputs are added one at a time, the one of most evidence first; all rungs on the way enter the average, and so does
-    one with amplitudes and fades of most evidence, if fades is true.
+    one with amplitudes and fades of most evidence, if fades is true. doubt: no inputs are as likely as all rungs
+    together, before the runs are seen, and not as each.
     """
     y = target - design.weights @ target / design.total
     weighted = design.weights * y
     sums = _Sums(design.gram, design.centred.T @ weighted, float(y @ weighted), design.total)
     if sums.total <= 1e-24 * sums.count * float(np.abs(target).max()) ** 2:
         return ()
-    return _averaged([*_walked(design.indices, sums), *([_fading(design.indices, sums)] if fades else [])])
+    rungs = [*_walked(design.indices, sums), *([_fading(design.indices, sums)] if fades else [])]
+    return _averaged(rungs, len(rungs) if doubt else 1)
 
 
 def fading_rung(design: TermTable, target: Array) -> Rung | None:
@@ -156,12 +158,15 @@ def _fading(indices: Indices, sums: _Sums) -> tuple[float, Rung]:
     return evidence - float(cost), rung
 
 
-def _averaged(rungs: list[tuple[float, Rung]]) -> Ladder:
-    """Rungs weighted by their evidence; those of little weight and no inputs at all take part in the sum alone."""
+def _averaged(rungs: list[tuple[float, Rung]], alone: float) -> Ladder:
+    """Rungs weighted by their evidence; those of little weight and no inputs at all take part in the sum alone.
+
+    alone: weight of no inputs beside that of a rung of the same evidence.
+    """
     evidences = np.array([evidence for evidence, _ in rungs])
     most = max(0.0, float(evidences.max()))
     weights = np.exp(evidences - most)
-    weights /= weights.sum() + np.exp(-most)
+    weights /= weights.sum() + alone * np.exp(-most)
     kept = weights >= LEAST_WEIGHT
     share = weights.sum() / weights[kept].sum() if kept.any() else 1.0
     return tuple(

@@ -63,6 +63,7 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
         "multi_indices": model.terms.indices.tolist(),
         "location": model.law.location.tolist(),
         "log_scale": model.law.log_scale.tolist(),
+        "scale_limits": model.law.scale_limits.tolist(),
         "class_inverse_penalty": model.class_choice.inverse_penalty,
         "class_rung": None if model.class_choice.rung is None else asdict(model.class_choice.rung),
         "class_intercepts": model.classes.intercepts.tolist(),
@@ -92,6 +93,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
     law = Law(
         _table("location", content["location"], (1 + len(indices), modelled)),
         _table("log_scale", content["log_scale"], (1 + len(indices), modelled)),
+        _table("scale_limits", content["scale_limits"], (2, modelled)),
         _table("rows", content["rows"], (len(runs.y), modelled)),
         weights[runs.has_outputs],
     )

@@ -87,6 +87,7 @@ def expansion_tables(
         "row_inputs": np.zeros((len(rows), len(inputs))),
         "location": location,
         "log_scale": np.zeros((refits, len(terms) + 1, count)),
+        "scale_limits": np.zeros((refits, 2, count)),
         "rows": np.repeat(rows[None], refits, axis=0),
         "row_weights": np.full((refits, len(rows)), 1.0 / len(rows)),
         "smoothing_size": np.zeros(refits),

@@ -118,7 +118,10 @@ class Law {
         scale[k] += factor * log_scale[start + k];
       }
     }
-    for (let k = 0; k < outputs; k++) scale[k] = Math.exp(scale[k]);
+    for (let k = 0; k < outputs; k++) {
+      const least = this.scale_limits[2 * refit * outputs + k], most = this.scale_limits[(2 * refit + 1) * outputs + k];
+      scale[k] = Math.exp(Math.min(Math.max(scale[k], least), most));
+    }
   }
 
   // Chances of the outcomes [class_count].
