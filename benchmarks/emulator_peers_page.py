@@ -43,7 +43,8 @@ brackets; the best of a row is bold.
 
 """
 PUBLISHED_TEXT = """
-Chance of capture in the ring, root mean square error over 500 inputs: {captures}.
+Chance of capture in the ring, root mean square error over 500 inputs:
+{captures}.
 
 ## Published cases
 
@@ -125,7 +126,7 @@ SIR_CASES = ("SIR", "SIR, lower=0")
 def main() -> None:
     """Write the page."""
     rows = read_rows(TABLE, KINDS)
-    seeds = len({row["seed"] for row in rows if row["case"] in TRUTHS})
+    seeds, of_published = (len({row["seed"] for row in rows if row["case"] in cases}) for cases in (TRUTHS, PUBLISHED))
     ring = [row for row in rows if row["case"] == "capture in a ring"]
     captures = ", ".join(
         f"{HEADS[method]} {statistics.mean(errors):.2f} with {runs} runs"
@@ -134,7 +135,12 @@ def main() -> None:
         if (errors := [row["capture"] for row in ring if (row["method"], row["runs"]) == (method, runs)])
     )
     text = BEGIN.format(seeds=seeds) + truth_table(rows)
-    text += PUBLISHED_TEXT.format(captures=captures, seeds=seeds) + published_table(rows) + SIR_TEXT + sir_table(rows)
+    text += (
+        PUBLISHED_TEXT.format(captures=captures, seeds=of_published)
+        + published_table(rows)
+        + SIR_TEXT
+        + sir_table(rows)
+    )
     costs = [row["fit_cpu_s"] for row in rows if row["method"] == OWN and row["runs"] == 300]
     text += f"\nA fit of `fit` to 300 runs took {min(costs):.1f} to {max(costs):.1f} s of CPU time, one thread.\n"
     PAGE.write_text(text, encoding="utf-8")
