@@ -119,6 +119,18 @@ def scatter_words(record: VarianceParts) -> str:
     return listing(found)
 
 
+def detected_words(record: VarianceParts) -> str:
+    """What of an output's variance is detected, likewise, but for everything else."""
+    detected = {name: one for name, one in record.parts.items() if one.share > 0.0 and name != "place"}
+    if not detected:
+        return "nothing is detected"
+    words = {"soil": "soil explains", "arrival": "delivery", "bed": "the bed"}
+    whose = [
+        f"{words.get(name, name)}{' at least' if name != 'bed' else ''} {one.words()}" for name, one in detected.items()
+    ]
+    return listing(whose)
+
+
 def _main_input(record: VarianceParts) -> str:
     """Which input makes most of what the soil does, where one does and the soil does something."""
     alone = {name: share.share for name, share in record.soil_by_input.items()}

@@ -2,7 +2,7 @@
 
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
-from lithobrake.report.words.drawn_captions import floor_words, scatter_words, variance
+from lithobrake.report.words.drawn_captions import detected_words, floor_words, variance
 from lithobrake.report.words.drawn_warnings import landing_warnings
 from lithobrake.report.words.numbers import number
 from lithobrake.results.journey_results import RestQuantile
@@ -120,7 +120,7 @@ def end_variance(data: JourneyPage) -> str:
     """The figure of what decides the ends; empty where the journeys cannot tell."""
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
     said = [
-        f"Of the variance of {END_SIGNS[name]} ({one.of}), {scatter_words(one)} ({percent(LEVEL)} intervals)."
+        f"Of the variance of {END_SIGNS[name]} ({one.of}), {detected_words(one)} ({percent(LEVEL)} intervals)."
         for name, one in known.items()
     ]
     if said:
