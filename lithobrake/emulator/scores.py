@@ -14,10 +14,12 @@ def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
 
 
 def mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
-    """Mean of values [run_count] and its standard error, as groups and not runs are independent."""
+    """Mean of values [run_count] and its standard error, as groups and not runs are independent; infinite for one."""
     numbers = np.unique(group, return_inverse=True)[1]
     sums = np.bincount(numbers, weights=values - values.mean())
     count = len(sums)
+    if count == 1:
+        return float(values.mean()), np.inf
     return float(values.mean()), float(np.sqrt(count / (count - 1.0) * (sums**2).sum()) / len(values))
 
 

@@ -3,22 +3,24 @@
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from lithobrake.geometry.attitude_terms import ALIKE
-
 if TYPE_CHECKING:
+    import numpy as np
+
     from lithobrake.study.lander_section import LanderSection
 
 SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
+# Edges that differ by less than this part are alike.
+ALIKE = 1e-6
 
 
-def sides_down(lander: "LanderSection", normal: np.ndarray) -> np.ndarray:
+def sides_down(lander: "LanderSection", normal: "np.ndarray") -> "np.ndarray":
     """Which side of the lander faces the ground most, [count]; "" for a ball. normal: seen from the lander [count, 3].
 
     Of a box by the axis that stands most upright, "z", or by those whose edges are alike, "x or y"; of a mesh one of
     "+x" to "-z", by its own axes.
     """
+    import numpy as np
+
     axis = np.abs(normal).argmax(axis=1)
     if lander.edges is not None:
         words = np.array([_alike(lander.edges, one) for one in range(3)])
@@ -33,12 +35,12 @@ def sides_down(lander: "LanderSection", normal: np.ndarray) -> np.ndarray:
 
 def directions_of_sides(lander: "LanderSection") -> dict[str, list[list[float]]]:
     """The sides of the lander, named as by `sides_down`, each with the directions of it that may face the ground."""
-    downs = [sign * axis for axis in np.eye(3) for sign in (1.0, -1.0)]
-    names = sides_down(lander, -np.array(downs)).tolist()
-    found: dict[str, list[list[float]]] = {name: [] for name in dict.fromkeys(names) if name}
-    for name, down in zip(names, downs, strict=True):
-        if name:
-            found[name].append(down.tolist())
+    found: dict[str, list[list[float]]] = {}
+    for side in SIDES if lander.shape != "sphere" else ():
+        axis = "xyz".index(side[1])
+        name = side if lander.edges is None else _alike(lander.edges, axis)
+        down = [(1.0 if side[0] == "+" else -1.0) * (one == axis) for one in range(3)]
+        found.setdefault(name, []).append(down)
     return found
 
 

@@ -43,8 +43,8 @@ def test_the_page_begins_with_the_ends_of_the_journeys(journeys_folder: Path) ->
 def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
     content = journey_content(data)
     names = [plot.name for plot in content.plots]
-    assert names[:4] == ["ends", "times", "counts", "attitude"]
-    assert all("first touchdown" in plot.sentence for plot in content.plots[4:])
+    assert names[:5] == ["ends", "times", "counts", "attitude", "end_variance"]
+    assert all("first touchdown" in plot.sentence for plot in content.plots[5:])
     titles = [table.title for table in content.tables]
     assert titles[0] == "How the journeys ended"
     others = [title for title in titles[1:] if not title.startswith("First touchdown: ")]
@@ -64,7 +64,7 @@ def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None
     ends[JourneyEnd.ESCAPED] = EndShare(48, 1.0, 0.8, 1.0)
     table = type(data.journeys)(data.journeys.row, columns)
     content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
-    assert [plot.name for plot in content.plots][:2] == ["counts", "variance"]
+    assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
     assert content.plots[0].heading == WHERE
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from lithobrake.emulator import law_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -20,7 +21,7 @@ from ...report.page_scripts import answer_of, explorer_data, needs_node
 from ...report.page_text import visible_text
 from .bouncing_lander import journey_tables
 
-SCRIPTS = ("live/law.js", "live/flown.js", "live/explore.js")
+SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
 BEGIN = "const { facts } = given, law = new Law(unpack(given.law), facts);"
 REST = "const shares = (found) => [found.returns, found.known].map((list) => list.reduce((all, one) => all + one, 0));"
 SHARE = "document.querySelector('#explorer .share').textContent"
@@ -53,7 +54,12 @@ def data(page: Path) -> dict[str, Any]:
 
 def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: ExplorerTables) -> None:
     assert explorer.input_names == model.inputs
-    assert explorer.input_names[-4:] == OF_TOUCHDOWN
+    # A prism: its axis, upright, leaning and along the travel.
+    terms = tuple(f"attitude.{term}_z" for term in ("upright", "lean", "along"))
+    assert explorer.input_names[-7:] == (*OF_TOUCHDOWN, *terms)
+    assert explorer.attitude is not None
+    assert explorer.attitude.input_names == explorer.input_names[-3:]
+    assert [len(downs) for downs in explorer.attitude.sides.values()] == [4, 2]
     assert explorer.group_count == len(set(model.bed))
     for name, table in law_tables(model.refits).items():
         assert np.array_equal(explorer.tables[name], table), name
@@ -69,7 +75,7 @@ def test_the_energy_bound_is_that_of_the_longest_way_and_the_median_spin(
     values = moved | {"impact.spin_x": 0.0, "impact.spin_y": spin, "impact.spin_z": 0.0}
     at = {name: np.array([value]) for name, value in values.items()}
     bound = energy_bound(model.design, model.bed_height, at, 1, model.across)
-    given = data | {"values": [*(0.0 for _ in model.inputs[:-4]), *moved.values()]}
+    given = data | {"values": [*(0.0 for _ in model.inputs[:-7]), *moved.values(), 0.0, 0.0, 0.0]}
     found = answer_of(SCRIPTS, f"{BEGIN} return law.energyBoundAt(given.values);", given)
     assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=1e-12)
 
@@ -92,6 +98,8 @@ def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulat
         u = np.random.default_rng(4).random((4000, len(model.inputs)))
         u[:, place] = low + (high - low) * u[:, place]
         x = np.column_stack([law.ppf(column) for law, column in zip(laws, u.T, strict=True)])
+        # Attitudes are uniform over rotations.
+        x[:, -3:] = np.column_stack(list(model.attitude_of(Rotation.random(4000, rng=5)).values()))
         shares.append(float(np.mean([one.outcome_probability(x)[:, captured].mean() for one in model.refits])))
         # All refits share the 500 points of the inputs, and the 4000 are a plain sample.
         error = np.sqrt(shares[-1] * (1.0 - shares[-1]) * (1.0 / 500 + 1.0 / 4000))
@@ -111,7 +119,7 @@ def test_the_page_says_that_it_is_one_touchdown_and_of_how_many(
     assert f"slope from {slope.min():.2g} to {slope.max():.2g} deg" in words
     assert data["flown"] is None
     assert {one["words"] for one in data["facts"]["inputs"]} >= {"speed at impact", "incidence at impact", "gravity"}
-    assert [one["unit"] for one in data["facts"]["inputs"][-4:]] == ["m/s", "deg", "m/s2", "deg"]
+    assert [one["unit"] for one in data["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s2", "deg", "", "", ""]
 
 
 @needs_browser
