@@ -128,7 +128,7 @@ def main() -> None:
     rows = read_rows(TABLE, KINDS)
     seeds, of_published = (len({row["seed"] for row in rows if row["case"] in cases}) for cases in (TRUTHS, PUBLISHED))
     ring = [row for row in rows if row["case"] == "capture in a ring"]
-    captures = ", ".join(
+    captures = ",\n".join(
         f"{HEADS[method]} {statistics.mean(errors):.2f} with {runs} runs"
         for method in (OWN, ANY_RUN)
         for runs in (150, 300)
