@@ -100,9 +100,9 @@ def test_without_a_law_draws_are_runs() -> None:
 
 
 def test_a_gain_within_its_standard_error_is_no_law() -> None:
-    """Chosen without the runs that it is scored on, a law is 4.4 +- 2.9 % better on the other runs."""
+    """Chosen without the runs that it is scored on, a law gains 0.012 +- 0.018 here and 4.5 +- 4.0 % on the other runs."""
     models = []
-    for seed in (7, 4):
+    for seed in (1, 5):
         rng = np.random.default_rng(seed)
         x = rng.random((60, 2))
         y = 0.35 * x[:, 0] + 0.5 * rng.standard_normal(60)
@@ -112,7 +112,7 @@ def test_a_gain_within_its_standard_error_is_no_law() -> None:
     assert "Knowing the inputs would hardly narrow the forecast" in luck.statement_on("beds")
     assert law.follows_inputs
     assert law.scores.gain > law.scores.gain_error > 0.0
-    assert "4.4 % better (standard error 2.9)" in law.statement
+    assert "4.5 % better (standard error 4.0)" in law.statement
 
 
 def test_refits_differ_by_whole_groups() -> None:
