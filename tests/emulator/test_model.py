@@ -100,7 +100,7 @@ def test_without_a_law_draws_are_runs() -> None:
 
 
 def test_a_gain_within_its_standard_error_is_no_law() -> None:
-    """Chosen without the runs that it is scored on, a law gains 0.012 +- 0.018 here and 4.5 +- 4.0 % on the other runs."""
+    """Chosen without the runs that it is scored on, one gains 0.012 +- 0.018 here and 4.5 +- 4.0 % on other runs."""
     models = []
     for seed in (1, 5):
         rng = np.random.default_rng(seed)
