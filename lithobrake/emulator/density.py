@@ -10,8 +10,8 @@ from lithobrake.vocabulary.arrays import Array
 # Rows times points that are looked at together: bounds the memory.
 _BLOCK = 1 << 20
 # Of the normal rule ([Silverman-1986], section 4.3). Draws have half of it, to keep their skewness, but the product of
-# densities over several bounces follows the bumps that narrow kernels leave between rows: with 0.5, 1, 1.5 and 2 over
-# five bounces 0.88, 0.91, 0.92 and 0.92 of 90 % intervals held the truth (docs/inference.md).
+# densities over several bounces follows the bumps that narrow kernels leave between rows (docs/decisions/chaos.md has
+# how often intervals held the truth by this factor).
 DENSITY_FACTOR = 1.5
 
 

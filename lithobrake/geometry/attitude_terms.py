@@ -10,12 +10,12 @@ lander, and b = n x t. Of an axis a of the lander the terms of second degree are
 They do not change where the axis is turned round, nor, taken of the axis of a prism, where this turns about itself.
 """
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from lithobrake.geometry.alike import alike
 from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.vocabulary.arrays import Array
 
@@ -23,8 +23,6 @@ UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "h
 # The smallest and the largest value of each term.
 RANGES = {UPRIGHT: (0.0, 1.0), LEAN: (-1.0, 1.0), ALONG: (-1.0, 1.0), FACING: (-1.0, 1.0), HEADING: (-1.0, 1.0)}
 CUBE_RANGES = {UPRIGHT: (1.0 / 3.0, 1.0), LEAN: (-0.3, 0.3), ALONG: (-0.5, 0.5)}
-# Axes whose moments of inertia or edges differ by less than this part are alike.
-ALIKE = 1e-6
 # A law whose terms vary by less than this, squared, has no such term.
 LEAST_VARIANCE = 1e-9
 
@@ -47,13 +45,11 @@ class AttitudeTerms:
     def of_box(cls, edges: Array, inertia: Array | None = None) -> "AttitudeTerms":
         """Those of a box of these edges [3], with moments of inertia [3] about its axes where it is not homogeneous."""
         pairs = [edges] if inertia is None else [edges, inertia]
-        alike = [
-            axis for axis in range(3) if all(math.isclose(one[axis - 2], one[axis - 1], rel_tol=ALIKE) for one in pairs)
-        ]
-        if len(alike) == 3:
+        paired = [axis for axis in range(3) if all(alike(one[axis - 2], one[axis - 1]) for one in pairs)]
+        if len(paired) == 3:
             return cls(np.eye(3), ("x", "y", "z"), is_cube=True)
         # A prism has one axis of its own; of any other box the terms of the third axis follow from those of two.
-        chosen = alike or [int(np.argmax(edges)), int(np.argmin(edges))]
+        chosen = paired or [int(np.argmax(edges)), int(np.argmin(edges))]
         return cls(np.eye(3)[chosen], tuple("xyz"[axis] for axis in chosen))
 
     @classmethod

@@ -51,6 +51,11 @@ class ExplorerTables:
     bound: dict[str, float]
     attitude: ExplorerAttitude | None = None
 
+    @property
+    def attitude_inputs(self) -> tuple[str, ...]:
+        """Inputs that are terms of the attitude; none where the law reads no attitude."""
+        return () if self.attitude is None else self.attitude.input_names
+
     @classmethod
     def read(cls, path: Path, remedy: str) -> "ExplorerTables":
         """Read explorer.h5. Raises DamagedFileError, with the remedy, for another file."""

@@ -1,7 +1,8 @@
 """The sides of a lander by its own axes, as a study names them."""
 
-import math
 from typing import TYPE_CHECKING
+
+from lithobrake.geometry.alike import alike
 
 if TYPE_CHECKING:
     import numpy as np
@@ -9,8 +10,6 @@ if TYPE_CHECKING:
     from lithobrake.study.lander_section import LanderSection
 
 SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
-# Edges that differ by less than this part are alike.
-ALIKE = 1e-6
 
 
 def sides_down(lander: "LanderSection", normal: "np.ndarray") -> "np.ndarray":
@@ -54,5 +53,5 @@ def side_words(lander: "LanderSection", side: str) -> str:
 
 def _alike(edges: tuple[float, float, float], axis: int) -> str:
     """The axes of a box whose faces are like those of one."""
-    names = [name for name, edge in zip("xyz", edges, strict=True) if math.isclose(edge, edges[axis], rel_tol=ALIKE)]
+    names = [name for name, edge in zip("xyz", edges, strict=True) if alike(edge, edges[axis])]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

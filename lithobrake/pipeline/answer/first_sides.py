@@ -4,17 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from lithobrake.analysis import quantile_estimate, share_estimate
-from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
+from lithobrake.analysis import share_estimate
+from lithobrake.pipeline.answer.journey_ends import MEDIAN, JourneyTable, end_share, rest_quantile
 from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.design.drawn_design import AZIMUTH
-from lithobrake.pipeline.design.lander_attitude import seen
+from lithobrake.pipeline.design.lander_attitude import seen, tells_attitude
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.journey_results import EndShare, RestQuantile
+from lithobrake.results.journey_results import EndShare
 from lithobrake.results.side_results import SideResults
 from lithobrake.study import Study
 from lithobrake.study.lander_sides import side_words, sides_down
-from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 Sides = dict[str, SideResults]
@@ -34,7 +32,7 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
         found[name] = SideResults(
             words=side_words(study.lander, name),
             landings=int(own.sum()),
-            speed_ratio=_median(ratio[own], bed[own], why),
+            speed_ratio=rest_quantile(ratio[own], bed[own], MEDIAN, why),
             returns=EndShare(int((returns[own] == 1.0).sum()), share.share, share.lower, share.upper, share.why),
         )
     return found
@@ -51,7 +49,7 @@ def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: Desi
         found[name] = replace(
             one,
             at_rest=end_share(table.rests[own], table.bed[own], why),
-            time_s=_median(time, table.bed[own], why),
+            time_s=rest_quantile(time, table.bed[own], MEDIAN, why),
             touchdowns=int(those.sum()),
             rests=end_share(captured[those], touchdowns.inputs["bed"][those], why),
         )
@@ -60,7 +58,7 @@ def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: Desi
 
 def _sides(study: Study, runs: DesignRuns) -> np.ndarray:
     """The side that faces the ground at each touchdown [run_count]; "" where attitudes are not told."""
-    if not {*ORIENTATION, AZIMUTH} <= runs.inputs.keys():
+    if not tells_attitude(runs.inputs):
         return np.full(runs.run_count, "")
     return sides_down(study.lander, seen(runs.inputs)[0])
 
@@ -69,8 +67,3 @@ def _named(side: np.ndarray) -> list[str]:
     """The sides that occur, where they are several."""
     names = np.unique(side).tolist()
     return names if len(names) > 1 else []
-
-
-def _median(values: np.ndarray, bed: np.ndarray, why: str | None) -> RestQuantile:
-    one = quantile_estimate(values, bed, 0.5, why=why)
-    return RestQuantile(one.value, one.lower, one.upper, one.why)

@@ -75,8 +75,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     def quantiles(name: str) -> RestQuantiles:
         values = np.where(rests, table.numbers[name], np.nan)
         counts = name == "contacts"
-        found = [quantile_estimate(values, table.bed, level, counts=counts, why=why) for level in (MEDIAN, Q95)]
-        return RestQuantiles(*(RestQuantile(one.value, one.lower, one.upper, one.why) for one in found))
+        return RestQuantiles(*(rest_quantile(values, table.bed, level, why, counts=counts) for level in (MEDIAN, Q95)))
 
     density = highest_density(table.position[rests], SHARES)
     faces = table.face[rests]
@@ -91,6 +90,17 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         tilt_deg=quantiles("tilt_deg") if has_sides else None,
         why_no_regions=density.why,
     )
+
+
+def rest_quantile(
+    values: np.ndarray, bed: np.ndarray, level: float, why: str | None, *, counts: bool = False
+) -> RestQuantile:  # fmt: skip
+    """A quantile of values [count], NaN where there is none, with its interval over beds.
+
+    why: there is no interval; counts: whether the values are whole numbers.
+    """
+    one = quantile_estimate(values, bed, level, counts=counts, why=why)
+    return RestQuantile(one.value, one.lower, one.upper, one.why)
 
 
 def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:

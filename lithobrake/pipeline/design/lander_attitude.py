@@ -40,6 +40,11 @@ def named_terms(terms: AttitudeTerms, normal: Array, travel: Array) -> dict[str,
     return dict(zip(names, columns.T, strict=True))
 
 
+def tells_attitude(inputs: Mapping[str, np.ndarray]) -> bool:
+    """Whether touchdowns say in which attitude they are; those of a program need not."""
+    return {*ORIENTATION, AZIMUTH} <= inputs.keys()
+
+
 def seen(inputs: Mapping[str, np.ndarray]) -> tuple[Array, Array]:
     """Normal of the ground and direction of travel, [run_count, 3], seen from the lander at its touchdowns."""
     orientation = np.column_stack([inputs[name] for name in ORIENTATION])
@@ -53,7 +58,7 @@ def independent_terms(design: DrawnDesign, inputs: Mapping[str, np.ndarray]) -> 
     touchdowns that tell no attitude, and where all have the same.
     """
     terms = attitude_terms(design.study)
-    if terms is None or not {*ORIENTATION, AZIMUTH} <= inputs.keys():
+    if terms is None or not tells_attitude(inputs):
         return None
     found, law = terms.at(*seen(inputs)), terms.uniform_law
     if design.study.impact.orientation != "random" or design.is_flown:

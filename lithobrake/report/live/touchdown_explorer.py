@@ -25,8 +25,7 @@ def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
     beds = len(np.unique(fitted["bed"]))
     # Refits draw runs where those that left lie on one bed.
     over_beds = 1 < beds == explorer.group_count
-    of_attitude = explorer.attitude.input_names if explorer.attitude else ()
-    moved = [name for name in explorer.input_names if name not in of_attitude]
+    moved = [name for name in explorer.input_names if name not in explorer.attitude_inputs]
     facts = law_facts(explorer, moved, fitted) | {
         # Of all touchdowns that are drawn, those that are captured.
         "ofAll": True,
@@ -58,9 +57,9 @@ def _range(fitted: Table, name: str) -> str:
 def _law(explorer: ExplorerTables) -> str:
     """What the inputs are drawn from, and what no slider moves."""
     even = listing([input_words(name) for name in OF_TOUCHDOWN if name != SPEED])
-    of_attitude = explorer.attitude.input_names if explorer.attitude else ()
-    attitude = "Attitudes are drawn over all rotations, or with one side toward the ground; s" if of_attitude else "S"
-    named = {*OF_TOUCHDOWN, *of_attitude}
+    attitude = "Attitudes are drawn over all rotations, or with one side toward the ground; s"
+    attitude = attitude if explorer.attitude else "S"
+    named = {*OF_TOUCHDOWN, *explorer.attitude_inputs}
     others = "Soil and lander follow the study's law; " if set(explorer.input_names) - named else ""
     words = (
         f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, however many touchdowns "

@@ -87,7 +87,6 @@ def _delivery(data: JourneyPage) -> PageTable:
 
 def side_tables(data: JourneyPage) -> list[PageTable]:
     """What becomes of the landers by the side that faces the ground when they touch down."""
-    sides = [one for one in data.results.sides.values() if one.at_rest and one.time_s and one.rests]
     size, unit = time_unit(data)
     columns = ["side toward the ground", "first touchdowns", "at rest in the end", f"median time to rest [{unit}]"]
     columns += ["median rebound speed over impact speed", "all touchdowns", "of these at rest"]
@@ -96,7 +95,7 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
             one.words, str(one.landings), with_interval(one.at_rest), quantile_words(one.time_s, size),
             quantile_words(one.speed_ratio), str(one.touchdowns), with_interval(one.rests),
         ]
-        for one in sides
+        for one in data.results.sides.values()
         if one.at_rest and one.time_s and one.rests
     ]  # fmt: skip
     note = (

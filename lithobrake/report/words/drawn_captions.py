@@ -124,7 +124,7 @@ def detected_words(record: VarianceParts) -> str:
     detected = {name: one for name, one in record.parts.items() if one.share > 0.0 and name != "place"}
     if not detected:
         return "nothing is detected"
-    words = {"soil": "soil explains", "arrival": "delivery", "bed": "the bed"}
+    words = NAMES | {"soil": "soil explains"}
     whose = [
         f"{words.get(name, name)}{' at least' if name != 'bed' else ''} {one.words()}" for name, one in detected.items()
     ]
