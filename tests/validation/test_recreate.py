@@ -1,0 +1,64 @@
+"""Rows of the validation tables come out again: the runner itself, and three small rows from nothing."""
+
+import json
+import runpy
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RUNNER = runpy.run_path(str(ROOT / "validation" / "recreate.py"))
+SCRIPT = """
+import csv, json, sys
+from pathlib import Path
+table, work = Path(__file__).with_suffix(".csv"), Path(sys.argv[2])
+assert sys.argv[1] == "--work"
+there = {line["x"] for line in csv.DictReader(table.open())} if table.exists() else set()
+for x in ("1", "2", "3"):
+    if x not in there:
+        fresh = not table.exists()
+        with table.open("a") as file:
+            file.write(("x,square,cpu_s\\n" if fresh else "") + f"{x},{float(x) ** 2},0.5\\n")
+"""
+
+
+@pytest.fixture
+def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A repository with one case of three rows, the second of which is off by a tenth."""
+    for name in ("validation", "benchmarks", "scenarios", "docs"):
+        (tmp_path / name).mkdir()
+    folder = tmp_path / "validation"
+    (folder / "squares.py").write_text(SCRIPT)
+    (folder / "squares.csv").write_text("x,square,cpu_s\n1,1.0,7.0\n2,4.4,7.0\n3,9.0,7.0\n")
+    (folder / "squares.json").write_text(json.dumps({"command": "python validation/squares.py --work FOLDER"}))
+    (folder / "own.json").write_text(json.dumps({"command": "python validation/own.py STUDY_FOLDER"}))
+    monkeypatch.setitem(RUNNER["recreate"].__globals__, "ROOT", tmp_path)
+    return tmp_path
+
+
+def test_rows_that_are_asked_for_are_made_anew_and_compared(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = RUNNER["cases"](root)["squares"]
+    assert case.cpu_s == 21.0
+    assert RUNNER["recreate"](case, [0, 2], root / "work") == 0.0
+    assert "2 rows made anew" in capsys.readouterr().out
+    assert RUNNER["recreate"](case, None, root / "work") == pytest.approx(0.4 / 4.4)
+    out = capsys.readouterr().out
+    assert "3 rows made anew" in out
+    assert "2 have the same digits" in out
+    assert "square: differs by up to 9.09 %" in out
+    assert "2,4.4" in (root / "validation" / "squares.csv").read_text(), "the repository keeps its table"
+
+
+def test_what_cannot_be_made_anew_is_refused_in_a_sentence(root: Path) -> None:
+    known = RUNNER["cases"](root)
+    with pytest.raises(ValueError, match="it takes a folder of its own"):
+        RUNNER["recreate"](known["own"], None, root / "work")
+    with pytest.raises(ValueError, match="rows 0 to 2"):
+        RUNNER["recreate"](known["squares"], [3], root / "work")
+
+
+def test_every_case_of_the_repository_has_its_script() -> None:
+    known = RUNNER["cases"]()
+    scripts = {case.command.split()[1] for case in known.values()}
+    assert scripts
+    assert [script for script in sorted(scripts) if not (ROOT / script).exists()] == []

@@ -1,0 +1,239 @@
+"""Recreate rows of the validation tables from nothing, and hold them against those that are kept here.
+
+    python validation/recreate.py                              lists the cases: rows and CPU time
+    python validation/recreate.py NAME [NAME ...]              makes all rows of these cases anew
+    python validation/recreate.py NAME --rows 0 5              makes only these rows anew, counted from 0
+    python validation/recreate.py NAME --within 0.05           fails if a number differs by more than 5 %
+
+A case is a document beside its table that says by which command it was made. The command runs in a copy of the folders
+validation, benchmarks, scenarios and docs, where the rows that are asked for were taken out of the table; scripts make
+what their table lacks. Nothing of the repository is changed. The copy and the beds that a script pours stay in --work.
+
+The same bits come out on the machine that made a row; elsewhere single bounces differ, and their statistics agree.
+"""
+
+import csv
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import ROOT, command_line
+
+COPIED = ("validation", "benchmarks", "scenarios", "docs")
+PLACE = "FOLDER"  # stands in a command for a folder of beds and studies
+COSTS = ("cpu_s_of_rows", "cpu_s_of_landings", "cpu_s")
+# Columns that no two runs have in common.
+MEASURED = {"cpu_s", "wall_s", "load", "date"}
+
+Line = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A table of the validation, or the document of a script that has none.
+
+    path: of the document, from the root. command: that made it. cpu_s: what all its rows cost [s], None if not kept.
+    """
+
+    path: Path
+    command: str
+    table: Path | None
+    cpu_s: float | None
+
+    @property
+    def name(self) -> str:
+        """By which it is asked for."""
+        return self.path.stem
+
+    @property
+    def why_not(self) -> str | None:
+        """Why one command does not recreate it; None where one does."""
+        given = self.command.replace(f"--work {PLACE}", "")
+        if PLACE in given or "..." in given or not given.startswith("python validation/"):
+            return f"it takes a folder of its own: {self.command}"
+        return None
+
+
+def cases(root: Path = ROOT) -> dict[str, Case]:
+    """All cases below a root, by name."""
+    found = {}
+    for path in sorted((root / "validation").rglob("*.json")):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if isinstance(content, dict) and "command" in content:
+            case = _case(path, content, root)
+            found[case.name] = case
+    return found
+
+
+def _case(path: Path, content: dict[str, Any], root: Path) -> Case:
+    table = path.with_name(str(content.get("table", f"{path.stem}.csv")))
+    cost = next((float(content[key]) for key in COSTS if key in content), None)
+    own = table.relative_to(root) if table.exists() else None
+    if own is not None and cost is None:
+        spent = [float(line["cpu_s"]) for line in lines(table) if line.get("cpu_s")]
+        cost = sum(spent) if spent else None
+    return Case(path.relative_to(root), content["command"], own, cost)
+
+
+def lines(table: Path) -> list[Line]:
+    """The rows of a CSV table as text."""
+    with table.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def expected(case: Case, rows: list[int] | None) -> str:
+    """What the rows of a case cost, in words."""
+    cost = case.cpu_s
+    if rows is not None and case.table is not None:
+        costs = [lines(ROOT / case.table)[row].get("cpu_s") for row in rows]
+        cost = sum(float(one) for one in costs if one) if all(costs) else None
+    if cost is None:
+        return "CPU time not kept"
+    return f"{cost:.3g} s of CPU time" + (" and that of beds that other rows share" if rows is not None else "")
+
+
+def taken_out(table: Path, rows: list[int] | None) -> tuple[list[Line], list[Line]]:
+    """Take rows, or all, out of a table on disk; returns these, and those that stay."""
+    kept = lines(table)
+    chosen = range(len(kept)) if rows is None else rows
+    gone = [kept[row] for row in chosen]
+    rest = [line for number, line in enumerate(kept) if number not in chosen]
+    table.unlink()
+    if rest:
+        with table.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, list(rest[0]))
+            writer.writeheader()
+            writer.writerows(rest)
+    return gone, rest
+
+
+def copied(folder: Path) -> Path:
+    """Copy what scripts read and write into a folder; returns the root of the copy."""
+    tree = folder / "tree"
+    shutil.rmtree(tree, ignore_errors=True)
+    for name in COPIED:
+        shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return tree
+
+
+def run(case: Case, tree: Path, work: Path) -> float:
+    """Run the command of a case in a copy; returns its time on the clock [s]."""
+    words = [str(work) if word == PLACE else word for word in shlex.split(case.command)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    start = time.monotonic()
+    subprocess.run([sys.executable, *words[1:]], cwd=tree, env=environment, check=True)
+    return time.monotonic() - start
+
+
+def gap(old: str, new: str) -> float:
+    """Relative difference of two cells; infinite where texts differ."""
+    if old == new:
+        return 0.0
+    try:
+        one, other = float(old), float(new)
+    except ValueError:
+        return float("inf")
+    return abs(one - other) / max(abs(one), abs(other))
+
+
+def differences(old: list[Line], new: list[Line]) -> list[dict[str, float]]:
+    """Relative differences by column of each old row from that of the new ones with which it has most cells in common.
+
+    Columns that are measured anew in each run are left out, and so are those that are equal.
+    """
+    found = []
+    for line in old:
+        pairs = [{key: gap(line[key], other.get(key, "")) for key in line if key not in MEASURED} for other in new]
+        nearest = min(pairs, key=lambda pair: sum(value > 0.0 for value in pair.values()))
+        found.append({key: value for key, value in nearest.items() if value > 0.0})
+    return found
+
+
+def told(name: str, apart: list[dict[str, float]], wall: float) -> float:
+    """Print how recreated rows compare; returns the largest relative difference."""
+    same = sum(not one for one in apart)
+    print(f"{name}: {len(apart)} rows made anew in {wall:.0f} s on the clock; {same} have the same digits")
+    worst: dict[str, float] = {}
+    for one in apart:
+        for key, value in one.items():
+            worst[key] = max(worst.get(key, 0.0), value)
+    for key, value in sorted(worst.items(), key=lambda item: -item[1]):
+        print(f"  {key}: differs by up to {100.0 * value:.3g} %" if value < float("inf") else f"  {key}: another word")
+    return max(worst.values(), default=0.0)
+
+
+def recreate(case: Case, rows: list[int] | None, work: Path) -> float:
+    """Make rows of a case anew, and print how they compare; returns the largest relative difference.
+
+    Raises ValueError where one command does not recreate the case, or where it has no such row.
+    """
+    if case.why_not:
+        raise ValueError(f"{case.name}: {case.why_not}")
+    if case.table is None and rows is not None:
+        raise ValueError(f"{case.name} has no table of rows; leave --rows out to make all of it anew.")
+    count = 0 if case.table is None else len(lines(ROOT / case.table))
+    if rows is not None and not all(0 <= row < count for row in rows):
+        raise ValueError(f"{case.name} has rows 0 to {count - 1}; --rows has {rows}.")
+    print(f"{case.name}: expects {expected(case, rows)}", flush=True)
+    tree = copied(work)
+    if case.table is None:
+        (tree / case.path).unlink()
+        wall = run(case, tree, work / "runs")
+        print(f"{case.name}: made anew in {wall:.0f} s on the clock: {tree / case.path}")
+        return 0.0
+    old, rest = taken_out(tree / case.table, rows)
+    wall = run(case, tree, work / "runs")
+    new = lines(tree / case.table)
+    if new[: len(rest)] == rest:  # otherwise the script wrote the whole table anew
+        new = new[len(rest) :]
+    if len(new) < len(old):
+        raise ValueError(f"{case.name}: the script made {len(new)} of {len(old)} rows.")
+    return told(case.name, differences(old, new), wall)
+
+
+def listed(known: dict[str, Case]) -> None:
+    """Print the cases."""
+    print(f"{'case':32} {'rows':>6} {'CPU time [s]':>14}  made by")
+    for case in known.values():
+        count = "-" if case.table is None else str(len(lines(ROOT / case.table)))
+        cost = "-" if case.cpu_s is None else f"{case.cpu_s:.4g}"
+        print(f"{case.name:32} {count:>6} {cost:>14}  {case.command}")
+
+
+def main() -> int:
+    """List cases, or recreate rows of some."""
+    parser = command_line(__doc__, within=float("inf"))
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--rows", type=int, nargs="+", help="of one case, counted from 0")
+    parser.add_argument("--work", type=Path, help="folder of the copy and of beds; default: a new one")
+    given, known = parser.parse_args(), cases()
+    if not given.names:
+        listed(known)
+        return 0
+    for name in given.names:
+        if name not in known:
+            parser.error(f"no case is named {name}; there are {', '.join(known)}.")
+    if given.rows is not None and len(given.names) != 1:
+        parser.error("--rows counts the rows of one case; name one.")
+    work = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
+    try:
+        largest = max(recreate(known[name], given.rows, work.resolve()) for name in given.names)
+    except ValueError as error:
+        parser.error(str(error))
+    if largest > given.within:
+        print(f"A number differs by more than {100.0 * given.within:g} %.")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
