@@ -20,9 +20,18 @@ from lithobrake.cli.arguments import (
 from lithobrake.cli.terminal import BAD_INPUT, command_line, leave, one_sentence, study_headline, tell, tell_json
 
 
-@app.command(epilog="Example: lithobrake new bennu")
+@app.command(epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
+    body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = "Dimorphos",
+    lander: Annotated[str, typer.Option(help="A lander by name: 1U to 12U, Juventas, Milani, MASCOT.")] = "2U",
+    at: Annotated[
+        str, typer.Option(metavar="LAT,LON", help="Aim point, latitude and longitude in degrees.")
+    ] = "10,-60",
+    shape: Annotated[
+        str | None, typer.Option(metavar="FILE", help="Mesh of the body, its path as seen from the study.")
+    ] = None,
+    full: Annotated[bool, typer.Option("--full", help="Also list every key of a study file.")] = False,
     first_bounce: Annotated[
         bool, typer.Option("--first-bounce", help="Ask for the first bounce and an emulator of it, not for the end.")
     ] = False,
@@ -34,20 +43,32 @@ def new(
         odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
         if odd or not name.isprintable():
             raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
-        from lithobrake.study.journey_template import journey_template
         from lithobrake.study.template import template
 
-        try:
-            with path.open("x", encoding="utf-8") as file:
-                file.write(template() if first_bounce else journey_template())
-        except FileExistsError:
-            raise ValueError(f"{path} exists; choose another name or remove it") from None
-        except OSError as error:
-            reason = error.strerror or error
-            raise ValueError(
-                f"{path} cannot be written ({reason}); choose another name or an existing folder"
-            ) from error
+        text = template() if first_bounce else _journeys(body, lander, at, shape, full)
+        _write_new(path, text)
     tell([f"Wrote {path}. Edit it, then: {command_line('run', path)}"])
+
+
+def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) -> str:
+    """The text of a study of journeys."""
+    from lithobrake.study.known_bodies import known_body
+    from lithobrake.study.known_landers import known_lander
+    from lithobrake.study.short_study import aim_point, all_keys, short_study
+
+    return short_study(known_body(body), known_lander(lander), aim_point(at), shape) + (all_keys() if full else "")
+
+
+def _write_new(path: Path, text: str) -> None:
+    """Write a study file where there is none. Raises ValueError where there is one, or where none can be."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise ValueError(f"{path} exists; choose another name or remove it") from None
+    except OSError as error:
+        reason = error.strerror or error
+        raise ValueError(f"{path} cannot be written ({reason}); choose another name or an existing folder") from error
 
 
 def _study_command(name: str, what: str, until: str | None = None) -> None:

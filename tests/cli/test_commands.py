@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,9 @@ from typer.testing import CliRunner
 
 from lithobrake import __version__
 from lithobrake.cli import app
-from lithobrake.study.journey_template import journey_template
+from lithobrake.study.known_bodies import known_body
+from lithobrake.study.known_landers import known_lander
+from lithobrake.study.short_study import all_keys, short_study
 from lithobrake.study.template import template
 
 RUNNER = CliRunner()
@@ -83,12 +86,32 @@ def test_help_imports_nothing_heavy() -> None:
 def test_new_writes_a_study_and_does_not_overwrite_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert RUNNER.invoke(app, ["new", "bennu"]).exit_code == 0
-    assert (tmp_path / "bennu.toml").read_text() == journey_template()
+    text = short_study(known_body("dimorphos"), known_lander("2u"), (10.0, -60.0))
+    assert (tmp_path / "bennu.toml").read_text() == text
+    assert RUNNER.invoke(app, ["new", "all", "--full"]).exit_code == 0
+    assert (tmp_path / "all.toml").read_text() == text + all_keys()
     assert RUNNER.invoke(app, ["new", "bounce", "--first-bounce"]).exit_code == 0
     assert (tmp_path / "bounce.toml").read_text() == template()
     again = RUNNER.invoke(app, ["new", "bennu"])
     assert again.exit_code == 2
     assert "bennu.toml exists" in again.stderr
+
+
+def test_new_names_body_lander_and_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    arguments = ["--body", "BENNU", "--lander", "mascot", "--at", "-20,300", "--shape", "bennu.obj"]
+    assert RUNNER.invoke(app, ["new", "visit", *arguments]).exit_code == 0
+    tables = tomllib.loads((tmp_path / "visit.toml").read_text())
+    assert tables["title"] == "MASCOT on Bennu"
+    assert tables["lander"]["mass"] == 10.0
+    assert (tables["delivery"]["latitude_deg"], tables["delivery"]["longitude_deg"]) == (-20.0, 300.0)
+    assert (tables["site"]["body"], tables["site"]["mass"]) == ("bennu.obj", 7.329e10)
+    assert "the package has no shape of Bennu; give a closed mesh" in refused(["new", "x", "--body", "bennu"])
+    assert "known are Didymos, Dimorphos, Bennu" in refused(["new", "x", "--body", "pluto"])
+    assert "known are 1U, 2U" in refused(["new", "x", "--lander", "4u"])
+    for at in ("91,0", "10", "a,b", "nan,0"):
+        assert "it takes a latitude of -90 to 90" in refused(["new", "x", "--at", at])
+    assert not (tmp_path / "x.toml").exists()
 
 
 @pytest.mark.parametrize(
@@ -155,9 +178,9 @@ def test_a_missing_study_file_is_one_sentence(tmp_path: Path) -> None:
 
 def test_all_errors_of_a_study_are_listed_before_anything_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "wrong"])
+    RUNNER.invoke(app, ["new", "wrong", "--full"])
     text = (tmp_path / "wrong.toml").read_text()
-    (tmp_path / "wrong.toml").write_text(text.replace("mass = 2.0", "mas = -2.0").replace("count = 48", "count = 1"))
+    (tmp_path / "wrong.toml").write_text(text.replace("mass = 4.0", "mas = -4.0").replace("count = 48", "count = 1"))
     said = refused(["run", "wrong.toml"])
     assert "wrong.toml: lander.mas is not a known key; did you mean mass?" in said
     assert "wrong.toml: lander.mass is missing" in said
@@ -167,7 +190,7 @@ def test_all_errors_of_a_study_are_listed_before_anything_runs(tmp_path: Path, m
 
 def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "study"])
+    RUNNER.invoke(app, ["new", "study", "--full"])
     (tmp_path / "file").write_text("in the way")
     assert "cannot be written" in refused(["run", "study.toml", "--out", str(tmp_path / "file" / "out")])
 
@@ -175,14 +198,14 @@ def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path, monkeyp
 @pytest.mark.parametrize("out", ["", " "])
 def test_an_empty_out_is_not_the_current_folder(out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "study"])
+    RUNNER.invoke(app, ["new", "study", "--full"])
     assert "--out is empty (an unset variable?)" in refused(["run", "study.toml", "--out", out])
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
 def test_a_study_is_not_run_where_it_or_other_things_lie(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "study"])
+    RUNNER.invoke(app, ["new", "study", "--full"])
     before = (tmp_path / "study.toml").read_bytes()
     assert "study.toml lies in ." in refused(["run", "study.toml", "--out", "."])
     (tmp_path / "mine").mkdir()
@@ -195,7 +218,7 @@ def test_a_study_is_not_run_where_it_or_other_things_lie(tmp_path: Path, monkeyp
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="the administrator may write anywhere")
 def test_a_read_only_folder_is_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "study"])
+    RUNNER.invoke(app, ["new", "study", "--full"])
     (tmp_path / "locked").mkdir(mode=0o500)
     assert "cannot be written" in refused(["run", "study.toml", "--out", str(tmp_path / "locked" / "out")])
 
@@ -227,7 +250,7 @@ def test_a_plan_refuses_a_file_in_place_of_the_folder(
     out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    RUNNER.invoke(app, ["new", "study"])
+    RUNNER.invoke(app, ["new", "study", "--full"])
     assert f"{out} cannot be written (study.toml is a file)" in refused(["plan", "study.toml", "--out", out])
 
 

@@ -1,5 +1,6 @@
 """The study file: what is accepted, and how everything else is refused."""
 
+import math
 import subprocess
 import sys
 from copy import deepcopy
@@ -9,8 +10,10 @@ from typing import Any
 import pytest
 
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
-from lithobrake.study.journey_template import journey_template
+from lithobrake.study.known_bodies import BODIES, KnownBody, known_body
+from lithobrake.study.known_landers import LANDERS, known_lander
 from lithobrake.study.quantity import uncertain
+from lithobrake.study.short_study import all_keys, escape_speed, short_study
 from lithobrake.study.template import template
 
 from ..paper_tables import paper_tables
@@ -52,8 +55,11 @@ def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
     ]
 
 
-def test_the_journey_template_is_a_study_of_journeys(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(journey_template())
+SHORT = short_study(known_body("Dimorphos"), known_lander("2U"), (10.0, -60.0))
+
+
+def test_the_short_study_is_one_of_journeys(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(SHORT)
     study = read_study(tmp_path / "study.toml")
     assert study.journey is not None
     assert study.journey.count == study.design.run_count == 48
@@ -61,7 +67,38 @@ def test_the_journey_template_is_a_study_of_journeys(tmp_path: Path) -> None:
     assert {"impact.speed", "grain.friction"} <= uncertain(study.touchdown_values()).keys()
 
 
-@pytest.mark.parametrize("text", [template(), journey_template()], ids=["first bounce", "journeys"])
+@pytest.mark.parametrize("lander", LANDERS)
+def test_every_lander_by_name_has_a_bed_that_holds_it(lander: str, tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(short_study(known_body("didymos"), known_lander(lander), (60.0, 0.0)))
+    assert read_study(tmp_path / "study.toml").lander.mass == known_lander(lander).mass
+
+
+def tetrahedron(radius: float) -> str:
+    """OBJ of a tetrahedron with the volume of a ball: corners at (s, s, s) and so on span 8/3 s^3."""
+    side = radius * (math.pi / 2.0) ** (1.0 / 3.0)
+    corners = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]
+    lines = ["v " + " ".join(str(side * part) for part in corner) for corner in corners]
+    return "\n".join([*lines, "f 1 2 3", "f 1 4 2", "f 1 3 4", "f 2 4 3", ""])
+
+
+@pytest.mark.parametrize("body", [body for body in BODIES.values() if not body.is_built_in], ids=lambda body: body.name)
+def test_every_body_by_name_takes_a_mesh(body: KnownBody, tmp_path: Path) -> None:
+    (tmp_path / "ball.obj").write_text(tetrahedron(body.mean_radius))
+    (tmp_path / "study.toml").write_text(short_study(body, known_lander("3u"), (0.0, 0.0), "ball.obj"))
+    study = read_study(tmp_path / "study.toml")
+    assert (study.site.name, study.site.mass, study.site.spin_period) == (
+        body.name,
+        body.mass,
+        pytest.approx(body.spin_period, rel=1e-7),
+    )
+
+
+def test_escape_speed_of_bennu_is_that_of_its_mass_and_radius() -> None:
+    """sqrt(2 G M / R) of 7.329e10 kg and 245 m: 0.1998 m/s."""
+    assert escape_speed(known_body("bennu")) == pytest.approx(0.1998, abs=1e-4)
+
+
+@pytest.mark.parametrize("text", [template(), SHORT + all_keys()], ids=["first bounce", "journeys"])
 def test_every_key_has_a_meaning_in_a_template(text: str) -> None:
     for path, names in known_keys().items():
         # The kinds of size distribution stand in the words of bed.diameter.

@@ -1,0 +1,130 @@
+"""The study file that `lithobrake new` writes: a short study of journeys that runs."""
+
+import math
+
+from lithobrake.study.known_bodies import KnownBody
+from lithobrake.study.known_landers import KnownLander
+from lithobrake.study.template import DISTRIBUTION_WORDS, commented, sections
+
+GRAIN_SIZE = 0.4  # diameter of the grains over the longest edge of the lander
+# Width of the ground before it repeats, over the diagonal of the lander; and what stays free beside that, in grains.
+WIDTH, FREE = 2.15, 3.4
+GRAINS = 2.5  # over the square of width over diameter: some three deep
+# Of the escape speed of a ball of the body's mass and size: what a lander comes in with. Nothing lands faster than
+# FASTEST [m/s].
+SPEEDS, FASTEST = (0.5, 0.9), 0.5
+# Over density and square of the speed: what a contact must have to be stiff, and the least of any use [Pa].
+STIFFNESS, SOFTEST = 16_000.0, 2e5
+DENSITY = 2500.0  # kg/m3
+GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
+
+_STUDY = """\
+# Where does a lander end up? Landers are followed from delivery to rest, with a simulated landing at every impact.
+# Change what is yours: lander, body, delivery, and what is known of the ground. A number that is not known is a table
+# with a distribution; each lander draws its own. The ranges of soil and delivery are examples.
+title = "{lander.name} on {body.name}"
+seed = 1
+
+# The ground: boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
+[bed]
+grain_count = {grains}
+width = [{width}, {width}]    # m; `lithobrake plan` says the smallest
+diameter = {{ distribution = "constant", value = {diameter} }}    # m, of the sphere of equal volume
+pour_gravity = 0.5    # m/s2; they then settle under the local gravity
+
+[grain]
+density = {density}    # kg/m3
+young_modulus = {{ distribution = "log_uniform", lower = {softest:.0e}, upper = {stiffest:.0e} }}    # Pa
+poisson_ratio = 0.25
+restitution = {{ distribution = "uniform", lower = 0.3, upper = 0.9 }}
+friction = {{ distribution = "uniform", lower = 0.4, upper = 0.9 }}
+
+# {lander.name}: {lander.source}.
+[lander]
+shape = "box"    # or "sphere" with diameter, or "hull" with file
+edges = {edges}    # m
+mass = {lander.mass}    # kg
+
+# How it arrives at the ground, in any attitude.
+[delivery]
+latitude_deg = {latitude}
+longitude_deg = {longitude}
+north_error = {{ distribution = "normal", mean = 0.0, std = 15.0 }}    # m
+east_error = {{ distribution = "normal", mean = 0.0, std = 15.0 }}    # m
+heading_deg = {{ distribution = "uniform", lower = 0.0, upper = 360.0 }}    # from north toward east
+speed = {{ distribution = "uniform", lower = {slow}, upper = {fast} }}    # m/s
+incidence_deg = {{ distribution = "uniform", lower = 0.0, upper = 40.0 }}    # 0 is straight down
+spin_x = {{ distribution = "normal", mean = 0.0, std = 0.02 }}    # rad/s
+
+[journey]
+count = 48
+duration = 172_800.0    # s, two days
+
+"""
+
+_ALL_KEYS = """\
+# All keys of a study file by their tables, with meaning, unit, range and default; write those that you need into the
+# tables above. A key marked "number or table" takes a number, or one of these distributions:
+"""
+
+
+def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float], shape: str | None = None) -> str:
+    """The text of a study of journeys that runs.
+
+    place: latitude and longitude of the aim point [deg]. shape: path of a mesh from the study file, instead of a shape
+    that the package has. Raises ValueError where there is neither.
+    """
+    diameter = float(f"{GRAIN_SIZE * max(lander.edges):.2g}")
+    diagonal = math.hypot(*lander.edges)
+    width = math.ceil(100.0 * max(WIDTH * diagonal, diagonal + FREE * diameter)) / 100.0
+    speeds = [min(part * escape_speed(body), FASTEST * part / SPEEDS[1]) for part in SPEEDS]
+    softest = max(SOFTEST, STIFFNESS * DENSITY * speeds[1] ** 2)
+    text = _STUDY.format(
+        body=body, lander=lander, grains=round(GRAINS * (width / diameter) ** 2), width=width, diameter=diameter,
+        density=DENSITY, softest=softest, stiffest=10.0 * softest,
+        edges=list(lander.edges), latitude=place[0], longitude=place[1], slow=float(f"{speeds[0]:.2g}"),
+        fast=float(f"{speeds[1]:.2g}"),
+    )  # fmt: skip
+    return text + _site(body, shape)
+
+
+def aim_point(text: str) -> tuple[float, float]:
+    """Latitude and longitude [deg] of "10,120". Raises ValueError for another text or range."""
+    try:
+        latitude, longitude = (float(part) for part in text.split(","))
+    except ValueError:
+        latitude = longitude = math.nan
+    if not (-90.0 <= latitude <= 90.0 and -360.0 <= longitude <= 360.0):
+        raise ValueError(
+            f"at is {text!r}; it takes a latitude of -90 to 90 and a longitude of -360 to 360, in degrees; "
+            "write, say, 10,120"
+        )
+    return latitude, longitude
+
+
+def all_keys() -> str:
+    """Every key of a study file with its meaning, behind comment signs."""
+    return "\n".join(["\n" + _ALL_KEYS + DISTRIBUTION_WORDS, *map(commented, sections())])
+
+
+def escape_speed(body: KnownBody) -> float:
+    """Escape speed from the ground of a ball of the body's mass and size [m/s]."""
+    return math.sqrt(2.0 * GRAVITATIONAL_CONSTANT * body.mass / body.mean_radius)
+
+
+def _site(body: KnownBody, shape: str | None) -> str:
+    """The table of the body."""
+    if shape is None and not body.is_built_in:
+        raise ValueError(
+            f"the package has no shape of {body.name}; give a closed mesh (OBJ, STL, PDS plates, ICQ) with --shape FILE"
+        )
+    if shape is None:
+        return f'[site]\nbody = "{body.name.lower()}"    # or a mesh with mass and spin_period\n'
+    head = f"# {body.missing}\n" if body.missing else ""
+    pole = ""
+    if body.pole is not None:
+        pole = f"# Its pole: right ascension {body.pole[0]} deg, declination {body.pole[1]} deg (ICRF).\n"
+    return (
+        f'{head}# {body.name}: {body.source}.\n{pole}[site]\nbody = "{shape}"    # unit = "km" if it is not in m\n'
+        f'name = "{body.name}"\nmass = {body.mass:g}    # kg\nspin_period = {body.spin_period:.8g}    # s\n'
+    )
