@@ -2,8 +2,8 @@
 
 Prints a table. In each trial five uniform inputs are run anew (another Sobol sequence, other scatter) and fitted by the
 default or by another method. Sobol indices: 90 % intervals of all first-order and total indices against those of the
-truth (pick-freeze with 2**18 points, so to .001). Predictions: new runs, scatter included, within 1.645 expected errors
-of the expansion. Scores: 90 % intervals from 50 test runs against the scores at 20 000.
+truth (pick-freeze with 2**18 points, so to 0.001). Predictions: new runs, scatter included, within 1.645 expected
+errors of the expansion. Scores: 90 % intervals from 50 test runs against the scores at 20 000.
 Usage: python benchmarks/chaos_coverage.py [--trials 40]
 """
 

@@ -51,7 +51,7 @@ class Family(NamedTuple):
 
 
 def library(generator: np.random.Generator, count: int) -> Library:
-    """Return `count` shapes of every kind, of half sizes from about .5 to 2 m, large ones a thousand times that."""
+    """Return `count` shapes of every kind, of half sizes from about 0.5 to 2 m, large ones a thousand times that."""
     shapes: list[Shape] = []
     kinds: dict[str, list[int]] = {}
     for _ in range(count):
@@ -213,7 +213,7 @@ def wide(shapes: Library, generator: np.random.Generator, first: Integers, secon
 
 
 def fine(shapes: Library, generator: np.random.Generator, first: Integers, second: Integers, _: Floats) -> Floats:
-    """Apart or overlapping by 1e-17 to .1 of the smaller, or by nothing."""
+    """Apart or overlapping by 1e-17 to 0.1 of the smaller, or by nothing."""
     n = len(first)
     return (
         smaller(shapes, first, second) * 10.0 ** generator.uniform(-17, -1, n) * generator.choice([-1, 0, 1, 1, 1], n)
@@ -228,7 +228,7 @@ def deep(shapes: Library, generator: np.random.Generator, first: Integers, _: In
 def centred(
     shapes: Library, generator: np.random.Generator, first: Integers, second: Integers, touching: Floats
 ) -> Floats:
-    """Centroids apart by 1e-17 to .1 of the smaller, or by nothing."""
+    """Centroids apart by 1e-17 to 0.1 of the smaller, or by nothing."""
     return fine(shapes, generator, first, second, touching) - touching
 
 

@@ -1,7 +1,7 @@
 """Speed of gravity and flights around the built-in Didymos: sums over facets, table, and flights of up to 12 h.
 
 CPU time of all threads, and wall time on an otherwise quiet machine. The published case is Didymos alone, starts at
-latitude and longitude 0 at .01 to .4 m/s within 60 deg of the vertical. Beside the package stands polyhedral-gravity
+latitude and longitude 0 at 0.01 to 0.4 m/s within 60 deg of the vertical. Beside the package stands polyhedral-gravity
 where it is installed. Results go into flight_speed.json beside this file.
 Usage: python benchmarks/flight_speed.py [--table 25000 50000 100000] [--exact 2500 5000 10000] [--threads 2]
 """
@@ -37,7 +37,7 @@ def timed(work: Callable[[], Any], repeats: int = 1) -> tuple[float, float, Any]
 
 
 def cone(body: Body, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Start states at latitude and longitude 0: .01 to .4 m/s, even within 60 deg of the outward normal."""
+    """Start states at latitude and longitude 0: 0.01 to 0.4 m/s, even within 60 deg of the outward normal."""
     random = np.random.default_rng(1)
     place, axes = body.local_frame(0.0, 0.0, 0.0)
     turn = random.uniform(0.0, 2.0 * np.pi, count)

@@ -84,7 +84,7 @@ def relaxed(world: World, steps: int) -> World:
 
 
 def touch_down(world: World, speed: float) -> None:
-    """Let a CubeSat of 6 kg (.2 x .1 x .1 m) come down amid a bed, until its first steps in it."""
+    """Let a CubeSat of 6 kg (0.2 x 0.1 x 0.1 m) come down amid a bed, until its first steps in it."""
     top = float(world.position[np.linalg.norm(world.position[:, :2], axis=1) < 0.2, 2].max())
     world.add_body(Box((0.2, 0.1, 0.1)), ROCK, (0.0, 0.0, top + 0.1), velocity=(0.5 * speed, 0, -speed), mass=6.0)
     world.time_step = TIME_STEP

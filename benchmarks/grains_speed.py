@@ -58,7 +58,7 @@ def rates(world: World, seconds: float, steps: int) -> Result:
 
 
 def landing(folder: Path) -> list[Result]:
-    """Time a CubeSat of 6 kg (.2 x .1 x .1 m) hitting hull1000 at .1, .3 and .5 m/s, for a second from the touch."""
+    """Time a CubeSat of 6 kg (0.2 x 0.1 x 0.1 m) hitting hull1000 at 0.1, 0.3 and 0.5 m/s, for a second."""
     rows = []
     plain = relaxed(bed(folder, "hull1000"), RELAX_STEPS)
     with tempfile.TemporaryDirectory() as folder_of_bed:
@@ -153,7 +153,7 @@ FIRST_STEP = """
 import time; start = time.process_time()
 from lithobrake.dem import ConvexHull, Material, World
 import numpy as np
-rock = Material(young_modulus=1e6, poisson_ratio=.25, restitution=.5, friction=.5, density=2500.)
+rock = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.)
 world = World((0, 0, -1), 1e-4)
 world.add_body(ConvexHull(np.random.default_rng(0).normal(size=(14, 3))), rock, (0, 0, 5))
 world.run(steps=1)

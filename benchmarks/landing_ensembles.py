@@ -1,6 +1,6 @@
 """The same landings with contacts stepped in several ways: what they cost, and whether their statistics are the same.
 
-    python benchmarks/landing_ensembles.py STUDY.toml BED_FOLDER --region .1 --beds 8 --landings 200
+    python benchmarks/landing_ensembles.py STUDY.toml BED_FOLDER --region 0.1 --beds 8 --landings 200
         --stepping global:30 local:15 local:25 --out FILE
 
 Soils, beds, places (within the region [m] about the middle), headings and attitudes are drawn; every draw lands once

@@ -1,7 +1,7 @@
 """The same landings by two checkouts of the project in turn: what each costs, and the ratio of their CPU times.
 
     git worktree add OLD b9326c2
-    python benchmarks/landing_speed.py OLD . --study scenarios/paper.toml --beds BED_FOLDER --region .2 --landings 20
+    python benchmarks/landing_speed.py OLD . --study scenarios/paper.toml --beds BED_FOLDER --region 0.2 --landings 20
         --contact '{"stepping": "local", "steps_per_contact": 15, "held_speed": 0.1}'
         --old-contact '{"steps_per_contact": 50}' --out FILE
 

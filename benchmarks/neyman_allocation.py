@@ -2,13 +2,13 @@
 
     python benchmarks/neyman_allocation.py [--emulators 20] [--repeats 40]
 
-Synthetic landings whose soil explains .06 (weak) or .34 (strong) of the variance of the outgoing speed, on beds with a
-twentieth of the rest; failure: faster than a limit that .1, .05 or .02 of all landings pass. An emulator from 240 runs
-on 24 beds tells the probability of failure at each soil. 240 runs more on 24 new beds are then made in two ways:
+Synthetic landings whose soil explains 0.06 (weak) or 0.34 (strong) of the variance of the rebound speed, on beds with a
+twentieth of the rest; failure: faster than a limit that 0.1, 0.05 or 0.02 of all landings pass. An emulator from 240
+runs on 24 beds gives the probability of failure at each soil. 240 runs more on 24 new beds are then made in two ways:
 equal     a Sobol sequence of soils, and `share_estimate` with the regression on the inputs that a study takes off
 Neyman    ten strata of equal weight by the emulator's probability s, runs by the mean of sqrt(s (1 - s)) in each and a
           tenth of them even; the mean over strata
-gain: variance of the first over that of the second, over 800 repeats in all (.07 of luck); exact: the same
+gain: variance of the first over that of the second, over 800 repeats in all (0.07 of luck); exact: the same
 with strata by the true probabilities. whole: with the 240 runs of the first stage counted, which nobody chose.
 Writes benchmarks/results/neyman_allocation.csv, and .json beside it.
 """

@@ -4,8 +4,8 @@
 
 A strength R and a load S are the inputs of a stochastic model that gives S - R and scatter on top, normal or skewed
 (exponential), a twentieth of it the bed's: the probability that a limit is passed is known in closed form. Rows: what
-`failure_probability` says from 240 runs on 24 beds at .1, .02 and .005; what the runs and the emulator say alone; and
-`subset_simulation` on limit states of 2 to 100 inputs, beside OpenTURNS where that is installed.
+`failure_probability` says from 240 runs on 24 beds at 0.1, 0.02 and 0.005; what the runs and the emulator say alone;
+and `subset_simulation` on limit states of 2 to 100 inputs, beside OpenTURNS where that is installed.
 Writes benchmarks/results/reliability_coverage.csv, and .json beside it; with --subset the rows of
 `subset_simulation` alone are made anew, and the others stay as they stand there.
 """

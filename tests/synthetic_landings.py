@@ -1,7 +1,7 @@
 """Landings whose laws are known: five soil inputs, a place of two branches, beds, capture and a rim.
 
-A stand-in for hundreds of real landings, to test statistics against the truth. The soil explains .06 of the variance of
-the outgoing speed (`WEAK`) or, with three times the effect and with scale and shape that change with it, .34
+A stand-in for hundreds of real landings, to test statistics against the truth. The soil explains 0.06 of the variance
+of the rebound speed (`WEAK`) or, with three times the effect and with scale and shape that change with it, 0.34
 (`STRONG`); `NO_SOIL` has no effect of the soil at all. Units: m/s, rad, rad/s.
 """
 

@@ -83,7 +83,7 @@ def rattle_free(world: World, inner: NDArray[np.bool_], least: int) -> float:
 def compress(friction: float, seed: int, count: int = 1500) -> Result:
     """Press spheres together from all six sides up to a small pressure; return what they look like inside.
 
-    Source: Agnolin and Roux (2007), Phys. Rev. E 76, 061302: solid fraction .639 and .593, coordination 6 and 4.5.
+    Source: Agnolin and Roux (2007), Phys. Rev. E 76, 061302: solid fraction 0.639 and 0.593, coordination 6 and 4.5.
     """
     generator = np.random.default_rng(seed)
     radius, pressure = 0.005, 20.0
@@ -277,8 +277,8 @@ def froude() -> Iterator[Result]:
 def packed(name: str, seed: int, count: int = 800) -> Result:
     """Rain solids of one shape into a box and measure what they fill amid it, away from walls, floor and top.
 
-    At random places: from a lattice cubes pile up in columns, and fill .45 where rain fills .55.
-    Source: Baker and Kudrolli (2010), Phys. Rev. E 82, 061304: loose .51, .54, .52, .51, .50, +-.01.
+    At random places: from a lattice cubes pile up in columns, and fill 0.45 where rain fills 0.55.
+    Source: Baker and Kudrolli (2010), Phys. Rev. E 82, 061304: loose 0.51, 0.54, 0.52, 0.51, 0.50, +-0.01.
     """
     generator = np.random.default_rng(seed)
     size, width = 0.05, 0.4

@@ -86,14 +86,14 @@ def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
 
 SHOWN = {
     "compression": ("friction", ["solid_fraction", "coordination_without_rattlers"],
-                    "Spheres pressed from six sides; expected .639 and .593, 6 and 4.5 (Agnolin, Roux 2007)."),
+                    "Spheres pressed from six sides; expected 0.639 and 0.593, 6 and 4.5 (Agnolin, Roux 2007)."),
     "friction": ("friction", ["solid_fraction", "coordination"], "Poured beds of 150 hulls."),
     "repose": ("kind", ["angle_deg", "height_left", "stayed"],
                "Slope left when one end opens; about 25 deg rounded, 40 angular (Kleinhans 2011). Of the height filled,"
                " less than all is left: the slope reaches the back."),
     "packing": ("shape", ["solid_fraction", "coordination"],
-                "The Platonic solids, poured at 2 m/s, friction .5. Plastic dice: .51, .54, .52, .51, .50 settled in a"
-                " flow, .64, .67, .64, .63, .59 shaken, +-.01 (Baker, Kudrolli 2010)."),
+                "The Platonic solids, poured at 2 m/s, friction 0.5. Plastic dice: 0.51, 0.54, 0.52, 0.51, 0.50 settled"
+                " in a flow, 0.64, 0.67, 0.64, 0.63, 0.59 shaken, +-0.01 (Baker, Kudrolli 2010)."),
     "froude": ("froude", ["penetration_over_diameter", "duration_scaled"],
                "A sphere dropped into beds at three gravities; equal Froude numbers should give equal values."),
 }  # fmt: skip

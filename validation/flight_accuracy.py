@@ -1,7 +1,7 @@
 """How exact flights are: against another integrator, and against our own at tight tolerance.
 
-All start from latitude and longitude 0 of the built-in Didymos at .01 to .4 m/s within 60 deg of the vertical and last
-up to 12 h. The other integrator is SciPy's DOP853, about Didymos alone, with its own test for the ground and for
+All start from latitude and longitude 0 of the built-in Didymos at 0.01 to 0.4 m/s within 60 deg of the vertical and
+last up to 12 h. The other integrator is SciPy's DOP853, about Didymos alone, with its own test for the ground and for
 escape; its gravity is that of polyhedral-gravity where that is installed, else our sum over the facets.
 Results go into flight_accuracy.json beside this file.
 Usage: python validation/flight_accuracy.py [--oracle 200] [--own 2000]

@@ -25,7 +25,7 @@ FIRST_SEED = 101
 # Enough to see how far apart they are.
 ONE_PLACE_SEEDS = 10
 QUESTIONS = {"one place": "one_place", "draws": "first_bounce"}
-DIAMETERS = (0.12, 0.09, 0.065)  # m; the lander measures .1 x .1 x .227 m
+DIAMETERS = (0.12, 0.09, 0.065)  # m; the lander measures 0.1 x 0.1 x 0.227 m
 SPEED, ELEVATION = "speed_out", "elevation_out"
 
 

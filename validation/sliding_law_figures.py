@@ -22,8 +22,8 @@ from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, SITE, STY
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 OTHERS = {
-    "restitution": "restitution .8 in place of .5", "stiffness": "ten times as stiff",
-    "grain_friction": "friction .8 between grains, .2 of the lander", "size=0.5": "half the edges",
+    "restitution": "restitution 0.8 in place of 0.5", "stiffness": "ten times as stiff",
+    "grain_friction": "friction 0.8 between grains, 0.2 of the lander", "size=0.5": "half the edges",
     "size=1.5": "1.5 times the edges",
 }  # fmt: skip
 HEAD = """# Sliding on a bed of hulls
@@ -31,7 +31,7 @@ HEAD = """# Sliding on a bed of hulls
 Written by `python validation/sliding_law_figures.py`.
 
 A captured lander slides on by Coulomb's law, with the friction of hull and grain. Does it? The box
-of the quick study (.1 x .1 x .227 m, 2 kg) lies on beds of 200 hulls of 9 cm, 1.5 m long and two to
+of the quick study (0.1 x 0.1 x 0.227 m, 2 kg) lies on beds of 200 hulls of 9 cm, 1.5 m long and two to
 three grains deep, all of one material. It came to rest there by itself, dropped from just above the
 grains with its long edge along the way, across it, aslant, or any way round. Then it is pushed
 along the bed, level or down a slope, by an instant speed. What it has lost of its energy, height
@@ -40,7 +40,7 @@ centroid, is its effective friction. Means are over the way: energy lost by all,
 of all.
 
 Speeds are Froude numbers v² / (g d). By similarity nothing but these, friction, restitution and
-E / (rho g d) counts. The last is 1e5 here, by a gravity of .02 m/s2 with E = 4.5e5 Pa: on an
+E / (rho g d) counts. The last is 1e5 here, by a gravity of 0.02 m/s2 with E = 4.5e5 Pa: on an
 asteroid of 5e-5 m/s2 the same pushes are those of 1.1e3 Pa. Real soils are stiffer, by which a step
 is shorter and the overlap, a thousandth of a grain here, smaller; a row below has 1e6. A captured
 lander, v² < g a with its smallest edge a, has a Froude number below 1.1 here.
@@ -114,9 +114,9 @@ def findings(found: dict[str, Any], rows: list[Row]) -> str:
     steep = [row for row in usual if row["friction"] < row["slope"]]
     stopped = sum(row["stopped"] for row in steep)
     words = (
-        f"Effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ, from .2 to "
+        f"Effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ, from 0.2 to "
         f".8, at Froude numbers of {CAPTURED_FROUDE:g} and less. Pushes scatter by {law['scatter']:.2f} about that "
-        f"line, by {law['scatter_about_coulomb']:.2f} about Coulomb's law with μ itself, which holds about .8 alone: "
+        f"line, by {law['scatter_about_coulomb']:.2f} about Coulomb's law with μ itself, which holds about 0.8 alone: "
         "smooth landers are held by the stones that they lie among and not by their contacts. Of "
         f"{len(steep)} pushes down a slope that is steeper than the friction of the contacts {stopped} came to rest, "
         "where Coulomb's law lets all go on. Scatter is where the lander lies: one that catches an edge stops within "

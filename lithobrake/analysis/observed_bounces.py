@@ -32,7 +32,7 @@ def predictive_p_value(
 ) -> float:
     """Probability that a bounce which follows the posterior is as unlikely by it as the one that was observed.
 
-    A small one, below .05, says that the emulator, at no inputs that the prior allows, gives such bounces often: look
+    A small one, below 0.05, says that the emulator, at no inputs that the prior allows, gives such bounces often: look
     for an error of the observation, or a thing that the model leaves out. observation: with outputs. bounds: as in
     `infer`. Raises ValueError for an observation without outputs.
     Source: [Gelman-2013], chapter 6 (posterior predictive checks; here of the density).

@@ -36,7 +36,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Inte
     shares = met / drawn
     total_variance = float(shares.var(ddof=1))
     between = total_variance - float(np.mean(shares * (1.0 - shares) / (drawn - 1.0)))
-    # What so few draws cannot tell from chance counts as its own standard error: without it bounds hold .77 to .86.
+    # What so few draws cannot tell from chance counts as its own standard error: without it bounds hold 0.77 to 0.86.
     between = max(between, total_variance * math.sqrt(2.0 / len(shares)))
     # Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
     error = math.sqrt(between * bed_count / (bed_count - 1) + share * (1.0 - share) / total)

@@ -7,7 +7,7 @@ from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answers
 from lithobrake.vocabulary.arrays import Array
 
 # So few squares miss the rare large ones, which carry much of the effect: their own scatter says too little of it.
-# Measured on normal, Ishigami's and synthetic landings: bounds hold .83 to .93 with it, .76 to .86 without.
+# Measured on normal, Ishigami's and synthetic landings: bounds hold 0.83 to 0.93 with it, 0.76 to 0.86 without.
 SKEWNESS_FACTOR = 1.5
 
 

@@ -54,7 +54,7 @@ def fit_classes(
 ) -> OutcomeClasses:
     """Fit the chances to runs: terms [run_count, term_count] with their factors, outcome and weights [run_count].
 
-    A class that no run met has the chance .5 / (run_count + 1) everywhere. Source: [Heinze-2002].
+    A class that no run met has the chance 0.5 / (run_count + 1) everywhere. Source: [Heinze-2002].
     """
     counts = np.bincount(outcome, minlength=class_count)
     met, total = np.nonzero(counts)[0], weights.sum()

@@ -25,7 +25,7 @@ def didymos(*, partner: bool = True) -> Body:
     within the 15 m by which the extents are known; no boulder or crater is drawn. The pole is DIDYMOS_POLE.
 
     Sources: [Daly-2023] (extents, +-15 m); [Naidu-2020] (period before the DART impact). The mass is a choice inside
-    the published 5.4 +- .4 e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is
+    the published 5.4 +- 0.4 e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is
     2400 +- 300.
     """
     other = Partner(_dimorphos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
@@ -38,7 +38,7 @@ def dimorphos(*, partner: bool = True) -> Body:
     partner: Didymos attracts and may be hit; it stands over longitude 0 at all times. False leaves Dimorphos alone.
 
     One face towards Didymos is assumed, not measured: the impact of DART may have set it tumbling. Its shape is that
-    before the impact. The orbit is taken as a circle (published eccentricity below .03) in the equator of Didymos; its
+    before the impact. The orbit is taken as a circle (published eccentricity below 0.03) in the equator of Didymos; its
     radius follows from period, masses and flattenings as 1157 m, published are 1144 +- 70 m. The pole is that of the
     orbit, DIDYMOS_POLE.
 

@@ -61,7 +61,7 @@ def log_ratio(total: float, part: float) -> float:
 
     With (total + part)/(total - part) = 2**k * q and q near one, ln q = 2 atanh(s), s = (q - 1)/(q + 1). For k = 0 the
     numerator is 2 part exactly, which keeps the digits of far points. The polynomial is the Chebyshev interpolant of
-    (atanh(s) - s)/s**3 on s**2 < .0404.
+    (atanh(s) - s)/s**3 on s**2 < 0.0404.
     """
     above = total + part
     # The floor bounds the logarithm at 37: it meets a factor that is zero there, and zero times 37 is the limit.
@@ -86,7 +86,7 @@ def angle(y: float, x: float) -> float:
     """atan2(y, x) to about 2e-16, and 0 for (0, 0); the sign of a zero y does not matter.
 
     The smaller magnitude over the larger lies in [0, 1]; above tan(pi/8) it is turned back by pi/4. The polynomial is
-    the Chebyshev interpolant of (atan(t) - t)/t**3 on t**2 < .1716.
+    the Chebyshev interpolant of (atan(t) - t)/t**3 on t**2 < 0.1716.
     """
     up = abs(y)
     along = abs(x)

@@ -25,7 +25,7 @@ def test_the_difference_to_the_next_holds_the_truth_as_often_as_it_says() -> Non
         assert (found.best, found.runner_up) == (1, 0)
         held += found.difference.lower <= 0.4 <= found.difference.upper
     # Here 50 refits know the scatter, and Student's quantile of 23 degrees of freedom (1.714) is that of a normal error
-    # at .9135; two standard deviations of luck.
+    # at 0.9135; two standard deviations of luck.
     assert abs(held / 300 - 0.9135) < 2 * math.sqrt(0.9135 * 0.0865 / 300)
 
 
@@ -45,7 +45,7 @@ def test_few_draws_of_a_refit_leave_the_best_less_sure_but_far_surer_than_their_
         shares[draws] = np.mean([best_choice(met, BEDS, [True] * 2).shares[1] for met in all_met])
         shares[-draws] = np.mean([met.mean(axis=2)[1] > met.mean(axis=2)[0] for met in all_met])
     assert shares[-6] + 0.1 < shares[6] < shares[60]
-    # The truth, of two errors of .04 each: the chance of 1.77 standard deviations.
+    # The truth, of two errors of 0.04 each: the chance of 1.77 standard deviations.
     assert shares[60] == pytest.approx(0.9, abs=0.05)
 
 

@@ -9,7 +9,7 @@ from lithobrake.analysis import dispersion_ellipses
 
 
 def test_a_normal_cloud_gives_its_own_axes() -> None:
-    """Spreads of 2 and .5 deg along and across a heading of 30 deg, at latitude 50, across the date line."""
+    """Spreads of 2 and 0.5 deg along and across a heading of 30 deg, at latitude 50, across the date line."""
     random = np.random.default_rng(0)
     along, across = 2.0 * random.normal(size=20_000), 0.5 * random.normal(size=20_000)
     c, s = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))

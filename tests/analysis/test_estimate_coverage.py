@@ -32,7 +32,7 @@ HELD = (
 
 
 def check(found: dict[str, Row]) -> None:
-    """A nominal 90 % interval holds in .78 to 1 of forty studies (2.5 standard deviations)."""
+    """A nominal 90 % interval holds in 0.78 to 1 of forty studies (2.5 standard deviations)."""
     assert {name: row["held"] for name, row in found.items() if name in HELD and not 0.78 <= row["held"] <= 1.0} == {}
     # Half a point of share, and the luck of forty studies: a standard error is a tenth of a half width and less.
     assert abs(found["share"]["bias"]) < 0.005 + 0.2 * found["share"]["half_width"]

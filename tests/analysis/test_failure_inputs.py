@@ -21,7 +21,7 @@ def test_the_input_that_makes_failures_is_found_and_the_other_not() -> None:
     chance = stats.norm.cdf((grid - 0.65) / 0.1)
     among_failing = np.cumsum(chance) / chance.sum()
     exact = np.max(np.abs(among_failing - INPUTS["friction"].cdf(grid)))
-    # About seventy runs fail: their distribution function is within .1 of its law in nine of ten studies.
+    # About seventy runs fail: their distribution function is within 0.1 of its law in nine of ten studies.
     assert found["friction"].distance == pytest.approx(exact, abs=0.1)
     assert found["friction"].lower < exact < found["friction"].upper
     assert found["friction"].median == pytest.approx(grid[np.searchsorted(among_failing, 0.5)], abs=0.03)

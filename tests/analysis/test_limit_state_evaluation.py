@@ -28,7 +28,7 @@ MET: list[tuple[str, list[float]]] = [
     ("(escaped or captured) and peak_acceleration > 50", [0, 0, 1, NAN]),
     ("speed_out > -1 and not returns", [1, 0, 0, NAN]),
 ]
-# How far the same landings are from meeting conditions, speeds counted in .1 m/s and accelerations in 10 m/s2.
+# How far the same landings are from meeting conditions, speeds counted in 0.1 m/s and accelerations in 10 m/s2.
 SCALE = {"speed_out": 0.1, "peak_acceleration": 10.0}
 MARGINS: list[tuple[str, list[float]]] = [
     ("speed_out > 0.1", [-1.0, 0.5, FAR, FAR]),

@@ -29,7 +29,7 @@ def test_boundaries_between_three_outcomes_are_found_and_the_shares_are_right() 
     assert guess.mean(axis=0) == pytest.approx(shares, abs=0.05)
     assert (guess.argmax(axis=1) == truth(fresh)).mean() > 0.9
     drawn = np.bincount(model.draw(fresh, np.random.default_rng(0)), minlength=3) / len(fresh)
-    # Two standard deviations of a share counted in 20 000 draws are below .01.
+    # Two standard deviations of a share counted in 20 000 draws are below 0.01.
     assert drawn == pytest.approx(guess.mean(axis=0), abs=0.01)
 
 

@@ -19,7 +19,7 @@ needs_emcee = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def model() -> Emulator:
-    """An emulator of a response that friction alone moves, with scatter .7."""
+    """An emulator of a response that friction alone moves, with scatter 0.7."""
     random, x = np.random.default_rng(1), sobol_sequence(INPUTS, 200, seed=2)
     speed = x[:, 0] + 0.7 * random.standard_normal(200)
     return emulator.fit(INPUTS, x, speed, groups=np.arange(200) % 20, output_names=["speed"])
@@ -28,7 +28,7 @@ def model() -> Emulator:
 @needs_emcee
 def test_walkers_meet_two_peaks_and_their_own_count() -> None:
     def two_peaks(points: np.ndarray) -> np.ndarray:
-        # Peaks of standard deviation .5 at -1.5 and 1.5 of the first, the second standard normal.
+        # Peaks of standard deviation 0.5 at -1.5 and 1.5 of the first, the second standard normal.
         parts = [-0.5 * ((points[:, 0] - middle) / 0.5) ** 2 for middle in (-1.5, 1.5)]
         return np.logaddexp(*parts) - 0.5 * points[:, 1] ** 2
 

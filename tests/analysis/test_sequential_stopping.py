@@ -65,9 +65,9 @@ def test_runs_go_on_until_the_interval_is_narrow_enough_and_then_it_holds_the_tr
         assert estimate.upper is not None
         held += estimate.lower <= exact <= estimate.upper
         counts.append(end)
-    # A nominal 90 %, looked at several times; .78 is 3 standard deviations of sixty studies below it.
+    # A nominal 90 %, looked at several times; 0.78 is 3 standard deviations of sixty studies below it.
     assert 0.78 <= held / STUDIES <= 1.0
-    # Beds that differ ask for more runs: t sd sqrt(rho / B + (1 - rho) / N) with sd .14 is .015 at 240, 330 and 600.
+    # Beds that differ ask for more runs: t sd sqrt(rho / B + (1 - rho) / N) with sd 0.14 is 0.015 at 240, 330 and 600.
     assert {0.0: 200, 0.05: 220, 0.2: 280}[rho] < np.mean(counts) < {0.0: 360, 0.05: 400, 0.2: 600}[rho]
 
 
@@ -76,14 +76,14 @@ def test_an_outcome_of_yes_or_no_asks_for_more_runs_and_missing_ones_for_more_st
     for rim in ("none", "random"):
         truth = Truth(capture=0.2, rim=rim)
         ends[rim] = [stop(*landings(truth, captured, seed), 0.03)[-1] for seed in range(20)]
-    # 1.67 sqrt(.16 / N) is .03 at 500 runs; a tenth of eight tenths is missing with a rim.
+    # 1.67 sqrt(0.16 / N) is 0.03 at 500 runs; a tenth of eight tenths is missing with a rim.
     assert 400 < np.mean(ends["none"]) < 620
     assert np.mean(ends["none"]) < np.mean(ends["random"])
 
 
 def test_no_event_so_far_is_no_certainty() -> None:
     bed = np.arange(120) % 12
-    # 1 - .1^(1/12) is .17: a share of up to that may hide behind no event on a dozen beds.
+    # 1 - 0.1^(1/12) is 0.17: a share of up to that may hide behind no event on a dozen beds.
     assert half_width_of(np.zeros(120), bed) == pytest.approx(0.5 * (1.0 - 0.1 ** (1.0 / 12.0)))
     assert next_run_count(np.zeros(120), bed, 0.02, LARGEST, bed_count_of) == 240
     assert next_run_count(np.zeros(120), bed, 0.09, LARGEST, bed_count_of) is None

@@ -210,7 +210,7 @@ def test_what_cannot_be_is_refused() -> None:
 
 
 def test_half_widths_are_foreseen() -> None:
-    # STUDENT(23) at .95 is 1.7139; 240 runs on 24 beds without an effect of beds.
+    # STUDENT(23) at 0.95 is 1.7139; 240 runs on 24 beds without an effect of beds.
     assert expected_half_width(240, 24, correlation=0.0) == pytest.approx(1.7139 * 0.21 / math.sqrt(240), rel=1e-4)
     assert expected_half_width(240, 1) is None
     count = runs_for_half_width(0.02, 10)
@@ -228,7 +228,7 @@ def test_half_widths_are_foreseen() -> None:
 def test_the_next_bed_of_a_share_near_one_is_a_share_and_is_held() -> None:
     random, held, lowest = np.random.default_rng(5), 0, 1.0
     for _ in range(200):
-        # Beds of a beta law with mean .95 and deviation .05, ten landings on each of fifteen, all or nothing.
+        # Beds of a beta law with mean 0.95 and deviation 0.05, ten landings on each of fifteen, all or nothing.
         of_beds = random.beta(17.1, 0.9, 16)
         returns = random.random(150) < np.repeat(of_beds[:15], 10)
         found = share_estimate(returns.astype(float), np.repeat(np.arange(15), 10))

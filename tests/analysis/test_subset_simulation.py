@@ -24,7 +24,7 @@ def test_probabilities_of_closed_form_are_met_and_their_bounds_hold(name: str) -
     told = np.mean([one.coefficient_of_variation for one in found])
     mean = np.mean([one.probability for one in found])
     assert mean == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
-    # A nominal 90 % interval holds in .75 to 1 of forty (three standard deviations).
+    # A nominal 90 % interval holds in 0.75 to 1 of forty (three standard deviations).
     assert np.mean([one.lower <= exact <= one.upper for one in found]) >= 0.75
     for one in found:
         assert (margin(one.failing) <= 0.0).all()
@@ -64,7 +64,7 @@ def test_kept_inputs_stay_along_a_chain() -> None:
 )
 def test_bounds_hold_where_chains_share_chance(noise_share: float, bed_share: float, bed_count: int) -> None:
     found = [with_chance(noise_share, bed_share, bed_count, 500, seed) for seed in range(SEEDS)]
-    # Bounds from the correlation within chains alone held .6 of both.
+    # Bounds from the correlation within chains alone held 0.6 of both.
     assert np.mean([each.lower <= EXACT <= each.upper for each in found]) >= 0.75
 
 

@@ -24,7 +24,7 @@ def on_beds(bed_count: int, on_each: int, correlation: float, seed: int) -> tupl
 
 
 def split(seed: int, twins: np.ndarray | None = None, count: int = 240) -> VarianceShares:
-    """Shares of a model with .3 soil, .2 arrival, .1 bed, .4 the rest."""
+    """Shares of a model with 0.3 soil, 0.2 arrival, 0.1 bed, 0.4 the rest."""
     x = sobol_sequence(INPUTS, count, seed=seed)
     u = np.column_stack([math.sqrt(3.0) * entry.germ(x[:, k]) for k, entry in enumerate(INPUTS.values())])
     # A stream of its own for each, or the scramble of the sequence and the scatter would be of the same draws.
@@ -237,7 +237,7 @@ def test_twins_tell_chaos() -> None:
 
 
 def test_pairs_tell_the_total_effect_of_the_soil() -> None:
-    """The Ishigami function's total index of its third input is .2437 (a = 7, b = .1)."""
+    """The Ishigami function's total index of its third input is 0.2437 (a = 7, b = 0.1)."""
     rng = np.random.default_rng(2)
 
     def ishigami(x: np.ndarray) -> np.ndarray:

@@ -182,7 +182,7 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
             missing(grid(), reasons(failed), ("a", "b"), 0.1)
         except ValueError:
             refused += 1
-    # The chance is at most .01 in each of the 300; more than 9 would itself have a chance below .002.
+    # The chance is at most 0.01 in each of the 300; more than 9 would itself have a chance below 0.002.
     assert refused <= 9
 
 

@@ -51,7 +51,7 @@ def test_sobol_intervals_cover_the_truth_under_noise(keywords, trials):
             width[row] += (high - low) / trials
         assert np.all(bounds["first"][0] <= surrogate.sobol_first)
         assert np.all(surrogate.sobol_total <= bounds["total"][1])
-    # 90 % intervals: two standard deviations of a share counted in so many trials, and .02, below.
+    # 90 % intervals: two standard deviations of a share counted in so many trials, and 0.02, below.
     assert np.all(covered / trials > 0.88 - 2.0 * np.sqrt(0.09 / trials))
     # Useful, too: a fifth of the width of knowing nothing.
     assert width.max() < 0.2
@@ -101,7 +101,7 @@ def test_an_effect_too_small_for_the_choice_of_terms_stays_possible():
         x, y = runs(40, seed)
         y += 0.08 * (3.0 * x[:, 2] ** 2 - 1.0)
         surrogate = fit(CUBE, x, y, method="omp", degree=4)
-        # Its variance is .08**2 * 4 / 5; the scatter alone has .04.
+        # Its variance is 0.08**2 * 4 / 5; the scatter alone has 0.04.
         share = 0.08**2 * 0.8 / (PARTS.sum() + 0.08**2 * 0.8)
         low, high = sobol_intervals(surrogate, x, y, count=100, level=0.9)["first"][:, 2]
         held += low <= share <= high
@@ -146,7 +146,7 @@ def test_score_intervals_hold_the_scores_of_many_runs():
         bounds = score_intervals(surrogate, *test_runs(60, seed), count=200, level=0.9)["y"]
         for key in covered:
             covered[key] += bounds[key][0] <= exact[key] <= bounds[key][1]
-    # A share of .9 counted in 100 trials has a standard deviation of .03.
+    # A share of 0.9 counted in 100 trials has a standard deviation of 0.03.
     assert min(covered.values()) >= 0.84 * trials, covered
 
 
@@ -176,7 +176,7 @@ def test_score_intervals_of_errors_with_long_tails_reach_far_enough():
         low, high = score_intervals(surrogate, x, y, count=200, level=0.9, seed=seed)["y"]["rmse"]
         # The variance of Student's t with 4 degrees of freedom is 2.
         held += low <= 0.1 * np.sqrt(2.0) <= high
-    # Over 600 trials .82 held it, .74 with plain percentiles; a share of 200 has a standard deviation of .027.
+    # Over 600 trials 0.82 held it, 0.74 with plain percentiles; a share of 200 has a standard deviation of 0.027.
     assert held >= 0.77 * trials
 
 

@@ -33,8 +33,8 @@ def test_mean_scatter_and_joint_samples(tmp_path):
     error = model.mean(test) - np.column_stack([test[:, 1], 2.0 - test[:, 0]])
     # 480 runs average the scatter down to a tenth of it or so, depending on how many terms the fit takes up.
     assert np.all(np.sqrt(np.mean(error**2, axis=0)) < 0.25 * model.scatter_std(test).mean(axis=0))
-    # The logarithm of a variance from 8 runs has the standard deviation sqrt(trigamma(3.5)) = .57; sixty groups and
-    # three to six terms leave .57 sqrt(6 / 60) / 2 = .09 in the logarithm of the standard deviation.
+    # The logarithm of a variance from 8 runs has the standard deviation sqrt(trigamma(3.5)) = 0.57; sixty groups and
+    # three to six terms leave 0.57 sqrt(6 / 60) / 2 = 0.09 in the logarithm of the standard deviation.
     logarithm = np.log(model.scatter_std(test)[:, 0] / (0.1 * np.exp(test[:, 0])))
     assert np.sqrt(np.mean(logarithm**2)) < 0.18
     assert model.correlation[0, 1] == pytest.approx(0.8, abs=0.08)

@@ -45,7 +45,7 @@ def test_what_flies_far_beyond_the_grid_still_meets() -> None:
     world.add_body(Sphere(0.05), ROCK, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
     world.add_body(Sphere(0.05), ROCK, (0.3, 0.0, 0.0), (0.5, 0.0, 0.0))
     world.add_body(Sphere(0.05), ROCK, (0.0, 0.3, 0.0))
-    # They meet at x = .5, beyond the grid, which ends where the bodies stood.
+    # They meet at x = 0.5, beyond the grid, which ends where the bodies stood.
     world.run_locally(1.0, 15.0)
     assert world.velocity[1, 0] > world.velocity[0, 0]
     assert world.velocity[:2, 0].sum() == pytest.approx(1.5, rel=1e-12)

@@ -250,6 +250,6 @@ def test_a_watched_body_tells_whether_anything_touches_it() -> None:
         world.run_locally(0.005, 15.0)
         touched.append(world.is_touched)
         assert world.is_touched == bool(world.contact_force[0].any())
-    # It falls for .045 s, bounces, and comes to rest.
+    # It falls for 0.045 s, bounces, and comes to rest.
     assert not any(touched[:8])
     assert all(touched[-5:])

@@ -15,7 +15,7 @@ from .conditional_errors import DrawnRuns, fitted, law_errors
 @pytest.mark.parametrize(
     ("truth", "limits", "of_rows"),
     # Half of the error of drawing runs is the luck of 300 runs in the weak case, which no emulator is spared: over ten
-    # studies the ratio is .6 (docs/emulator.md), over these four it may be .8.
+    # studies the ratio is 0.6 (docs/emulator.md), over these four it may be 0.8.
     [(WEAK, (0.06, 0.04, 2.2), 0.8), (STRONG, (0.30, 0.15, 4.5), 0.4)],
 )
 def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float, ...], of_rows: float) -> None:
@@ -33,7 +33,7 @@ def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
         found.append(any(model.found_inputs().values()))
     of_model, of_rows = np.mean(scores, axis=0)
     assert of_model <= 1.01 * of_rows
-    # Each finds one with probability .1: more than two of six with .016.
+    # Each finds one with probability 0.1: more than two of six with 0.016.
     assert sum(found) <= 2
 
 
@@ -95,5 +95,5 @@ def test_intervals_from_refits_hold_the_truth() -> None:
         medians = [np.nanmedian(refit.sample(soils, 1)[:, 0, 0]) for refit in model.refits(refit_count)]
         half = stats.t.ppf(0.95, bed_count - 1) * np.std(medians) * np.sqrt(bed_count / (bed_count - 1.0))
         held += abs(np.nanmedian(model.sample(soils, 5)[:, :, 0]) - exact) <= half
-    # Nine of ten intervals hold; four or fewer of eight with probability .005.
+    # Nine of ten intervals hold; four or fewer of eight with probability 0.005.
     assert held >= 5

@@ -22,7 +22,7 @@ def test_the_odds_of_two_branches_are_followed() -> None:
     model = emulator.fit(inputs, x, np.where(upper, 1.5, -1.5) + 0.3 * random.standard_normal(COUNT))
     places = np.array([-0.8, -0.3, 0.3, 0.8])
     drawn = model.sample(np.column_stack([places, np.zeros((4, 2))]), 4000)[:, :, 0]
-    # Some forty runs lie as near as rows are drawn from: their odds are good to .08.
+    # Some forty runs lie as near as rows are drawn from: their odds are good to 0.08.
     np.testing.assert_allclose((drawn > 0.0).mean(axis=1), special.expit(3.0 * places), atol=0.16)
     # Little lies between the branches, which are ten deviations apart: rows of places nearby are shifted by the mean.
     assert (np.abs(drawn) < 0.5).mean() < 0.1
@@ -104,5 +104,5 @@ def test_an_emulator_does_not_lose_to_its_runs() -> None:
         random = np.random.default_rng(seed)
         x = latin_hypercube(inputs, 100, seed=seed)
         passed += emulator.fit(inputs, x, random.gamma(2.0, size=100)).follows_inputs
-    # By luck a gain is above its error in 16 of 100; more than four of ten with probability .01.
+    # By luck a gain is above its error in 16 of 100; more than four of ten with probability 0.01.
     assert passed <= 4

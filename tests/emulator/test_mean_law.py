@@ -30,7 +30,7 @@ def test_indices_are_those_of_the_polynomial() -> None:
 def test_the_share_of_the_inputs_is_freed_of_noise(explained: float) -> None:
     noise = np.sqrt(7.0 / 9.0 * (1.0 / explained - 1.0))
     shares = [fitted(1.0, noise, 240, seed).mean_law().share[0] for seed in range(10)]
-    # Ten studies with a standard deviation of about .05 each.
+    # Ten studies with a standard deviation of about 0.05 each.
     assert abs(np.mean(shares) - explained) < 2.0 * 0.05 / np.sqrt(10.0)
 
 
@@ -39,7 +39,7 @@ def test_inputs_are_found_where_they_count() -> None:
 
 
 def test_without_effects_hardly_any_study_finds_one() -> None:
-    # 90 % of studies find none; of 20, with probability .989, no more than 5 do.
+    # 90 % of studies find none; of 20, with probability 0.989, no more than 5 do.
     found = [any(fitted(0.0, 1.0, 100, seed).found_inputs().values()) for seed in range(20)]
     assert sum(found) <= 5
 

@@ -51,7 +51,7 @@ def test_a_slope_is_followed_and_noise_is_not() -> None:
 
 
 def test_a_ring_is_followed() -> None:
-    """What lies in a ring about the middle is captured: a linear logit is off by .46, as a constant is."""
+    """What lies in a ring about the middle is captured: a linear logit is off by 0.46, as a constant is."""
     inputs = {"a": Uniform(-1.0, 1.0), "b": Uniform(-1.0, 1.0), "c": Uniform(-1.0, 1.0)}
     terms, fresh = candidate_terms(inputs), sobol_sequence(inputs, 500, seed=4)
     x = sobol_sequence(inputs, COUNT, seed=3)

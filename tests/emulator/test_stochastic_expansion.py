@@ -20,7 +20,7 @@ MARKET = {"drift": Uniform(0.0, 0.1), "volatility": Uniform(0.2, 0.9)}
 
 
 def line(x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """A law of the model's own class: mean 1 + x, standard deviation .5 + .2 x."""
+    """A law of the model's own class: mean 1 + x, standard deviation 0.5 + 0.2 x."""
     return 1.0 + x[:, 0] + (0.5 + 0.2 * x[:, 0]) * z
 
 
@@ -43,7 +43,7 @@ def runs_of(inputs: dict[str, Any], law: Any, seed: int = 0) -> tuple[np.ndarray
 
 
 def bounded_runs(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Runs whose output lies between 0 and .4."""
+    """Runs whose output lies between 0 and 0.4."""
     x, y = runs_of(ONE_INPUT, line, seed)
     return x, 0.4 / (1.0 + np.exp(-y))
 

@@ -32,7 +32,7 @@ def test_attitudes_are_even_over_all_rotations() -> None:
 def test_a_sequence_of_attitudes_fills_the_rotations_more_evenly_than_chance() -> None:
     even = qmc.Sobol(3, rng=np.random.default_rng(1)).random(1024)
     mean = rotations([uniform_attitude(*row) for row in even]).as_matrix().mean(axis=0)
-    # Each entry has mean 0 and variance 1/3: independent draws would be off by .018.
+    # Each entry has mean 0 and variance 1/3: independent draws would be off by 0.018.
     assert np.abs(mean).max() < 0.006
 
 

@@ -16,7 +16,7 @@ def experiments_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def lawful(density: float, fall: float, diameter: float = 0.0254, bead: float = 0.0) -> dict[str, float]:
-    """A drop that obeys d = .3 (density / bulk)^(1/2) D^(2/3) H^(1/3), H = fall + d, less half a bead."""
+    """A drop that obeys d = 0.3 (density / bulk)^(1/2) D^(2/3) H^(1/3), H = fall + d, less half a bead."""
     depth = 0.0
     for _ in range(100):
         depth = 0.3 * (density / 1500.0) ** 0.5 * diameter ** (2 / 3) * (fall + depth) ** (1 / 3)
@@ -72,7 +72,7 @@ def test_other_beds_differ_in_one_respect_and_take_a_light_and_a_heavy_ball() ->
 
 
 def test_a_low_restitution_gets_more_steps() -> None:
-    """Its damping asks for up to 25 in a contact at .5; beds that have rows keep their steps."""
+    """Its damping asks for up to 25 in a contact at 0.5; beds that have rows keep their steps."""
     from dataclasses import replace
 
     from ball_into_beads import GLASS

@@ -57,7 +57,7 @@ def test_oblique_impacts_never_make_energy(poisson_ratio):
 def corner_drop(damping_mass):
     """Restitution at the corner of a box that falls on it, far from below its centre, without friction.
 
-    The box is stiff, so that it hardly turns while it touches (at 1e7 Pa it turns by 2 degrees, and .488 comes out).
+    The box is stiff, so that it hardly turns while it touches (at 1e7 Pa it turns by 2 degrees, and 0.488 comes out).
     """
     stuff = material(0.5, young_modulus=1e9)
     box = Box((0.2, 0.1, 0.1))

@@ -23,7 +23,7 @@ def on_plane(shape, stuff, position, gravity=(0, 0, -9.81), time_step=5e-5, **st
 
 
 def test_block_slides_to_a_stop():
-    """v^2/(2 mu g) = 2.5484 m from 5 m/s at mu = .5."""
+    """v^2/(2 mu g) = 2.5484 m from 5 m/s at mu = 0.5."""
     block = Box((0.4, 0.4, 0.05))
     world = on_plane(block, material(), (0, 0, 0.025), velocity=(5.0, 0, 0))
     world.run(duration=1.3)

@@ -187,7 +187,7 @@ def test_free_rotation_keeps_angular_momentum_and_energy():
 
 @pytest.mark.parametrize(("floor", "stands"), [(0.0893 * 1.05, True), (0.0893 * 0.95, False)])
 def test_pyramid_of_three_spheres_and_the_floor(floor, stands):
-    """Two on the floor, one on top: it stands if mu_floor >= .0893 (and mu_sphere >= .2679)."""
+    """Two on the floor, one on top: it stands if mu_floor >= 0.0893 (and mu_sphere >= 0.2679)."""
     world = World((0, 0, -9.81), 2e-5)
     ball, ground = material(friction=0.5, young_modulus=1e9), material(friction=floor, young_modulus=1e9)
     radius = 0.05

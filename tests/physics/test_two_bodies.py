@@ -53,7 +53,7 @@ def collide(world, step_limit=100_000):
     ids=["glass", "limestone"],
 )
 def test_t1_two_equal_spheres_elastic(young, nu, rho, force, overlap, duration):
-    """Chung and Ooi (2011), test 1: two equal spheres, R = 10 mm, 10 m/s each, e = 1, mu = .35; step t_c/100."""
+    """Chung and Ooi (2011), test 1: two equal spheres, R = 10 mm, 10 m/s each, e = 1, mu = 0.35; step t_c/100."""
     stuff = material(young, nu, rho, 1.0, 0.35)
     world = World(time_step=duration / 100)
     for sign in (-1.0, 1.0):
@@ -72,7 +72,7 @@ def test_t1_two_equal_spheres_elastic(young, nu, rho, force, overlap, duration):
     ids=["aluminium", "magnesium"],
 )
 def test_t2_sphere_on_rigid_plane_elastic(young, nu, rho, force, overlap, duration):
-    """Chung and Ooi (2011), test 2: sphere of R = .1 m on a rigid plane, .2 m/s, e = 1, mu = 0; step t_c/100."""
+    """Chung and Ooi (2011), test 2: sphere of R = 0.1 m on a rigid plane, 0.2 m/s, e = 1, mu = 0; step t_c/100."""
     stuff = material(young, nu, rho)
     world = World(time_step=duration / 100)
     world.add_body(Sphere(0.1), stuff, (0, 0, 0.1), velocity=(0, 0, -0.2))
@@ -109,7 +109,7 @@ def test_damping_ratio_without_attraction(restitution, ratio):
     [(35, 0.7398, 581.95), (50, 0.8471, 456.65), (70, 0.9337, 242.98), (85, 0.9841, 61.92)],
 )
 def test_t4_oblique_impact_gross_sliding(angle_deg, tangential, spin):
-    """Chung and Ooi (2011), test 4: the sphere of test 3 at angles from the normal, mu = .092, e = .98; step t_c/50."""
+    """Chung and Ooi (2011), test 4: the sphere of test 3 at angles from the normal, mu = 0.092, e = 0.98; t_c/50."""
     stuff = material(380e9, 0.23, 4000.0, 0.98, 0.092)
     angle = math.radians(angle_deg)
     world = World(time_step=fiftieth(stuff, 0.0025, 3.9 * math.cos(angle)))
@@ -123,7 +123,7 @@ def test_t4_oblique_impact_gross_sliding(angle_deg, tangential, spin):
 
 @pytest.mark.parametrize("x", [8.0, 12.0])
 def test_t5_gross_sliding_at_a_fixed_normal_speed(x):
-    """Chung and Ooi (2011), test 5: steel sphere of R = 10 um, x = v_t/(mu v_n), mu = .3, e = 1; step t_c/50."""
+    """Chung and Ooi (2011), test 5: steel sphere of R = 10 um, x = v_t/(mu v_n), mu = 0.3, e = 1; step t_c/50."""
     stuff = material(208e9, 0.30, 7850.0, 1.0, 0.3)
     radius, normal = 1e-5, 5.0
     world = World(time_step=fiftieth(stuff, radius, normal))
@@ -138,7 +138,7 @@ def test_t5_gross_sliding_at_a_fixed_normal_speed(x):
 
 @pytest.mark.parametrize(("q", "kept"), [(0.184, 0.8163), (0.370, 0.6297), (0.563, 0.4373)])
 def test_t6_spinning_sphere_gross_sliding(q, kept):
-    """Chung and Ooi (2011), test 6: spinning sphere, R = .1 m, mu = .4; q = 3.5 mu (1 + e) v_n/v_s; e = .5; t_c/50."""
+    """Chung and Ooi (2011), test 6: spinning sphere, R = 0.1 m, mu = 0.4, e = 0.5, q = 3.5 mu (1 + e) v_n/v_s."""
     stuff = material(70e9, 0.33, 2700.0, 0.5, 0.4)
     surface_speed = 3.5 * 0.4 * 1.5 * 0.2 / q
     world = World(time_step=fiftieth(stuff, 0.1, 0.2))
@@ -161,7 +161,7 @@ def test_t7_equal_and_opposite_spins_feel_no_friction():
 
 
 def test_sphere_at_rest_overlap_and_period():
-    """Derived: Hertz and its linearisation, R = .05 m, rho = 2000, E = 1e7, nu = .25, g = 9.81."""
+    """Derived: Hertz and its linearisation, R = 0.05 m, rho = 2000, E = 1e7, nu = 0.25, g = 9.81."""
     stuff = material(1e7, 0.25, 2000.0)
     world = World((0, 0, -9.81), 1e-5)
     overlap, nudge = 2.185228e-4, 2e-6
@@ -178,7 +178,7 @@ def test_sphere_at_rest_overlap_and_period():
 
 
 def test_sphere_rolls_down_a_slope():
-    """Derived: 5/7 g sin(angle) t, less the lag of the settling; 15 degrees, mu = .5, g = 9.8, 1 s."""
+    """Derived: 5/7 g sin(angle) t, less the lag of the settling; 15 degrees, mu = 0.5, g = 9.8, 1 s."""
     stuff = material(1e8, 0.25, 2000.0, 0.5, 0.5)
     angle = math.radians(15.0)
     world = World((9.8 * math.sin(angle), 0, -9.8 * math.cos(angle)), 2e-5)

@@ -123,7 +123,7 @@ def test_a_frictionless_elastic_ball_is_thrown_back_as_light_from_a_mirror() -> 
     code = f"import sys; sys.path.insert(0, {str(EXAMPLES)!r}); from ball_on_plate import bounce; import json; "
     code += "print(json.dumps(bounce(2.0, 0.5, 1.0, 0.0, 0.05, 0.0, 0.1)))"
     out = json.loads(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout)
-    # The mirror is tilted by .1: the ray, .5 from the vertical, comes back .5 - 2 x .1 from it.
+    # The mirror is tilted by 0.1: the ray, 0.5 from the vertical, comes back 0.5 - 2 x 0.1 from it.
     assert out["velocity_out_x"] == pytest.approx(2 * math.sin(0.3), rel=1e-14)
     assert out["velocity_out_z"] == pytest.approx(2 * math.cos(0.3), rel=1e-14)
     assert out["spin_out"] == 0.0

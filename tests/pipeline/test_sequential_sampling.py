@@ -73,7 +73,7 @@ def test_runs_are_made_until_the_half_width_is_met(narrow: tuple[Path, DesignRun
     values, bed = answers(folder)
     assert len(values) == runs.run_count
     assert (half_width_of(values, bed) or 1.0) <= 0.06
-    # A quarter is captured: 1.7 sqrt(.1875 / N) is .06 at 150 runs; one stage more at the most.
+    # A quarter is captured: 1.7 sqrt(0.1875 / N) is 0.06 at 150 runs; one stage more at the most.
     assert 110 <= runs.run_count <= 240
     assert len(set(bed)) == max(12, -(-runs.run_count // 20))
     steps = [sentence for sentence in said if sentence.startswith("the return fraction is known to +- ")]

@@ -40,7 +40,7 @@ def test_an_error_goes_over_the_ground_by_its_length_however_long(latitude: floa
     radius, length = float(np.linalg.norm(aim)), math.hypot(north, east)
     ahead = axes[0] @ there / np.linalg.norm(there)
     assert aim @ there / radius / np.linalg.norm(there) == pytest.approx(math.cos(length / radius), abs=1e-12)
-    # The frame is that of a facet, of which a corner is two thirds of 180 / 31 degrees off the normal, .068 rad.
+    # The frame is that of a facet, of which a corner is two thirds of 180 / 31 degrees off the normal, 0.068 rad.
     assert ahead[:2] == pytest.approx(np.array([north, -east]) / length * math.sin(length / radius), abs=0.07)
 
 

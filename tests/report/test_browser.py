@@ -122,12 +122,12 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     assert page.value("document.querySelectorAll('#explorer input[type=range]').length") == 14
     # The density of the grains, between its median and its end.
     page.value(
-        "(() => { const end = document.querySelector('#explorer input'); end.value = .9;"
+        "(() => { const end = document.querySelector('#explorer input'); end.value = 0.9;"
         "end.dispatchEvent(new Event('input')); })()"
     )
     # What is read is what the law gives there, as soon as all draws are made.
     share = page.value(
-        "(() => { const found = explorer.at([[.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
+        "(() => { const found = explorer.at([[0.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
         "return shareWords(explorer, found); })()"
     )
     page.value(

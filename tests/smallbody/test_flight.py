@@ -112,7 +112,7 @@ def test_impacts_lie_on_the_surface_and_energy_is_kept(top):
     assert set(flights.status) >= {"impact", "escaped"}
     assert np.abs(top.shape.height(flights.position[hit])).max() < 1e-9
     assert (np.einsum("fi,fi->f", flights.velocity[hit], top.shape.normals[flights.facet[hit]]) < 0.0).all()
-    assert np.abs(flights.jacobi_drift).max() < 3e-6  # of about .09 m2/s2
+    assert np.abs(flights.jacobi_drift).max() < 3e-6  # of about 0.09 m2/s2
     assert (flights.time[flights.status == "flying"] == 12 * 3600.0).all()
     assert np.isnan(flights.impact_speed[~hit]).all()
     assert flights.impact_speed[hit] == pytest.approx(np.linalg.norm(flights.velocity[hit], axis=1))

@@ -48,7 +48,7 @@ def test_bounces_of_a_ball_follow_the_geometric_series(plain):
     # A rebound of e**n v rises (e**n v)**2 / 2 g; the first one below the height of rest is the end.
     rebounds = math.floor(math.log(math.sqrt(2.0 * push * 1e-3) / speed) / math.log(restitution))
     assert end.bounce_count[0] == rebounds
-    # Gravity weakens by some thousandths over the .09 m that the first flight rises.
+    # Gravity weakens by some thousandths over the 0.09 m that the first flight rises.
     expected = 2.0 * speed / push * (1.0 - restitution ** (rebounds + 1)) / (1.0 - restitution)
     assert end.time[0] == pytest.approx(expected, rel=5e-3)
     assert end.latitude[0] == pytest.approx(math.degrees(math.atan2(100.0, math.hypot(3.0, 2.0))), abs=0.1)

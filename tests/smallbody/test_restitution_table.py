@@ -41,11 +41,11 @@ def test_draws_have_the_quantiles_and_the_correlation_of_their_cell() -> None:
     found = TABLE(impacts(0.05), np.random.default_rng(1))
     normal = found.velocity[:, 2] / (0.05 * np.cos(np.radians(60.0)))
     along = np.hypot(found.velocity[:, 0], found.velocity[:, 1]) / (0.05 * np.sin(np.radians(60.0)))
-    # A uniform law over .4 has this deviation; four standard errors of the mean.
+    # A uniform law over 0.4 has this deviation; four standard errors of the mean.
     luck = 4 * 0.4 / np.sqrt(12 * 20_000)
     assert normal.mean() == pytest.approx(0.4, abs=luck)
     assert along.mean() == pytest.approx(0.7, abs=luck)
-    # Uniform scores of normal ones that correlate by .8: 6/pi asin(.4).
+    # Uniform scores of normal ones that correlate by 0.8: 6/pi asin(0.4).
     assert np.corrcoef(normal, along)[0, 1] == pytest.approx(6 / np.pi * np.arcsin(0.4), abs=0.02)
     assert np.abs(np.degrees(np.arctan2(found.velocity[:, 1], found.velocity[:, 0]))).max() <= 30.0
     assert not found.captured.any()

@@ -16,7 +16,7 @@ def test_sizes_follow_their_distribution():
     power = GrainSizes(distribution="power_law", lower=0.1, upper=0.4, exponent=3.5).draw(uniforms)
     assert power.min() >= 0.1
     assert power.max() <= 0.4
-    # Share below the middle of N(d) ~ d^-3.5 between .1 and .4.
+    # Share below the middle of N(d) ~ d^-3.5 between 0.1 and 0.4.
     share = (0.1**-2.5 - 0.2**-2.5) / (0.1**-2.5 - 0.4**-2.5)
     assert (power < 0.2).mean() == pytest.approx(share, abs=1e-4)
     normal = GrainSizes(distribution="normal", lower=0.05, upper=0.15, mean=0.1, std=0.01).draw(uniforms)
@@ -121,7 +121,7 @@ def test_floor_and_contacts_carry_the_weight(bed, recipe):
 
 
 def test_rest_period_is_that_of_the_linearised_contact():
-    """VALIDATION: .13 s at E = 1e8 and .6 s at 1e6, for .1 m grains at 5e-5 m/s2."""
+    """VALIDATION: 0.13 s at E = 1e8 and 0.6 s at 1e6, for 0.1 m grains at 5e-5 m/s2."""
     from lithobrake.dem import Material
 
     stiff = Material(young_modulus=1e8, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)

@@ -24,7 +24,7 @@ def test_wave_runs_through_a_chain_at_its_speed():
             world.run(steps=1)
         times.append(world.time)
     measured = 30 * diameter / (times[1] - times[0])
-    # What runs on is a solitary wave about five grains long whose peak is .68 of the striker's speed.
+    # What runs on is a solitary wave about five grains long whose peak is 0.68 of the striker's speed.
     assert wave_speed(rock(), diameter, 0.68 * speed) == pytest.approx(measured, rel=0.05)
 
 

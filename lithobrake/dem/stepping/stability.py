@@ -20,7 +20,7 @@ from lithobrake.dem.law.material_pair import PairLaw, law_between
 
 # Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
 STABLE_FRACTION = 0.8
-# Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by .08 at most.
+# Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by <= 0.08.
 LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 

@@ -84,7 +84,7 @@ def shortest_contact_duration(
     """Return the duration [s] of the shortest possible collision at a speed [m/s], between bodies or with planes.
 
     bodies holds material, smallest mass at contact [kg] and contact radius [m] of each. Infinite where none can meet.
-    Strong damping (restitution below about .3) counts as shortening, in proportion.
+    Strong damping (restitution below about 0.3) counts as shortening, in proportion.
     """
     smallest: dict[Material, tuple[float, float, int]] = {}
     for material, mass, radius in bodies:

@@ -63,7 +63,7 @@ def sunlight(centres: Array, owners: NDArray[np.int64], position: Array, radius:
         faces = np.array(near, dtype=int)
         faces = faces[(owners[faces] != body) & (height_faces[faces] < height_bodies[body])]
         reach = np.linalg.norm(flat_faces[faces] - flat_bodies[body], axis=1) / radius[body]
-        # A soft rim from .65 to 1.15 radii stands for what the ball leaves out of the true outline.
+        # A soft rim from 0.65 to 1.15 radii stands for what the ball leaves out of the true outline.
         cover = np.clip((1.15 - reach) / 0.5, 0.0, 1.0)
         np.minimum.at(light, faces, 1.0 - cover)
     return light

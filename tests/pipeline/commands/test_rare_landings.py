@@ -43,7 +43,7 @@ class NoisyLander:
         """Land once."""
         law, random = SOIL["grain.friction"], np.random.default_rng(seed)
         rough = (values["grain.friction"] - law["lower"]) / (law["upper"] - law["lower"])
-        # The synthetic study draws places within .1 m of the middle.
+        # The synthetic study draws places within 0.1 m of the middle.
         beside = (values["impact.place.x"] + 0.1) / 0.2
         score = OF_FRICTION * stats.norm.ppf(rough) + OF_PLACE * stats.norm.ppf(beside)
         noise = math.sqrt(1.0 - OF_FRICTION**2 - OF_PLACE**2) * random.standard_normal()

@@ -131,7 +131,7 @@ def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmul
         assert browser.value("document.querySelectorAll('#explorer figure').length") == 3
         before = browser.value(SHARE)
         browser.value(
-            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = .3;"
+            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = 0.3;"
             "end.dispatchEvent(new Event('input')); })()"
         )
         after = browser.value(

@@ -154,7 +154,7 @@ def test_a_slider_moves_the_explorer_of_two_steps(results: StudyResults, tmp_pat
         read = "[...document.querySelectorAll('#explorer figcaption, #explorer .share')].map((one) => one.textContent)"
         before = page.value(read)
         # The slow half of the speeds of impact.
-        moved = "(() => { const end = document.querySelectorAll('#explorer input')[3]; end.value = .5;"
+        moved = "(() => { const end = document.querySelectorAll('#explorer input')[3]; end.value = 0.5;"
         page.value(f"{moved} end.dispatchEvent(new Event('input')); }})()")
         page.value("new Promise((done) => setTimeout(done, 1500))")
         after = page.value(read)

@@ -246,7 +246,7 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     [
         ({}, None),
         ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another answer"),
-        # Student's t of 4, 7 and 11 degrees of freedom at .95: 2.132, 1.895 and 1.796.
+        # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
         ({"bed": {"bed_count": 5}}, "on 5 beds, and beds are what an interval counts: so few make it 19 % wider"),
         ({"design": {"run_count": 8}}, "on 8 beds, and beds are what an interval counts: so few make it 5 % wider"),
         (
@@ -335,7 +335,7 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     plan = plan_for(drawn(bed={"bed_count": 12}), folder, 2)
     found = plan.half_width
     assert found is not None
-    # t(11) at .95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd .04, rho .2 and sd .21.
+    # t(11) at 0.95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd 0.04, rho 0.2 and sd 0.21.
     least, most = 1.796 * 0.04 * (1 / 144) ** 0.5, 1.796 * 0.21 * (0.2 / 12 + 0.8 / 144) ** 0.5
     assert least < found.lower < found.median < found.upper < most
     said = " ".join(plan_lines(plan))
@@ -355,7 +355,7 @@ def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: 
     assert found is not None
     assert beds is not None
     assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
-    # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at .95 is 1.714.
+    # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at 0.95 is 1.714.
     assert found.by_fraction["100 %"] == pytest.approx(0.5 * (1.0 - 0.1 ** (1 / 24)))
     assert 1.714 * (0.25 / 96) ** 0.5 < found.by_fraction["50 %"] < 1.714 * (0.25 * (0.1 / 24 + 0.9 / 96)) ** 0.5
     assert found.lower < found.by_fraction["100 %"] < found.by_fraction["50 %"] < found.upper
@@ -491,7 +491,7 @@ def test_a_touchdown_is_expected_to_take_the_steps_of_its_contacts() -> None:
 
 
 def test_a_bed_is_expected_as_deep_as_its_grains_fill_it() -> None:
-    # 150 grains of .09 m as spheres of equal volume, three fifths of what they fill.
+    # 150 grains of 0.09 m as spheres of equal volume, three fifths of what they fill.
     depth = 150 * np.pi / 6.0 * 0.09**3 / 0.6 / 0.7**2
     assert soil_of(soft()).depth == pytest.approx(depth, rel=1e-9)
     assert soil_of(soft(bed={"grain_count": 300})).pour_steps() > soil_of(soft()).pour_steps()

@@ -28,7 +28,7 @@ def study(**changes: dict[str, Any]) -> Study:
 
 
 def test_a_lander_keeps_at_most_speed_and_spin() -> None:
-    # A homogeneous ball of .1 m: I / m = .4 r^2 = 1e-3 m2.
+    # A homogeneous ball of 0.1 m: I / m = 0.4 r^2 = 1e-3 m2.
     assert fastest(study(), NO_BED, {}, 2) == pytest.approx([0.4, 0.4])
     spinning = {"impact.spin_x": np.array([3.0, 0.0]), "impact.spin_z": np.array([4.0, 0.0])}
     assert fastest(study(), NO_BED, spinning, 2) == pytest.approx([np.sqrt(0.16 + 25e-3), 0.4])
@@ -50,7 +50,7 @@ def test_the_bound_follows_an_uncertain_speed_and_the_fall_down_a_slope() -> Non
 
 
 def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
-    # A ball of .1 m has a radius of gyration of .1 sqrt(.1) m, and a box spins fastest about its long axis.
+    # A ball of 0.1 m has a radius of gyration of 0.1 sqrt(0.1) m, and a box spins fastest about its long axis.
     ball = energy_bound(DrawnDesign(study()), NO_BED, {}, 3)
     assert ball.spin() == pytest.approx(np.full(3, 0.4 / np.sqrt(1e-3)))
     assert ball.spin(np.array([0.0, 0.24, 0.4])) == pytest.approx(np.array([0.4, 0.32, 0.0]) / np.sqrt(1e-3))

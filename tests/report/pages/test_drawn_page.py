@@ -134,7 +134,7 @@ def rare(**changes: Any) -> dict[str, Any]:
         "condition": "speed_out > 0.3", "probability": 0.0015, "lower": 4e-4, "upper": 0.005, "origins": 2.4,
         "warning": "Few beds led to it: raise bed.bed_count.", "reached": True, "rarest": 0.0015,
         "thresholds": [1.7, 0.9, 0.0], "shares": [0.1, 0.1, 0.15], "landings": 1400, "beds": 12,
-        "level": 0.9, "statement": "fast: probability .0015.",
+        "level": 0.9, "statement": "fast: probability 0.0015.",
     } | changes  # fmt: skip
 
 
