@@ -9,12 +9,15 @@ A case is a document beside its table that says by which command it was made. Th
 validation, benchmarks, scenarios and docs, where the rows that are asked for were taken out of the table; scripts make
 what their table lacks. Nothing of the repository is changed. The copy and the beds that a script pours stay in --work.
 
-The same bits come out on the machine that made a row; elsewhere single bounces differ, and their statistics agree.
+--note writes what a whole case cost, and how it compared, to recreated.json beside this script; times that a document
+does not keep are taken from there. The same bits come out on the machine that made a row; elsewhere single bounces
+differ, and their statistics agree.
 """
 
 import csv
 import json
 import os
+import resource
 import shlex
 import shutil
 import subprocess
@@ -26,11 +29,12 @@ from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, command_line
+from harness import ROOT, command_line, origin, write_document
 
 COPIED = ("validation", "benchmarks", "scenarios", "docs")
 PLACE = "FOLDER"  # stands in a command for a folder of beds and studies
 COSTS = ("cpu_s_of_rows", "cpu_s_of_landings", "cpu_s")
+NOTES = "recreated.json"  # in the folder of this script
 # Columns that no two runs have in common.
 MEASURED = {"cpu_s", "wall_s", "load", "date"}
 
@@ -65,23 +69,42 @@ class Case:
 
 def cases(root: Path = ROOT) -> dict[str, Case]:
     """All cases below a root, by name."""
-    found = {}
+    found, notes = {}, noted(root)
     for path in sorted((root / "validation").rglob("*.json")):
         content = json.loads(path.read_text(encoding="utf-8"))
         if isinstance(content, dict) and "command" in content:
-            case = _case(path, content, root)
+            case = _case(path, content, root, notes)
             found[case.name] = case
     return found
 
 
-def _case(path: Path, content: dict[str, Any], root: Path) -> Case:
+def _case(path: Path, content: dict[str, Any], root: Path, notes: dict[str, Any]) -> Case:
     table = path.with_name(str(content.get("table", f"{path.stem}.csv")))
-    cost = next((float(content[key]) for key in COSTS if key in content), None)
     own = table.relative_to(root) if table.exists() else None
-    if own is not None and cost is None:
-        spent = [float(line["cpu_s"]) for line in lines(table) if line.get("cpu_s")]
+    cost = next((float(content[key]) for key in COSTS if content.get(key)), None)
+    if cost is None and path.stem in notes:
+        cost = float(notes[path.stem]["cpu_s"])
+    if cost is None:
+        spent = cells(content)
+        spent += [float(line["cpu_s"]) for line in lines(table) if line.get("cpu_s")] if own is not None else []
         cost = sum(spent) if spent else None
     return Case(path.relative_to(root), content["command"], own, cost)
+
+
+def cells(content: Any) -> list[float]:
+    """Every number named cpu_s in a document, however deep."""
+    if isinstance(content, list):
+        return [one for part in content for one in cells(part)]
+    if not isinstance(content, dict):
+        return []
+    own = [float(content["cpu_s"])] if isinstance(content.get("cpu_s"), int | float) else []
+    return own + [one for part in content.values() for one in cells(part)]
+
+
+def noted(root: Path = ROOT) -> dict[str, Any]:
+    """What recreated cases cost and how they compared, by name."""
+    path = root / "validation" / NOTES
+    return dict(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
 
 
 def lines(table: Path) -> list[Line]:
@@ -125,13 +148,19 @@ def copied(folder: Path) -> Path:
     return tree
 
 
-def run(case: Case, tree: Path, work: Path) -> float:
-    """Run the command of a case in a copy; returns its time on the clock [s]."""
+def run(case: Case, tree: Path, work: Path) -> tuple[float, float]:
+    """Run the command of a case in a copy; returns its time on the clock and its CPU time [s]."""
     words = [str(work) if word == PLACE else word for word in shlex.split(case.command)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    start = time.monotonic()
+    start, spent = time.monotonic(), children_cpu()
     subprocess.run([sys.executable, *words[1:]], cwd=tree, env=environment, check=True)
-    return time.monotonic() - start
+    return time.monotonic() - start, children_cpu() - spent
+
+
+def children_cpu() -> float:
+    """CPU time of the processes that this one started and that have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def gap(old: str, new: str) -> float:
@@ -158,10 +187,11 @@ def differences(old: list[Line], new: list[Line]) -> list[dict[str, float]]:
     return found
 
 
-def told(name: str, apart: list[dict[str, float]], wall: float) -> float:
-    """Print how recreated rows compare; returns the largest relative difference."""
+def told(name: str, apart: list[dict[str, float]], spent: tuple[float, float]) -> float:
+    """Print how recreated rows compare; returns the largest relative difference. spent: clock and CPU [s]."""
     same = sum(not one for one in apart)
-    print(f"{name}: {len(apart)} rows made anew in {wall:.0f} s on the clock; {same} have the same digits")
+    print(f"{name}: {len(apart)} rows in {spent[0]:.0f} s on the clock, {spent[1]:.0f} s of CPU time; ", end="")
+    print(f"{same} have the same digits")
     worst: dict[str, float] = {}
     for one in apart:
         for key, value in one.items():
@@ -171,8 +201,10 @@ def told(name: str, apart: list[dict[str, float]], wall: float) -> float:
     return max(worst.values(), default=0.0)
 
 
-def recreate(case: Case, rows: list[int] | None, work: Path) -> float:
+def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False) -> float:
     """Make rows of a case anew, and print how they compare; returns the largest relative difference.
+
+    note: keep what it cost and how it compared, if all rows were made anew.
 
     Raises ValueError where one command does not recreate the case, or where it has no such row.
     """
@@ -187,17 +219,29 @@ def recreate(case: Case, rows: list[int] | None, work: Path) -> float:
     tree = copied(work)
     if case.table is None:
         (tree / case.path).unlink()
-        wall = run(case, tree, work / "runs")
-        print(f"{case.name}: made anew in {wall:.0f} s on the clock: {tree / case.path}")
+        spent = run(case, tree, work / "runs")
+        print(f"{case.name}: {spent[0]:.0f} s on the clock, {spent[1]:.0f} s of CPU time: {tree / case.path}")
+        if note:
+            keep(case.name, spent[1], None)
         return 0.0
     old, rest = taken_out(tree / case.table, rows)
-    wall = run(case, tree, work / "runs")
+    spent = run(case, tree, work / "runs")
     new = lines(tree / case.table)
     if new[: len(rest)] == rest:  # otherwise the script wrote the whole table anew
         new = new[len(rest) :]
     if len(new) < len(old):
         raise ValueError(f"{case.name}: the script made {len(new)} of {len(old)} rows.")
-    return told(case.name, differences(old, new), wall)
+    apart = differences(old, new)
+    if note and not rest:
+        keep(case.name, spent[1], apart)
+    return told(case.name, apart, spent)
+
+
+def keep(name: str, cpu: float, apart: list[dict[str, float]] | None) -> None:
+    """Note what a case cost [s], and how many of its rows came out with the same digits."""
+    same = {} if apart is None else {"rows": len(apart), "same_digits": sum(not one for one in apart)}
+    entry = {"cpu_s": float(f"{cpu:.3g}"), **same, **origin(f"validation/recreate.py {name} --note")}
+    write_document(ROOT / "validation" / NOTES, dict(sorted({**noted(), name: entry}.items())))
 
 
 def listed(known: dict[str, Case]) -> None:
@@ -214,6 +258,7 @@ def main() -> int:
     parser = command_line(__doc__, within=float("inf"))
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--rows", type=int, nargs="+", help="of one case, counted from 0")
+    parser.add_argument("--note", action="store_true", help="keep what whole cases cost, and how they compared")
     parser.add_argument("--work", type=Path, help="folder of the copy and of beds; default: a new one")
     given, known = parser.parse_args(), cases()
     if not given.names:
@@ -226,7 +271,7 @@ def main() -> int:
         parser.error("--rows counts the rows of one case; name one.")
     work = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
     try:
-        largest = max(recreate(known[name], given.rows, work.resolve()) for name in given.names)
+        largest = max(recreate(known[name], given.rows, work.resolve(), given.note) for name in given.names)
     except ValueError as error:
         parser.error(str(error))
     if largest > given.within:

@@ -40,13 +40,22 @@ def test_rows_that_are_asked_for_are_made_anew_and_compared(root: Path, capsys: 
     case = RUNNER["cases"](root)["squares"]
     assert case.cpu_s == 21.0
     assert RUNNER["recreate"](case, [0, 2], root / "work") == 0.0
-    assert "2 rows made anew" in capsys.readouterr().out
+    assert "2 rows in" in capsys.readouterr().out
     assert RUNNER["recreate"](case, None, root / "work") == pytest.approx(0.4 / 4.4)
     out = capsys.readouterr().out
-    assert "3 rows made anew" in out
+    assert "3 rows in" in out
     assert "2 have the same digits" in out
     assert "square: differs by up to 9.09 %" in out
     assert "2,4.4" in (root / "validation" / "squares.csv").read_text(), "the repository keeps its table"
+
+
+def test_a_whole_case_is_noted_with_its_cost(root: Path) -> None:
+    RUNNER["recreate"](RUNNER["cases"](root)["squares"], None, root / "work", note=True)
+    kept = json.loads((root / "validation" / "recreated.json").read_text())["squares"]
+    assert (kept["rows"], kept["same_digits"]) == (3, 2)
+    assert kept["cpu_s"] > 0.0
+    (root / "validation" / "squares.csv").write_text("x,square\n1,1.0\n")
+    assert RUNNER["cases"](root)["squares"].cpu_s == kept["cpu_s"]
 
 
 def test_what_cannot_be_made_anew_is_refused_in_a_sentence(root: Path) -> None:
