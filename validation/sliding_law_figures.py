@@ -114,7 +114,7 @@ def findings(found: dict[str, Any], rows: list[Row]) -> str:
     steep = [row for row in usual if row["friction"] < row["slope"]]
     stopped = sum(row["stopped"] for row in steep)
     words = (
-        f"Effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ, from 0.2 to "
+        f"Effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ, from 0.2 to 0"
         f".8, at Froude numbers of {CAPTURED_FROUDE:g} and less. Pushes scatter by {law['scatter']:.2f} about that "
         f"line, by {law['scatter_about_coulomb']:.2f} about Coulomb's law with μ itself, which holds about 0.8 alone: "
         "smooth landers are held by the stones that they lie among and not by their contacts. Of "

@@ -16,7 +16,7 @@ SETTLED, AT_REST = JourneyStatus.SETTLED.value, JourneyEnd.AT_REST.value
 # The side that faces the ground, among the names of what is chosen.
 SIDE = "aim.sides"
 AIM_RESULTS = ("missing", "distance_p95", "time_p95")
-_LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+0.0-9eE]+)\s*")
+_LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 
 
 def aim_results(*, is_journey: bool) -> tuple[str, ...]:
