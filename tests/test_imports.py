@@ -53,6 +53,7 @@ ROOMS = {
             "journeys",
             "rest",
             "emulated",
+            "sky",
             "answer",
             "paper",
             "stages",

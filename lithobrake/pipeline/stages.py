@@ -9,6 +9,7 @@ from lithobrake.pipeline.journeys import stages as journeys
 from lithobrake.pipeline.paper import stages as paper
 from lithobrake.pipeline.rest import stages as rest
 from lithobrake.pipeline.runs import stages as runs
+from lithobrake.pipeline.sky import stages as sky
 from lithobrake.pipeline.stage import Stage, same_files
 from lithobrake.study import Study
 
@@ -54,6 +55,7 @@ JOURNEYS = (
     answer.ESTIMATE,
     emulated.EMULATED,
     emulated.OPTIONS,
+    sky.SKY,
     answer.JOURNEY_SUMMARY,
     REPORT,
 )

@@ -25,6 +25,7 @@ from lithobrake.results.run_results import OutputDirection, OutputEstimate, Outp
 from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
 from lithobrake.results.side_results import SideResults
 from lithobrake.results.site_results import BedNumbers, SiteResults
+from lithobrake.results.sky_results import SkyResults
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,8 @@ class DrawnResults:
     """with [journey]: how many were followed"""
     touchdowns: int | None = None
     """with [journey]: landings that were simulated for them"""
+    sky: Mapping[str, SkyResults] = field(default_factory=dict)
+    """by sun and earth what the landers at rest see of it; empty where the study does not ask"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
 

@@ -9,12 +9,35 @@ from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.sky import day_directions, seen_over_a_day
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
 from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 __all__ = [
-    "Arcs", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "Impacts", "JourneyStatus", "Journeys",
-    "Launch", "Partner", "PartnerPlace", "Rebounds", "RestitutionTable", "Shape", "SpinState", "didymos", "dimorphos",
-    "fly", "hop", "read_partner", "read_spin", "tumble",
+    "Arcs",
+    "Body",
+    "Bounce",
+    "FlightStatus",
+    "Flights",
+    "HardSurface",
+    "Impacts",
+    "JourneyStatus",
+    "Journeys",
+    "Launch",
+    "Partner",
+    "PartnerPlace",
+    "Rebounds",
+    "RestitutionTable",
+    "Shape",
+    "SpinState",
+    "day_directions",
+    "didymos",
+    "dimorphos",
+    "fly",
+    "hop",
+    "read_partner",
+    "read_spin",
+    "seen_over_a_day",
+    "tumble",
 ]  # fmt: skip

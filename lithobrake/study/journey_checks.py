@@ -11,6 +11,8 @@ def journey_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong."""
     yield from delivery_problems(study)
     if study.journey is None:
+        if study.sky.bodies:
+            yield "[sky] asks what landers at rest see, and there is no [journey]; leave one out or add the other"
         return
     design = study.design
     if design.method != "drawn":

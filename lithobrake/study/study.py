@@ -31,6 +31,7 @@ from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values
+from lithobrake.study.sky_section import SkySection
 
 
 class Study(Section):
@@ -58,6 +59,7 @@ class Study(Section):
     rest: RestSection = RestSection()
     limit_states: LimitStatesSection = LimitStatesSection()
     aim: AimSection = AimSection()
+    sky: SkySection = SkySection()
     _function: str | None = PrivateAttr(default=None)
 
     @model_validator(mode="before")

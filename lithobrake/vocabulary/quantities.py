@@ -141,7 +141,23 @@ JOURNEY = {
     "path_length": Quantity("m", "sum of the straight lines between impacts, and of ways in contact"),
     "face": Quantity("", "side of the lander that is down, by its own axes"),
     "tilt_deg": Quantity("deg", "angle between that side's axis and the plumb line"),
+    **{
+        f"attitude_{part}": Quantity("", f"{part} of the quaternion that turns the lander's axes into body-fixed ones")
+        for part in "wxyz"
+    },
     "reason": Quantity("", "why the journey failed"),
+}
+# Of a body far away as a lander at rest sees it.
+SKY_FILE = "sky.csv"
+SKY = {
+    "journey": JOURNEY["journey"],
+    "body": Quantity("", "sun or earth"),
+    "latitude_deg": Quantity("deg", "latitude over which it stands", FIXED),
+    "day_fraction": Quantity("", "fraction of a day of the small body in which it is seen"),
+    **{
+        f"side_{side}": Quantity("", f"fraction of a day in which it is seen and the side {side} faces it")
+        for side in ("+x", "-x", "+y", "-y", "+z", "-z")
+    },
 }
 JOURNEY_TOUCHDOWN = {
     "journey": JOURNEY["journey"],

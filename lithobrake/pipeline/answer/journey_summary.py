@@ -12,6 +12,7 @@ from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_shares, jo
 from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import Refits
+from lithobrake.pipeline.answer.sky_results import sky_results
 from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -37,6 +38,7 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         aim=aim_results(job.study, job.folder, fitted),
         rest=journey_rest(job.study, table),
         ends=ends,
+        sky=sky_results(job.study, job.folder, table),
         delivery=delivery_results(job, runs, len(table.end)),
         journeys=len(table.end),
         touchdowns=table.touchdowns,

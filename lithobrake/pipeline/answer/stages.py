@@ -17,7 +17,7 @@ JOURNEY_SUMMARY = Stage(
     "summary",
     same_files("summary.json"),
     write_journey_summary,
-    ("landing", "telling_landing", "estimate", "emulated", "aim"),
+    ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
     summary_dependencies,
     PARTS,
 )

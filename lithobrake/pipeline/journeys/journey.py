@@ -43,8 +43,8 @@ class Journey:
     row: inputs of its present touchdown. origin [m] and axes, in rows, of the frame of that; time [s]: at its
     beginning, since the first; clock [s]: when the first began, as of the partner. path_length [m], contacts: so far;
     touchdowns, flights: rows of their tables, by column. end: how it ended, None while it is under way; reason: why it
-    failed; lies: side and tilt of a lander at rest; descent: row of the flight to its first touchdown, if it was flown
-    there.
+    failed; lies: side and tilt of a lander at rest, and attitude, that of its axes against the body's; descent: row of
+    the flight to its first touchdown, if it was flown there.
     """
 
     model: "JourneyModel"
@@ -63,6 +63,7 @@ class Journey:
     end: JourneyEnd | None = None
     reason: str = ""
     lies: tuple[str, float] | None = None
+    attitude: "Rotation | None" = None
     descent: dict[str, Any] | None = None
 
     def go_on(self, record: Record) -> Row | None:
@@ -84,8 +85,8 @@ class Journey:
         elif outcome == TouchdownOutcome.CAPTURED:
             self.end = JourneyEnd.AT_REST
             if not self.model.is_ball:
-                attitude = from_frame(self.axes) * attitude_of(outputs)
-                self.lies = side_down(attitude, self._felt())
+                self.attitude = from_frame(self.axes) * attitude_of(outputs)
+                self.lies = side_down(self.attitude, self._felt())
         elif outcome == TouchdownOutcome.TIME_LIMIT:
             self.end = JourneyEnd.UNDER_WAY
         else:

@@ -43,9 +43,10 @@ def journey_row(journey: Journey) -> list[Any]:
         latitude, longitude = (float(one) for one in journey.model.body.shape.latitude_longitude(journey.origin))
         place = [latitude, longitude, *journey.origin.tolist(), _distance(journey)]
     side, tilt = ("", "") if journey.lies is None else (journey.lies[0], math.degrees(journey.lies[1]))
+    attitude = [""] * 4 if journey.attitude is None else journey.attitude.as_quat(scalar_first=True).tolist()
     counts = [journey.contacts, len(journey.touchdowns), journey.path_length]
     bed = int(journey.row["bed"])
-    return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, journey.reason]
+    return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, *attitude, journey.reason]
 
 
 def _distance(journey: Journey) -> float:

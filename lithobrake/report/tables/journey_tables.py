@@ -32,7 +32,7 @@ def tiles(data: JourneyPage) -> list[Tile]:
 
 def rest_tables(data: JourneyPage) -> list[PageTable]:
     """When, where and how the landers rest, none where no lander does; and how they come down first."""
-    return [table for table in (_numbers(data), _regions(data), _delivery(data)) if table.rows]
+    return [table for table in (_numbers(data), _regions(data), _sky(data), _delivery(data)) if table.rows]
 
 
 def _numbers(data: JourneyPage) -> PageTable:
@@ -64,6 +64,27 @@ def _regions(data: JourneyPage) -> PageTable:
         for one in data.at_rest.regions
     ]
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
+
+
+def _sky(data: JourneyPage) -> PageTable:
+    """What the landers at rest see of the Sun and of Earth."""
+    columns = ["seen over a day of the body", "median [%]", "5 % of the landers see less than [%]", "never seen by"]
+    columns += ["sides that face it longest, median [%]", "side that most often never faces it"]
+    rows = []
+    for name, one in data.results.sky.items():
+        best = sorted(one.sides.items(), key=lambda item: -(item[1].value or 0.0))[:2]
+        dark = max(one.dark_sides.items(), key=lambda item: item[1].share, default=None)
+        rows.append([
+            {"sun": "the Sun", "earth": "Earth"}[name], quantile_words(one.day_fraction, 0.01),
+            quantile_words(one.day_fraction_q05, 0.01), with_interval(one.never),
+            ", ".join(f"{side} {quantile_words(value, 0.01)}" for side, value in best),
+            f"{dark[0]} on {with_interval(dark[1])}" if dark else "",
+        ])  # fmt: skip
+    note = (
+        "Of the landers at rest, over the latitudes of the study; hidden by the ground and by the rest of the shape, "
+        f"not by a partner. In brackets {percent(LEVEL)} intervals."
+    )
+    return PageTable("What they see from there", columns, rows, note, frozenset(columns[1:]))
 
 
 def _delivery(data: JourneyPage) -> PageTable:

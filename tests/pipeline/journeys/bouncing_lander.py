@@ -35,6 +35,11 @@ TABLES: dict[str, dict[str, Any]] = {
     },
     "journey": {"count": 48, "duration": 172800.0, "emulated_count": 400},
     "site": {"body": "dimorphos"},
+    "sky": {
+        "sun_latitude_deg": {"distribution": "uniform", "lower": -10.0, "upper": 10.0},
+        "earth_latitude_deg": 0.0,
+        "mask_deg": 30.0,
+    },
     "campaign": {"retry_count": 0},
 }
 

@@ -1,0 +1,1 @@
+"""What landers at rest see of the sky."""
