@@ -1,0 +1,209 @@
+"""Draw what grain_size.py found, and write its page, docs/validation/grain_size.md.
+
+    python validation/grain_size_figures.py
+
+Reads grain_size.csv, grain_size_beds.csv and grain_size.json beside it; writes grain_size.png and grain_size.md to
+docs/validation.
+"""
+
+import json
+import math
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from grain_size import GROUNDS, KINDS, ROLLING, WAYS
+from numpy.typing import NDArray
+
+from lithobrake.analysis import LEVEL
+from lithobrake.report.figures.style import QUIET, STYLE, TEST, TRAINING
+
+HERE = Path(__file__).parent
+PAGES = HERE.parent / "docs" / "validation"
+Floats = NDArray[np.float64]
+Row = dict[str, Any]
+OUTPUTS = {
+    "speed_out": "rebound speed", "elevation_out": "rebound elevation", "spin_out": "rebound spin rate",
+    "returns": "return fraction",
+}  # fmt: skip
+RESAMPLES, SEED = 4000, 41
+SOIL, POINT, ATTITUDE = 1, 2, 3  # axes of a block's outputs
+
+
+class Estimate(NamedTuple):
+    """A value with its interval."""
+
+    value: float
+    lower: float
+    upper: float
+
+    def __str__(self) -> str:
+        return f"{self.value:.2f} ({self.lower:.2f} to {self.upper:.2f})"
+
+
+class Parts(NamedTuple):
+    """Total effects over the whole variance, main effect of the soil, and soil over impact point."""
+
+    soil: Estimate
+    point: Estimate
+    attitude: Estimate
+    main: Estimate
+    ratio: Estimate
+    chaos: float
+    blocks: int
+
+
+def outputs_of(rows: list[Row], name: str) -> tuple[Floats, Floats]:
+    """An output [block, soil, point, attitude], NaN where a landing has none, and of the twins [block]."""
+    count = max(row["block"] for row in rows) + 1
+    values, twins = np.full((count, 2, 2, 2), np.nan), np.full(count, np.nan)
+    for row in rows:
+        if row["twin"]:
+            twins[row["block"]] = row[name]
+        else:
+            values[row["block"], row["soil"], row["point"], row["attitude"]] = row[name]
+    return values, twins
+
+
+def half_squares(values: Floats, *axes: int) -> Floats:
+    """Sum over each block, and their number, of half the squares of differences between landings [2, block].
+
+    The landings of a pair differ in these axes. Source: [Jansen-1999].
+    """
+    halves = 0.5 * (values - np.flip(values, axes)) ** 2
+    return np.array([np.nansum(halves, axis=(1, 2, 3)), np.isfinite(halves).sum(axis=(1, 2, 3))])
+
+
+def estimate(values: Floats) -> Estimate:
+    """The first of values, and the interval of the others."""
+    lower, upper = np.nanquantile(values[1:], [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+    return Estimate(float(values[0]), float(lower), float(upper))
+
+
+def parts(rows: list[Row], name: str) -> Parts:
+    """Parts of the variance of an output, with intervals by the bootstrap over blocks."""
+    values, twins = outputs_of(rows, name)
+    count = len(values)
+    generator = np.random.default_rng(SEED)
+    weights = np.vstack([np.ones(count), generator.multinomial(count, np.full(count, 1.0 / count), RESAMPLES)])
+
+    def mean(*axes: int) -> Floats:
+        total, number = half_squares(values, *axes)
+        with np.errstate(invalid="ignore"):
+            found: Floats = (weights @ total) / (weights @ number)
+        return found
+
+    whole, soil, point = mean(SOIL, POINT, ATTITUDE), mean(SOIL), mean(POINT)
+    chaos = float(np.nanmean(0.5 * (values[:, 0, 0, 0] - twins) ** 2)) / float(whole[0])
+    totals = [estimate(one / whole) for one in (soil, point, mean(ATTITUDE))]
+    return Parts(*totals, estimate(1.0 - mean(POINT, ATTITUDE) / whole), estimate(soil / point), chaos, count)
+
+
+def read() -> tuple[list[Row], list[Row]]:
+    """Landings, those that left alone with outputs, and beds."""
+    from harness import read_rows
+
+    return read_rows(HERE / "grain_size.csv", KINDS), read_rows(HERE / "grain_size_beds.csv", KINDS)
+
+
+def groups(rows: list[Row]) -> dict[tuple[str, str], list[Row]]:
+    """Landings of each ground and way, whole blocks alone, by way, kind of grain and ratio."""
+    found: dict[tuple[str, str], list[Row]] = {}
+    for way in WAYS:
+        for name in sorted(GROUNDS, key=lambda one: (GROUNDS[one].grain, GROUNDS[one].ratio)):
+            of = [row for row in rows if (row["ground"], row["way"]) == (name, way)]
+            whole = {block for block, number in Counter(row["block"] for row in of).items() if number == 9}
+            if whole:
+                found[name, way] = [row for row in of if row["block"] in whole]
+    return found
+
+
+def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
+    """Total effects of soil and impact point by ratio: rows of grains, columns of outputs, steep impacts."""
+    kinds = {"hull": "hulls", "sphere": "spheres"}
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.0), layout="constrained", sharey=True, sharex=True)
+        for row, (grain, word) in zip(axes, kinds.items(), strict=True):
+            for axis, (name, title) in zip(row, OUTPUTS.items(), strict=True):
+                for part, colour, marker, shift in (("soil", TRAINING, "o", 0.97), ("point", TEST, "s", 1.03)):
+                    known = [(GROUNDS[g], p[name]) for (g, way), p in found.items() if way == "steep"]
+                    points = [(g.ratio * shift, getattr(p, part)) for g, p in known if g.grain == grain]
+                    x, y = [x for x, _ in points], [min(e.value, 1.2) for _, e in points]
+                    ends = np.array([[max(e.value - e.lower, 0), max(e.upper - e.value, 0)] for _, e in points]).T
+                    label = {"soil": "soil", "point": "bed and impact point"}[part]
+                    axis.errorbar(x, y, ends, color=colour, marker=marker, ms=4.5, capsize=3, lw=1.0, label=label)
+                axis.set_xscale("log")
+                axis.set_xticks([2, 5, 10, 20], ["2", "5", "10", "20"])
+                axis.minorticks_off()
+                axis.set_xlim(1.6, 25)
+                axis.set_ylim(0.0, 1.4)
+                axis.axhline(1.0, color=QUIET, lw=0.5)
+                if grain == "hull":
+                    axis.set_title(title)
+            row[0].set_ylabel(f"{word}\ntotal effect / variance")
+        axes[0, 0].legend(loc="upper right")
+        figure.supxlabel("longest edge of the lander over diameter of the grains", fontsize=9)
+        figure.savefig(PAGES / "grain_size.png", dpi=150)
+        plt.close(figure)
+
+
+def words(name: str) -> str:
+    """Kind of grain and ratio."""
+    return f"{GROUNDS[name].grain}s | {GROUNDS[name].ratio:g}"
+
+
+def part_table(found: dict[tuple[str, str], dict[str, Parts]]) -> list[str]:
+    """A line for each ground, way and output."""
+    heads = ["grains", "ratio", "impact [deg]", "output", "soil", "soil alone", "bed and impact point", "attitude"]
+    heads += ["soil / point", "twins", "blocks"]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for (name, way), of in found.items():
+        for key, title in OUTPUTS.items():
+            p = of[key]
+            cells = [words(name), f"{WAYS[way][1]:g}", title, str(p.soil), str(p.main), str(p.point), str(p.attitude)]
+            cells += [str(p.ratio), f"{p.chaos:.3f}", str(p.blocks)]
+            lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> list[str]:
+    """A line for each ground and way: beds and landings."""
+    heads = ["grains", "ratio", "impact [deg]", "grains in a bed", "width [m]", "depth [cm]", "beds", "landings"]
+    heads += ["captured", "time limit", "rebound speed [cm/s]", "deepest tenth [cm]", "CPU of a pour [s]"]
+    heads += ["CPU of a landing [s]"]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for (name, way), of in rows.items():
+        own, ends = [bed for bed in beds if bed["ground"] == name], Counter(row["status"] for row in of)
+        speed = 100.0 * np.array([row["speed_out"] for row in of])
+        deep = 100.0 * np.quantile([row["penetration"] for row in of], 0.9)
+        cells = [words(name), f"{WAYS[way][1]:g}", f"{own[0]['grains']:.0f}", f"{own[0]['width']:.2f}"]
+        cells += [f"{100.0 * np.mean([bed['depth'] for bed in own]):.1f}", f"{len(own)}", f"{len(of)}"]
+        cells += [str(ends["captured"]), str(ends["time_limit"])]
+        cells += [f"{np.nanmean(speed):.1f} ± {np.nanstd(speed, ddof=1):.1f}", f"{deep:.1f}"]
+        cells += [f"{np.mean([bed['cpu_s'] for bed in own]):.1f}", f"{np.mean([row['cpu_s'] for row in of]):.2f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def verdict(found: dict[tuple[str, str], dict[str, Parts]], output: str) -> str:
+    """From which ratio on the soil moves an output more than bed and impact point do, by kind of grain."""
+    said = []
+    for grain in ("hull", "sphere"):
+        of = sorted(
+            (GROUNDS[name].ratio, p[output].ratio) for (name, way), p in found.items()
+            if way == "steep" and GROUNDS[name].grain == grain
+        )  # fmt: skip
+        above = [ratio for k, (ratio, _) in enumerate(of) if all(one.lower > 1.0 for _, one in of[k:])]
+        finest, last = of[-1]
+        if above:
+            said.append(f"from {above[0]:g} on, for {grain}s")
+        elif last.upper < 1.0:
+            said.append(f"not up to {finest:g}, for {grain}s ({last} of the impact point's effect there)")
+        else:
+            said.append(f"not shown up to {finest:g}, for {grain}s ({last} of the impact point's effect there)")
+    return "; ".join(said)
