@@ -8,7 +8,8 @@ and two attitudes: eight landings, all combinations, and a twin of the first, a 
 block are the same on all grounds. Pairs of landings of a block that differ in one of the three give its part.
 
 Grounds repeat after a width. Width and depth are at least those of smallest_bed.py, and the width leaves two grains
-more. Hulls are those of the package; spheres have rolling resistance, which stands for their lack of corners.
+more; "larger" ones are half as wide and deep again. Hulls are those of the package; spheres have rolling resistance,
+which stands for their lack of corners.
 
 Writes grain_size_beds.csv, a line for each bed, and grain_size.csv, a line for each landing, as they end. What stands
 there already is not done again: delete both to start anew. Beds are kept in the work folder.
@@ -24,6 +25,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from sphere_beds import SphereBed, pour_spheres
 
 from lithobrake.dem import Box, Material
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -31,7 +33,6 @@ from lithobrake.smallbody import didymos, fly
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, Outcome, land, pour_bed
 from lithobrake.touchdown.smallest_bed import smallest_bed
-from sphere_beds import SphereBed, pour_spheres
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, timed, write_document
@@ -42,18 +43,20 @@ CONTACT, GRAVITY = ContactModel(held_speed=0.03), (0.0, 0.0, -5e-5)
 EDGES, MASS, DENSITY = (0.1, 0.1, 0.227), 2.0, 2500.0
 SOLID_FRACTION = 0.6  # by which grains are counted
 ROLLING = 0.1  # of spheres
+LONGEST = 5.5  # grains in a width, at least: the longest of them meet no two images of one another
 TWIN = 1e-4  # m
 FLIGHTS, DURATION = 16, 43_200.0
 
 
 class Ground(NamedTuple):
-    """Kind of grain, lander's longest edge over grain, depth [m]; how many beds, and blocks of a way."""
+    """Kind of grain, lander's longest edge over grain, depth [m]; beds, blocks of a way; width over the smallest."""
 
     grain: str
     ratio: float
     depth: float
     bed_count: int
     blocks: dict[str, int]
+    wider: float = 1.0
 
 
 # Speed [m/s], incidence [deg].
@@ -62,6 +65,8 @@ GROUNDS = {
     "hulls 2": Ground("hull", 2.0, 0.227, 4, {"steep": 32, "flat": 32}),
     "spheres 2": Ground("sphere", 2.0, 0.227, 4, {"steep": 32}),
     "spheres 5": Ground("sphere", 5.0, 0.15, 4, {"steep": 32}),
+    "hulls 2, larger": Ground("hull", 2.0, 0.34, 4, {"steep": 32}, 1.5),
+    "spheres 5, larger": Ground("sphere", 5.0, 0.225, 4, {"steep": 32}, 1.5),
     "hulls 5": Ground("hull", 5.0, 0.15, 4, {"steep": 24, "flat": 12}),
     "spheres 10": Ground("sphere", 10.0, 0.15, 2, {"steep": 16}),
     "hulls 10": Ground("hull", 10.0, 0.1, 2, {"steep": 8}),
@@ -91,12 +96,13 @@ def diameter(ground: Ground) -> float:
 def width(ground: Ground) -> float:
     """Length [m] after which the ground repeats."""
     rock, lander = soil(MEDIANS, ground.grain)
-    return smallest_bed(lander, rock, diameter(ground), WAYS["steep"][0])[0] + 2.0 * diameter(ground)
+    least = smallest_bed(lander, rock, diameter(ground), WAYS["steep"][0])[0]
+    return ground.wider * max(least + 2.0 * diameter(ground), LONGEST * diameter(ground))
 
 
 def bed(name: str, ground: Ground, number: int, work: Path, table: Path) -> Bed:
     """Return a bed, poured and noted unless it lies in the folder."""
-    path = work / f"{name.replace(' ', '_')}_{number}.h5"
+    path = work / f"{name.replace(' ', '_').replace(',', '')}_{number}.h5"
     if path.exists():
         kept = Bed.load(path)
         return SphereBed.of(kept) if ground.grain == "sphere" else kept

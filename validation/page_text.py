@@ -1,0 +1,20 @@
+"""Text of pages that scripts write: paragraphs and lists broken to lines of at most 100 characters."""
+
+import textwrap
+
+WIDTH = 100
+
+
+def broken(text: str) -> str:
+    """Text with its paragraphs and list items filled; tables, headings and pictures stay as they are."""
+    return "\n\n".join(_block(block) for block in text.split("\n\n"))
+
+
+def _block(block: str) -> str:
+    if block.lstrip("\n").startswith("- "):
+        items = ("\n" + block.strip("\n")).split("\n- ")[1:]
+        filled = [textwrap.fill(f"- {item}", WIDTH, subsequent_indent="  ") for item in items]
+        return "\n".join(filled)
+    if not block.strip() or block.lstrip("\n")[0] in "|#!":
+        return block
+    return textwrap.fill(block, WIDTH, break_on_hyphens=False)
