@@ -5,7 +5,8 @@
 Impact and attitude are those of scenarios/one_place.toml, the impact point is the middle of the tile. A cell varies
 three inputs, the others stand at their medians: a Smolyak grid for the expansion, points drawn for its test, and twins
 of the first of these, a tenth of a millimetre aside. "full" ranges are those of the scenario, others so many parts of
-each median to both sides. A sweep moves friction alone, in equal steps.
+each median to both sides. A sweep moves friction, or the restitution of the grains,
+alone, in equal steps.
 
 Writes expansion_accuracy.csv, a line for each landing, as they end, and expansion_accuracy_beds.csv. What stands there
 already is not done again: delete both to start anew. Grounds and beds are those of grain_size.py.
@@ -35,6 +36,7 @@ KEPT = {
     "paper's": ("grain.young_modulus", "grain.restitution", "grain.poisson_ratio"),
 }
 RANGES = {"5 %": 0.05, "10 %": 0.1, "25 %": 0.25, "full": None}
+SWEPT = ("friction", "restitution")
 TESTS, TWINS, STEPS = 50, 0.4, 100  # twins: part of the tests
 EXTRA = {"hulls 1.2": Ground("hull", 1.2, 0.38, 3, {})}
 HOW = EXTRA | GROUNDS
@@ -57,25 +59,32 @@ def cells(name: str, number: int, kept: str, level: int, tests: int = TESTS) -> 
     return [Cell(name, number, kept, one, level, tests) for one in RANGES]
 
 
-def sweep(name: str, number: int = 0, steps: int = STEPS) -> Cell:
-    """Cell of a sweep."""
-    return Cell(name, number, "friction", "full", None, steps=steps)
+def sweep(name: str, number: int = 0, of: str = "friction", steps: int = STEPS) -> Cell:
+    """Cell of a sweep of one property of the grains."""
+    return Cell(name, number, of, "full", None, steps=steps)
 
 
 # The most costly come last: 441 points where a landing is cheap, 177 where it is not.
 CELLS = [
-    *(sweep("hulls 1.2", number) for number in range(3)), *(sweep("spheres 5", number) for number in range(2)),
-    *cells("hulls 1.2", 0, "ours", 5), *cells("spheres 5", 0, "ours", 5),
-    sweep("hulls 5"), *cells("hulls 5", 0, "ours", 4, 30),
-    *cells("hulls 1.2", 1, "ours", 4), *cells("hulls 1.2", 2, "ours", 4), *cells("hulls 1.2", 0, "paper's", 4),
-    sweep("hulls 10", steps=40), sweep("spheres 10"), Cell("spheres 10", 0, "ours", "5 %", 4, 30),
+    *(sweep("hulls 1.2", number, of) for number in range(3) for of in SWEPT),
+    *(sweep("spheres 5", number, of) for number in range(2) for of in SWEPT),
+    *cells("hulls 1.2", 0, "ours", 5),
+    *cells("spheres 5", 0, "ours", 5),
+    sweep("hulls 5"),
+    *cells("hulls 5", 0, "ours", 4, 30),
+    *cells("hulls 1.2", 1, "ours", 4),
+    *cells("hulls 1.2", 2, "ours", 4),
+    *cells("hulls 1.2", 0, "paper's", 4),
+    sweep("hulls 10", steps=40),
+    sweep("spheres 10"),
+    Cell("spheres 10", 0, "ours", "5 %", 4, 30),
 ]  # fmt: skip
 KINDS = dict.fromkeys(("ground", "kept", "range", "design", "status"), str) | dict.fromkeys(("bed", "number"), int)
 
 
 def laws(cell: Cell) -> dict[str, Uniform]:
     """Distributions of the inputs that vary in a cell."""
-    names, part = KEPT.get(cell.kept, ("grain.friction",)), RANGES[cell.range]
+    names, part = KEPT.get(cell.kept, (f"grain.{cell.kept}",)), RANGES[cell.range]
     if part is None:
         return {name: INPUTS[name] for name in names}
     return {name: Uniform((1.0 - part) * MEDIANS[name], (1.0 + part) * MEDIANS[name]) for name in names}
@@ -85,7 +94,7 @@ def designs(cell: Cell) -> dict[str, Floats]:
     """Points [count, input_count] of the designs of a cell."""
     varied = laws(cell)
     if cell.level is None:
-        law = varied["grain.friction"]
+        (law,) = varied.values()
         return {"sweep": law.ppf(np.linspace(0.0, 1.0, cell.steps + 1))[:, None]}
     tests = latin_hypercube(varied, cell.tests, 41)
     return {"grid": smolyak(varied, cell.level), "test": tests, "twin": tests[: round(TWINS * cell.tests)]}
@@ -106,7 +115,7 @@ def main() -> None:
     """Make the landings that are missing."""
     here, work = Path(__file__).parent, Path(tempfile.gettempdir()) / "lithobrake_grain_size"
     names = tuple(dict.fromkeys(cell.ground for cell in CELLS))
-    given = command_line(__doc__, grounds=names, kept=(*KEPT, "friction"), work=work, out=here).parse_args()
+    given = command_line(__doc__, grounds=names, kept=(*KEPT, *SWEPT), work=work, out=here).parse_args()
     given.work.mkdir(parents=True, exist_ok=True)
     table, keys = given.out / "expansion_accuracy.csv", ("ground", "bed", "kept", "range", "design", "number")
     for cell in (one for one in CELLS if one.ground in given.grounds and one.kept in given.kept):

@@ -36,6 +36,11 @@ OUTPUTS = {
 }  # fmt: skip
 RESAMPLES, SEED = 4000, 41
 SOIL, POINT, ATTITUDE = 1, 2, 3  # axes of a block's outputs
+# How each part is drawn: label, colour, marker, and how far from its ratio.
+PARTS = {
+    "soil": ("soil", TRAINING, "o", 0.96), "point": ("bed and impact point", TEST, "s", 1.04),
+    "attitude": ("attitude", QUIET, "x", 1.0),
+}  # fmt: skip
 
 
 class Estimate(NamedTuple):
@@ -141,12 +146,11 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
         figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.0), layout="constrained", sharey=True, sharex=True)
         for row, (grain, word) in zip(axes, kinds.items(), strict=True):
             for axis, (name, title) in zip(row, OUTPUTS.items(), strict=True):
-                for part, colour, marker, shift in (("soil", TRAINING, "o", 0.97), ("point", TEST, "s", 1.03)):
+                for part, (label, colour, marker, shift) in PARTS.items():
                     known = [(GROUNDS[g], p[name]) for g, p in of_steep(found).items()]
                     points = [(g.ratio * shift, getattr(p, part)) for g, p in known if g.grain == grain]
                     x, y = [x for x, _ in points], [e.value for _, e in points]
                     ends = np.array([[max(e.value - e.lower, 0.0), max(e.upper - e.value, 0.0)] for _, e in points]).T
-                    label = {"soil": "soil", "point": "bed and impact point"}[part]
                     axis.errorbar(x, y, ends, color=colour, marker=marker, ms=4.5, capsize=3, lw=1.0, label=label)
                 axis.set_xscale("log")
                 axis.set_xticks([2, 5, 10, 20], ["2", "5", "10", "20"])

@@ -13,7 +13,7 @@ def broken(text: str) -> str:
 def _block(block: str) -> str:
     if block.lstrip("\n").startswith("- "):
         items = ("\n" + block.strip("\n")).split("\n- ")[1:]
-        filled = [textwrap.fill(f"- {item}", WIDTH, subsequent_indent="  ") for item in items]
+        filled = [textwrap.fill("- " + " ".join(item.split()), WIDTH, subsequent_indent="  ") for item in items]
         return "\n".join(filled)
     if not block.strip() or block.lstrip("\n")[0] in "|#!":
         return block
