@@ -243,9 +243,9 @@ SWEEPS = """
 
 ## Kinks
 
-Friction, or the restitution of the grains, alone over its full range, in equal steps. A jump
-is a step of more than {jump:g} median steps. Where every step is large, chance is as large as the steps, and jumps do not stand out: look
-at the median step. No polynomial of order {degree} follows either.
+Friction, or the restitution of the grains, alone over its full range, in equal steps. A jump is a
+step of more than {jump:g} median steps. Where every step is large, chance is as large as the steps,
+and jumps do not stand out: look at the median step. No polynomial of order {degree} follows either.
 
 """
 LIMITS = """
