@@ -7,14 +7,15 @@ WIDTH = 100
 
 def broken(text: str) -> str:
     """Text with its paragraphs and list items filled; tables, headings and pictures stay as they are."""
-    return "\n\n".join(_block(block) for block in text.split("\n\n"))
+    blocks = (block.strip("\n") for block in text.split("\n\n"))
+    return "\n\n".join(_block(block) for block in blocks if block)
 
 
 def _block(block: str) -> str:
-    if block.lstrip("\n").startswith("- "):
-        items = ("\n" + block.strip("\n")).split("\n- ")[1:]
+    if block.startswith("- "):
+        items = f"\n{block}".split("\n- ")[1:]
         filled = [textwrap.fill("- " + " ".join(item.split()), WIDTH, subsequent_indent="  ") for item in items]
         return "\n".join(filled)
-    if not block.strip() or block.lstrip("\n")[0] in "|#!":
+    if block[0] in "|#!":
         return block
     return textwrap.fill(block, WIDTH, break_on_hyphens=False)
