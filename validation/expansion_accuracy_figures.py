@@ -131,7 +131,7 @@ def draw(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> None:
         for axis, name in zip(axes, OUTPUTS, strict=True):
             for number, kind in enumerate(kinds):
                 of = {cell: one for cell, one in found.items() if (cell.ground, cell.bed, cell.kept) == kind}
-                label = f"{words(next(iter(of)))}, bed {kind[1]}" + ("" if kind[2] == "ours" else f", {kind[2]} inputs")
+                label = f"{words(next(iter(of)))}, bed {kind[1]}" + ("" if kind[2] == "ours" else f", {kind[2]}")
                 x = [list(RANGES).index(cell.range) for cell in of]
                 y = [one[name].fresh for one in of.values()]
                 axis.plot(x, y, "o-", ms=4, lw=1.0, color=INPUT_COLOURS[number], label=label)
@@ -222,7 +222,7 @@ def kinks(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> str:
     said = []
     for place in dict.fromkeys((cell.ground, cell.bed) for cell in found):
         steps = [one for cell, one in swept.items() if (cell.ground, cell.bed) == place]
-        cells = [one for cell, one in found.items() if (cell.ground, cell.bed, cell.kept) == (*place, "ours")]
+        cells = [one for cell, one in found.items() if (cell.ground, cell.bed) == place and cell.kept != "paper's"]
         if steps and cells:
             share = 100.0 * sum(one.jumps for one in steps) / sum(one.steps for one in steps)
             count = sum(reached(one, "speed_out") for one in cells)
@@ -251,9 +251,9 @@ and its attitude too; the impact point is the middle of a tile that repeats, as 
 [soil against impact point](grain_size.md). The ratio is the lander's longest edge over the
 diameter of the grains. Three inputs vary, by a part of their medians to both sides or over their
 full ranges: {ours}, which [the study at full size](paper_study.md) keeps, or {papers}, which the
-paper keeps. The screening that chooses them is not repeated. {terms} terms are fitted by least
-squares to a Smolyak grid of level 5 (441 points, the order of the paper) or 4 (177, where landings
-cost more), and scored on 30 to 50 fresh points. "Lost" landings did not leave. "Twins" is the error of a
+paper keeps; "two" are the first two of ours, where landings cost most. The screening that chooses them is not repeated. {terms} terms, {few} for two inputs, are fitted by least
+squares to a Smolyak grid of level 5 (441 points, the order of the paper) or 4 (177, and 65 for
+two inputs), and scored on 30 to 50 fresh points. "Lost" landings did not leave. "Twins" is the error of a
 law without error beside chance: from landings 0.1 mm aside. The paper does not state from where it
 counts the direction of the velocity: both ways are tried.
 
@@ -300,10 +300,10 @@ def page(rows: list[Row], origin: Row) -> str:
     swept = {cell: one for cell in CELLS if cell.level is None and (one := sweep(rows, cell))}
     draw(found, swept)
     speed, elevation, _, spin = (PAPER[name] for name in OUTPUTS)
-    ours, papers = (", ".join(f"`{name}`" for name in KEPT[kind]) for kind in KEPT)
+    ours, papers = (", ".join(f"`{name}`" for name in KEPT[kind]) for kind in ("ours", "paper's"))
     head = HEAD.format(
         degree=DEGREE, speed=speed, elevation=elevation, spin=spin, verdict=verdict(found), ours=ours, papers=papers,
-        terms=term_count(len(KEPT["ours"]), DEGREE), skill=skill(found),
+        terms=term_count(len(KEPT["ours"]), DEGREE), few=term_count(len(KEPT["two"]), DEGREE), skill=skill(found),
     )  # fmt: skip
     missing = not_run([cell for cell in CELLS if cell not in found and cell not in swept])
     middle = SWEEPS.format(jump=JUMP, degree=DEGREE, kinks=kinks(found, swept))

@@ -68,7 +68,7 @@ GROUNDS = {
     "hulls 2, larger": Ground("hull", 2.0, 0.34, 4, {"steep": 32}, 1.5),
     "spheres 5, larger": Ground("sphere", 5.0, 0.225, 4, {"steep": 32}, 1.5),
     "hulls 5": Ground("hull", 5.0, 0.15, 4, {"steep": 24, "flat": 12}),
-    "spheres 10": Ground("sphere", 10.0, 0.15, 2, {"steep": 12}),
+    "spheres 10": Ground("sphere", 10.0, 0.15, 2, {"steep": 8}),
     "hulls 10": Ground("hull", 10.0, 0.1, 2, {"steep": 8}),
     "spheres 20": Ground("sphere", 20.0, 0.15, 1, {"steep": 4}),
 }
