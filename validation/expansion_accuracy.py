@@ -3,10 +3,9 @@
     python validation/expansion_accuracy.py [--grounds NAME ...] [--kept NAME ...] [--work FOLDER] [--out validation]
 
 Impact and attitude are those of scenarios/one_place.toml, the impact point is the middle of the tile. A cell varies
-three or two inputs, the others stand at their medians: a Smolyak grid for the expansion, points drawn for its test, and twins
-of the first of these, a tenth of a millimetre aside. "full" ranges are those of the scenario, others so many parts of
-each median to both sides. A sweep moves friction, or the restitution of the grains,
-alone, in equal steps.
+three or two inputs, the others stand at their medians: a Smolyak grid for the expansion, points drawn for its test, and
+twins of the first of these, a tenth of a millimetre aside. "full" ranges are those of the scenario, others so many
+parts of each median to both sides. A sweep moves friction, or the restitution of the grains, alone, in equal steps.
 
 Writes expansion_accuracy.csv, a line for each landing, as they end, and expansion_accuracy_beds.csv. What stands there
 already is not done again: delete both to start anew. Grounds and beds are those of grain_size.py.

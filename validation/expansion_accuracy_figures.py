@@ -251,9 +251,10 @@ and its attitude too; the impact point is the middle of a tile that repeats, as 
 [soil against impact point](grain_size.md). The ratio is the lander's longest edge over the
 diameter of the grains. Three inputs vary, by a part of their medians to both sides or over their
 full ranges: {ours}, which [the study at full size](paper_study.md) keeps, or {papers}, which the
-paper keeps; "two" are the first two of ours, where landings cost most. The screening that chooses them is not repeated. {terms} terms, {few} for two inputs, are fitted by least
-squares to a Smolyak grid of level 5 (441 points, the order of the paper) or 4 (177, and 65 for
-two inputs), and scored on 30 to 50 fresh points. "Lost" landings did not leave. "Twins" is the error of a
+paper keeps; "two" are the first two of ours, where landings cost most. The screening that chooses
+them is not repeated. {terms} terms, {few} for two inputs, are fitted by least squares to a Smolyak
+grid of level 5 (441 points, the order of the paper) or 4 (177, and 65 for two inputs), and scored on
+30 to 50 fresh points. "Lost" landings did not leave. "Twins" is the error of a
 law without error beside chance: from landings 0.1 mm aside. The paper does not state from where it
 counts the direction of the velocity: both ways are tried.
 
