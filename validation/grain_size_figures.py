@@ -1,0 +1,308 @@
+"""Draw what grain_size.py found, and write its page, docs/validation/grain_size.md.
+
+    python validation/grain_size_figures.py
+
+Reads grain_size.csv, grain_size_beds.csv and grain_size.json beside it; writes grain_size.png and grain_size.md to
+docs/validation.
+"""
+
+import json
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib
+
+matplotlib.use("agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from grain_size import DURATION, EDGES, FLIGHTS, GROUNDS, KINDS, MASS, ROLLING, WAYS
+from numpy.typing import NDArray
+from page_text import broken
+
+from lithobrake.analysis import LEVEL
+from lithobrake.report.figures.style import QUIET, STYLE, TEST, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from harness import PAGES, read_rows
+
+HERE = Path(__file__).parent
+Floats = NDArray[np.float64]
+Row = dict[str, Any]
+OUTPUTS = {
+    "speed_out": "rebound speed", "elevation_out": "rebound elevation", "spin_out": "rebound spin rate",
+    "returns": "return fraction",
+}  # fmt: skip
+RESAMPLES, SEED = 4000, 41
+SOIL, POINT, ATTITUDE = 1, 2, 3  # axes of a block's outputs
+# How each part is drawn: label, colour, marker, and how far from its ratio.
+PARTS = {
+    "soil": ("soil", TRAINING, "o", 0.96), "point": ("bed and impact point", TEST, "s", 1.04),
+    "attitude": ("attitude", QUIET, "x", 1.0),
+}  # fmt: skip
+
+
+class Estimate(NamedTuple):
+    """A value with its interval."""
+
+    value: float
+    lower: float
+    upper: float
+
+    def __str__(self) -> str:
+        return f"{self.value:.2f} ({self.lower:.2f}-{self.upper:.2f})"
+
+    @property
+    def share(self) -> "Estimate":
+        """The same as a part of a whole: scatter may put it a little outside."""
+        return Estimate(*(min(max(one, 0.0), 1.0) for one in self))
+
+
+class Parts(NamedTuple):
+    """Total effects over the whole variance, main effect of the soil, and soil over impact point."""
+
+    soil: Estimate
+    point: Estimate
+    attitude: Estimate
+    main: Estimate
+    ratio: Estimate
+    chaos: float
+    blocks: int
+
+
+def outputs_of(rows: list[Row], name: str) -> tuple[Floats, Floats]:
+    """An output [block, soil, point, attitude], NaN where a landing has none, and of the twins [block]."""
+    count = max(row["block"] for row in rows) + 1
+    values, twins = np.full((count, 2, 2, 2), np.nan), np.full(count, np.nan)
+    for row in rows:
+        if row["twin"]:
+            twins[row["block"]] = row[name]
+        else:
+            values[row["block"], row["soil"], row["point"], row["attitude"]] = row[name]
+    return values, twins
+
+
+def half_squares(values: Floats, *axes: int) -> Floats:
+    """Sum over each block, and their number, of half the squares of differences between landings [2, block].
+
+    The landings of a pair differ in these axes. Source: [Jansen-1999].
+    """
+    halves = 0.5 * (values - np.flip(values, axes)) ** 2
+    return np.array([np.nansum(halves, axis=(1, 2, 3)), np.isfinite(halves).sum(axis=(1, 2, 3))])
+
+
+def estimate(values: Floats) -> Estimate:
+    """The first of values, and the interval of the others."""
+    lower, upper = np.nanquantile(values[1:], [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+    return Estimate(float(values[0]), float(lower), float(upper))
+
+
+def parts(rows: list[Row], name: str) -> Parts:
+    """Parts of the variance of an output, with intervals by the bootstrap over blocks."""
+    values, twins = outputs_of(rows, name)
+    count = len(values)
+    generator = np.random.default_rng(SEED)
+    weights = np.vstack([np.ones(count), generator.multinomial(count, np.full(count, 1.0 / count), RESAMPLES)])
+
+    def mean(*axes: int) -> Floats:
+        total, number = half_squares(values, *axes)
+        with np.errstate(invalid="ignore"):
+            found: Floats = (weights @ total) / (weights @ number)
+        return found
+
+    whole, soil, point = mean(SOIL, POINT, ATTITUDE), mean(SOIL), mean(POINT)
+    chaos = float(np.nanmean(0.5 * (values[:, 0, 0, 0] - twins) ** 2)) / float(whole[0])
+    shares = (soil / whole, point / whole, mean(ATTITUDE) / whole, 1.0 - mean(POINT, ATTITUDE) / whole)
+    return Parts(*(estimate(one).share for one in shares), estimate(soil / point), chaos, count)
+
+
+def read() -> tuple[list[Row], list[Row]]:
+    """Landings and beds."""
+    return read_rows(HERE / "grain_size.csv", KINDS), read_rows(HERE / "grain_size_beds.csv", KINDS)
+
+
+def groups(rows: list[Row]) -> dict[tuple[str, str], list[Row]]:
+    """Landings of each ground and way, whole blocks alone, by way, kind of grain and ratio."""
+    found: dict[tuple[str, str], list[Row]] = {}
+    for way in WAYS:
+        for name in sorted(GROUNDS, key=lambda one: (GROUNDS[one].grain, GROUNDS[one].ratio)):
+            of = [row for row in rows if (row["ground"], row["way"]) == (name, way)]
+            whole = {block for block, number in Counter(row["block"] for row in of).items() if number == 9}
+            if whole:
+                found[name, way] = [row for row in of if row["block"] in whole]
+    return found
+
+
+def of_steep(found: dict[tuple[str, str], dict[str, Parts]]) -> dict[str, dict[str, Parts]]:
+    """Parts of steep impacts on the smallest grounds."""
+    return {name: of for (name, way), of in found.items() if way == "steep" and GROUNDS[name].wider == 1.0}
+
+
+def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
+    """Total effects of soil and impact point by ratio: rows of grains, columns of outputs, steep impacts."""
+    kinds = {"hull": "hulls", "sphere": "spheres"}
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.0), layout="constrained", sharey=True, sharex=True)
+        for row, (grain, word) in zip(axes, kinds.items(), strict=True):
+            for axis, (name, title) in zip(row, OUTPUTS.items(), strict=True):
+                for part, (label, colour, marker, shift) in PARTS.items():
+                    known = [(GROUNDS[g], p[name]) for g, p in of_steep(found).items()]
+                    points = [(g.ratio * shift, getattr(p, part)) for g, p in known if g.grain == grain]
+                    x, y = [x for x, _ in points], [e.value for _, e in points]
+                    ends = np.array([[max(e.value - e.lower, 0.0), max(e.upper - e.value, 0.0)] for _, e in points]).T
+                    axis.errorbar(x, y, ends, color=colour, marker=marker, ms=4.5, capsize=3, lw=1.0, label=label)
+                axis.set_xscale("log")
+                axis.set_xticks([2, 5, 10, 20], ["2", "5", "10", "20"])
+                axis.minorticks_off()
+                axis.set_xlim(1.6, 25)
+                axis.set_ylim(0.0, 1.05)
+                axis.grid(axis="y", color=QUIET, lw=0.2)
+                if grain == "hull":
+                    axis.set_title(title)
+            row[0].set_ylabel(f"{word}\ntotal effect / variance")
+        axes[0, 0].legend(loc="upper right")
+        figure.supxlabel("longest edge of the lander over diameter of the grains", fontsize=9)
+        figure.savefig(PAGES / "grain_size.png", dpi=150)
+        plt.close(figure)
+
+
+def words(name: str) -> str:
+    """Kind of grain and ratio."""
+    return f"{GROUNDS[name].grain}s{', larger bed' if GROUNDS[name].wider > 1.0 else ''} | {GROUNDS[name].ratio:g}"
+
+
+def part_table(found: dict[tuple[str, str], dict[str, Parts]]) -> list[str]:
+    """A line for each ground, way and output."""
+    heads = ["grains", "ratio", "impact [deg]", "output", "soil", "soil alone", "bed and impact point", "attitude"]
+    heads += ["soil / point", "twins", "blocks"]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for (name, way), of in found.items():
+        for key, title in OUTPUTS.items():
+            p = of[key]
+            cells = [words(name), f"{WAYS[way][1]:g}", title, str(p.soil), str(p.main), str(p.point), str(p.attitude)]
+            cells += [str(p.ratio), f"{p.chaos:.3f}", str(p.blocks)]
+            lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> list[str]:
+    """A line for each ground and way: beds and landings."""
+    heads = ["grains", "ratio", "impact [deg]", "grains in a bed", "width [m]", "depth [cm]", "beds", "landings"]
+    heads += ["captured", "time limit", "rebound speed [cm/s]", "deepest tenth [cm]", "CPU of a pour [s]"]
+    heads += ["CPU of a landing [s]"]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for (name, way), of in rows.items():
+        own, ends = [bed for bed in beds if bed["ground"] == name], Counter(row["status"] for row in of)
+        speed = 100.0 * np.array([row["speed_out"] for row in of])
+        deep = 100.0 * np.quantile([row["penetration"] for row in of], 0.9)
+        cells = [words(name), f"{WAYS[way][1]:g}", f"{own[0]['grains']:.0f}", f"{own[0]['width']:.2f}"]
+        cells += [f"{100.0 * np.mean([bed['depth'] for bed in own]):.1f}", f"{len(own)}", f"{len(of)}"]
+        cells += [str(ends["captured"]), str(ends["time_limit"])]
+        cells += [f"{np.nanmean(speed):.1f} ± {np.nanstd(speed, ddof=1):.1f}", f"{deep:.1f}"]
+        cells += [f"{np.mean([bed['cpu_s'] for bed in own]):.1f}", f"{np.mean([row['cpu_s'] for row in of]):.2f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
+    """From which ratio on the soil moves the rebound speed more than bed and impact point do, by kind of grain."""
+    said = []
+    for grain in ("hull", "sphere"):
+        of = sorted((GROUNDS[g].ratio, p["speed_out"].ratio) for g, p in of_steep(found).items() if g.startswith(grain))
+        above = [ratio for k, (ratio, _) in enumerate(of) if all(one.lower > 1.0 for _, one in of[k:])]
+        finest, last = of[-1]
+        shown = f"from a ratio of {above[0]:g} on" if above else f"not up to a ratio of {finest:g}"
+        if not above and last.upper >= 1.0:
+            shown = f"not shown up to a ratio of {finest:g}"
+        said.append(f"{shown} on {grain}s (total effect of the soil over that of the impact point there {last})")
+    return f"For the rebound speed the soil matters more than the impact point {', and '.join(said)}."
+
+
+HEAD = """# Soil against impact point, by grain size
+
+Written by `python validation/grain_size_figures.py`.
+
+How much do the material parameters move the rebound, and how much does the impact point, as grains
+become small beside the lander? Lander ({edges} m, {mass:g} kg), input distributions and site are
+those of `scenarios/first_bounce.toml`. The ratio is the lander's longest edge, {edge:g} m, over the
+diameter of the grains.
+
+**{verdict}**
+
+![Total effects by ratio](grain_size.png)
+
+## Method
+
+A block has two soils (five parameters of grains and lander, drawn together), two impact points on
+two beds, and two attitudes: eight landings, all combinations, and a ninth 0.1 mm aside. The same
+draws are used on all grounds. The total effect of a factor is half the mean squared difference of
+landings that differ in it alone, over the variance, which comes from landings that differ in all
+three ([Jansen-1999]). Total effects include interactions: they may add up to more than 1. "Soil
+alone" is the main effect of the soil, without interactions. Intervals ({level:.0f} %) come from
+{resamples} resamples of the blocks. "Twins" is the part that 0.1 mm make.
+
+Ground repeats, and is as wide as the rule of the smallest bed asks, and two grains more. Hulls are
+those of the package; spheres have a rolling resistance of {rolling:g} in place of corners. They
+show whether the trend carries to grains too many for hulls. "Larger" beds are half as wide and deep
+again. Impacts are at {speed:g} m/s, and at
+{steep:g} or {flat:g} degrees from the normal, along one direction of the tile.
+
+## Parts of the variance
+
+"""
+TAIL = """
+
+## Landings
+
+Rebound speed with its standard deviation. Depth: of the bed, and below the mean surface what a tenth
+of the landings exceed.
+
+"""
+LIMITS = """
+
+## What this leaves out
+
+- The impact point includes its bed: two impact points of a block lie on two beds where a ground has
+  more than one. Two to four beds a ratio serve all blocks, so intervals hold over soils, impact
+  points and attitudes on these beds, and not fully over beds. Of the kind of ground with one bed the
+  impact point is without the difference of beds.
+- All grains of a bed are of one size: boulders among fine grains are impact points of their own.
+- Attitudes are drawn over all rotations. A lander that holds its attitude removes that part.
+- Return fractions are of {flights} flights a landing over {hours:g} h, which is what makes "twins"
+  differ there.
+- Few blocks give intervals that are too narrow.
+- {missing}
+"""
+
+
+def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
+    """The text of the page."""
+    of = groups(rows)
+    found = {key: {name: parts(own, name) for name in OUTPUTS} for key, own in of.items()}
+    draw(found)
+    names = {name for name, _ in found}
+    absent = [f"{g.grain}s at {g.ratio:g}" for name, g in GROUNDS.items() if name not in names]
+    steep, flat = WAYS["steep"], WAYS["flat"]
+    texts = {
+        "edges": " x ".join(f"{edge:g}" for edge in EDGES), "mass": MASS, "edge": max(EDGES), "level": 100 * LEVEL,
+        "resamples": RESAMPLES, "rolling": ROLLING, "speed": steep[0], "steep": steep[1], "flat": flat[1],
+        "verdict": verdict(found),
+    }  # fmt: skip
+    missing = f"Not run: {', '.join(absent)}." if absent else "All grounds of the script were run."
+    made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}."
+    spent = sum(row["cpu_s"] for row in (*rows, *beds)) / 60.0
+    limits = LIMITS.format(flights=FLIGHTS, hours=DURATION / 3600.0, missing=missing)
+    lines = [HEAD.format(**texts), *part_table(found), TAIL, *landing_table(of, beds), limits]
+    return broken("\n".join([*lines, f"{made} {spent:.0f} min of CPU."])) + "\n"
+
+
+def main() -> None:
+    """Draw and write."""
+    rows, beds = read()
+    content = page(rows, beds, json.loads((HERE / "grain_size.json").read_text()))
+    (PAGES / "grain_size.md").write_text(content, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
