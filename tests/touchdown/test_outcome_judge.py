@@ -11,7 +11,7 @@ from lithobrake.touchdown.outcome_judge import OutcomeJudge
 
 ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 LANDER = Lander(shape=Sphere(0.1), mass=1.0, material=ROCK)
-BED = SimpleNamespace(width=(1.0, 1.0), period=None, surface_height=0.5, grain_diameter=0.1)
+BED = SimpleNamespace(width=(1.0, 1.0), period=None, surface_height=0.5, grain_diameter=0.1, boulder_count=0)
 LANDING = SimpleNamespace(
     azimuth=0.0, time_limit=10.0, hop_height=None, contact=SimpleNamespace(steps_per_contact=50.0)
 )
