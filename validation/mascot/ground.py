@@ -4,7 +4,6 @@ Facts: [Michikami-2019] (size law, number of boulders), [Michikami-2021] (its in
 """
 
 import math
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,8 +12,7 @@ import numpy as np
 from lithobrake.dem import Material
 from lithobrake.touchdown import Bed, BedRecipe, GrainSizes, pour_bed, stored_or_poured
 from lithobrake.touchdown.boulders import BOULDER_REACH, Boulders
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from lithobrake.touchdown.surface import heights_at
 
 # Cumulative index of the number of blocks larger than D: of those above 5 m, and the flattest of smaller ones.
 INDEX, FLATTEST = 2.65, 1.65
@@ -104,8 +102,6 @@ def ground(work: Path, kind: str, number: int) -> Ground:
 
 def grain_surface(bed: Bed) -> float:
     """Mean height [m] of the grains where no boulder stands out of them."""
-    from lithobrake.touchdown.surface import heights_at
-
     x, y = np.meshgrid(*((np.arange(60) + 0.5) / 60 * width - 0.5 * width for width in bed.width), indexing="ij")
     first = bed.boulder_count
     grains = heights_at(x, y, bed.grains[first:], bed.position[first:], bed.orientation[first:], bed.period)

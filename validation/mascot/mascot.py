@@ -2,8 +2,9 @@
 
     python validation/mascot/mascot.py --work FOLDER --out FOLDER [--setting NAME] [--count N]
 
-Writes mascot.csv, a line per lander and setting, and mascot.json. A line that stands there is not made again. Each
-impact is a landing on a bed of its own, each high hop a parabola under the local gravity, with free rotation.
+Writes mascot.csv, a line per lander and setting, beds.csv, a line per bed, and mascot.json. A line that stands there is
+not made again. Each impact is a landing at a fresh place of a bed, each high hop a parabola under the local gravity
+with free rotation.
 
 Facts: [Scholten-2019] (fall, times, contacts), [Durda-2011] (restitution of boulders), ground.py.
 """
@@ -22,11 +23,11 @@ from lithobrake.geometry.contact_frame import about_z, attitude_of, quaternion, 
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.touchdown import ContactModel, Lander, Landing, Outcome, land
 
-HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE), str(HERE.parents[1] / "benchmarks")]
-from ground import COVER, DEEPEST, FLATTEST, INDEX, Ground, beds, coverage
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from ground import COVER, DEEPEST, FLATTEST, INDEX, Ground, beds, coverage, recipe
 from harness import Row, add_row, command_line, origin, read_rows, write_document
 
+HERE = Path(__file__).parent
 SEED = 663
 EDGES, MASS = (0.275, 0.29, 0.195), 10.0  # m, kg
 GRAVITY, SPEED, INCIDENCE = (1.5e-4, 1.63e-4), (0.143, 0.146), 25.0  # m/s2, m/s, deg at most
@@ -156,7 +157,8 @@ def journey(setting: str, number: int, ground: dict[str, list[Ground]]) -> Row:
         "setting": setting, "lander": number, "bed": bed, "boulder_m": ground[first][bed].boulder, "stands_out_m": out,
         "first_speed": speed, "gravity": one.gravity, "young_modulus": one.soil.young_modulus,
         "restitution": min(one.soil.restitution, one.lander.material.restitution), "friction": one.soil.friction,
-        "rebound_speed": outcome.outputs["speed_out"], "rebound_elevation_deg": math.degrees(outcome.outputs["elevation_out"]),
+        "rebound_speed": outcome.outputs["speed_out"],
+        "rebound_elevation_deg": math.degrees(outcome.outputs["elevation_out"]),
     }  # fmt: skip
     on_boulders = 0
     while not one.end:
@@ -173,16 +175,39 @@ def journey(setting: str, number: int, ground: dict[str, list[Ground]]) -> Row:
     }  # fmt: skip
 
 
+def note_beds(table: Path, ground: dict[str, list[Ground]]) -> None:
+    """Write what beds came of their recipes."""
+    known = {(row["kind"], row["bed"]) for row in read_rows(table, {"kind": str})}
+    for kind, among in ground.items():
+        for number, one in enumerate(among):
+            if (kind, number) not in known:
+                add_row(table, {"kind": kind, "bed": number, **of_bed(kind, number, one)}, 4)
+
+
+def of_bed(kind: str, number: int, one: Ground) -> Row:
+    """Size of a bed, and how deep the top of its boulder was to lie under the grains, and lies [m]."""
+    rocks, bed = recipe(kind, number)[0].boulders, one.bed
+    top = math.nan
+    if bed.boulder_count:
+        top = float(bed.position[0, 2] + (bed.grains[0].vertices - bed.grains[0].centroid)[:, 2].max())
+    return {
+        "boulder_m": one.boulder, "width_m": bed.width[0], "grains": len(bed.grains) - bed.boulder_count,
+        "depth_m": one.surface, "solid_fraction": bed.solid_fraction,
+        "cover_asked_m": rocks.cover[0] if rocks else math.nan, "cover_m": one.surface - top,
+    }  # fmt: skip
+
+
 def main() -> None:
     """Follow the landers that are not there yet."""
     parser = command_line(__doc__, work=Path, out=HERE, setting="all", count=150)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     options.out.mkdir(parents=True, exist_ok=True)
-    table = options.out / "mascot.csv"
-    known = {(row["setting"], row["lander"]) for row in read_rows(table, {"setting": str, "end": str})}
     wanted = list(SETTINGS) if options.setting == "all" else [options.setting]
     ground = {kind: beds(options.work, kind) for kind in ("grains alone", *{SETTINGS[name][0] for name in wanted})}
+    note_beds(options.out / "beds.csv", ground)
+    table = options.out / "mascot.csv"
+    known = {(row["setting"], row["lander"]) for row in read_rows(table, {"setting": str, "end": str})}
     for setting in wanted:
         for number in range(options.count):
             if (setting, number) not in known:
