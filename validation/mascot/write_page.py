@@ -44,15 +44,19 @@ def verdicts(settings: dict[str, list[Row]]) -> str:
         agree = {name: answer(column(rows, name), measured) for name, measured in MEASURED.items()}
         inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].agrees]
         outside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if not agree[name].agrees]
-        rest = sum(row["end"] == "at rest" for row in rows)
-        text = f"First contact on a boulder {setting}: {rest} of {len(rows)} landers come to rest, none is lost. "
+        moving = sum(row["end"] != "at rest" for row in rows)
+        end = f"{moving} still move after four hours" if moving else "none is lost"
+        text = (
+            f"First contact on a boulder {setting}: {len(rows) - moving} of {len(rows)} landers come to rest, {end}. "
+        )
         text += f"{listed(inside)} {'lie' if len(inside) > 1 else 'lies'} in the central 80 % of what they give"
         text += f"; {listed(outside)} {'do' if len(outside) > 1 else 'does'} not. " if outside else ". "
         if not agree["time_s"].agrees:
             seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
             text += (
                 f"{percent(agree['time_s'].below)} of the landers need less than 663 s until they rest; "
-                f"{percent(seen.below)} until they stay within 0.1 m of that place, which is how well MASCOT's path is known. "
+                f"{percent(seen.below)} until they stay within 0.1 m of that place, which is how well MASCOT's path is "
+                "known. "
             )
         said.append(f"{text}{percent(farther(rows))} of the landers are farther from the middle in all three together.")
     return " ".join(said)
