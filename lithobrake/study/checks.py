@@ -11,7 +11,7 @@ from pathlib import Path
 from lithobrake.study.aim_checks import aim_problems
 from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
-from lithobrake.study.boulder_checks import boulder_problems
+from lithobrake.study.boulder_checks import boulder_problems, boulder_width
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.journey_checks import journey_problems
@@ -187,10 +187,11 @@ def _shape_problems(study: Study) -> Iterator[str]:
 
 
 def narrowest_period(study: Study) -> float:
-    """Least width [m] of ground that repeats, for the lander and the grains of a study."""
+    """Least width [m] of ground that repeats, for the lander, the grains and the boulders of a study."""
     across, (per_grain, beside_lander) = 2.0 * lander_radius(study), widths_in_grains(study)
     largest = largest_diameter(study)
-    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest)
+    boulders = boulder_width(study, largest, 0.5 * across)
+    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest, boulders)
 
 
 def lander_radius(study: Study) -> float:
