@@ -11,6 +11,8 @@ Metres = Annotated[float, Number("m", above=0)]
 # (docs/estimates.md). An interval needs a dozen beds.
 LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
 FEWEST_BEDS, MOST_BEDS = 12, 1000
+# As touchdown/boulders.py has it, which takes a solver to load.
+LARGEST_COVERAGE = 0.3
 
 
 class Constant(Section):
@@ -57,6 +59,23 @@ class PowerLaw(Section):
         return self.exponent if self.exponent is not None else 1.0 + (self.cumulative_exponent or 0.0)
 
 
+class BoulderSection(Section):
+    """Boulders among the grains, each cut off where it would reach below the floor. They lie on a broad face, in the
+    bed before the grains are poured on and around them, and are of the same material."""
+
+    diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
+        examples=['{ distribution = "power_law", cumulative_exponent = 2.65, lower = 0.3, upper = 0.6 }']
+    )
+    """Diameter of the sphere of equal volume, as bed.diameter. No boulder reaches farther than 0.75 diameters from its
+    centroid."""
+    coverage: Annotated[float, Number("", above=0, at_most=LARGEST_COVERAGE)] = Field(examples=["0.1"])
+    """Part of the ground under the boulders, seen from above as discs of their diameters, in the mean over beds: a bed
+    has a whole number of boulders, the next one by chance."""
+    cover: Annotated[tuple[float, float], Numbers("m", count=2)] = Field((0.0, 0.0), examples=["[-0.1, 0.1]"])
+    """Depth of a boulder's top under the mean surface of the grains, smallest and largest; each boulder draws its own.
+    Below 0 it stands out. A boulder that is too small for that lies on the floor."""
+
+
 class BedSection(Section):
     """The surface: grains are convex hulls of random clouds of points, poured on a floor and settled."""
 
@@ -82,6 +101,8 @@ class BedSection(Section):
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
     """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
+    boulders: BoulderSection | None = None
+    """Boulders among the grains."""
     settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None
     """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""
 

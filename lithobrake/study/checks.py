@@ -11,6 +11,7 @@ from pathlib import Path
 from lithobrake.study.aim_checks import aim_problems
 from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
+from lithobrake.study.boulder_checks import boulder_problems, boulder_width
 from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.journey_checks import journey_problems
@@ -75,15 +76,10 @@ def settling_problems(study: Study, gravity: float) -> Iterator[str]:
 
 
 def _grain_problems(study: Study) -> Iterator[str]:
-    sizes, largest = study.bed.diameter.model_dump(), largest_diameter(study)
-    if sizes.get("lower", 0) >= largest:
-        yield f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower below upper; swap them"
-    elif sizes.get("lower", largest) < largest / WIDEST_SIZES:
-        yield (
-            f"bed.diameter reaches from {sizes['lower']:g} to {largest:g} m; allowed: lower at least "
-            f"{1 / WIDEST_SIZES:g} of upper, as no bed of so unlike grains is settled; raise lower"
-        )
-    yield from _distribution_problems(study.bed.diameter)
+    yield from _size_problems("bed.diameter", study.bed.diameter)
+    if study.bed.boulders is not None:
+        yield from _size_problems("bed.boulders.diameter", study.bed.boulders.diameter)
+    largest = largest_diameter(study)
     repeats = study.bed.sides == "periodic"
     least = widths_in_grains(study)[0] if repeats else BED_WIDTH_PER_GRAIN
     limit = min(study.bed.width) / least
@@ -97,27 +93,41 @@ def _grain_problems(study: Study) -> Iterator[str]:
         )
 
 
+def _size_problems(key: str, diameter: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
+    """A distribution of sizes with its limits the wrong way round, too far apart, or of none."""
+    if not isinstance(diameter, Constant):
+        lower, upper = diameter.lower, diameter.upper
+        if lower >= upper:
+            yield f"{key} reaches from {lower:g} to {upper:g} m; allowed: lower below upper; swap them"
+        elif lower < upper / WIDEST_SIZES:
+            yield (
+                f"{key} reaches from {lower:g} to {upper:g} m; allowed: lower at least "
+                f"{1 / WIDEST_SIZES:g} of upper, as no bed of so unlike grains is settled; raise lower"
+            )
+    yield from _distribution_problems(key, diameter)
+
+
 def largest_diameter(study: Study) -> float:
     """Largest diameter that a grain can have [m], of the sphere of equal volume."""
     sizes = study.bed.diameter
     return sizes.value if isinstance(sizes, Constant) else sizes.upper
 
 
-def _distribution_problems(sizes: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
+def _distribution_problems(name: str, sizes: Constant | Between | Bell | PowerLaw) -> Iterator[str]:
     """Exponents of a power law that are none, or turn it over, and a bell without grains between its limits."""
     if isinstance(sizes, PowerLaw):
         given = {key: getattr(sizes, key) for key in ("exponent", "cumulative_exponent")}
         given = {key: value for key, value in given.items() if value is not None}
         if len(given) != 1:
             yield (
-                "bed.diameter takes exponent or cumulative_exponent, and "
+                f"{name} takes exponent or cumulative_exponent, and "
                 f"{'both are' if given else 'neither is'} given; keep one: the number of grains per diameter D falls "
                 "with D**-exponent, that of grains larger than D with D**-cumulative_exponent"
             )
         for key, value in given.items():
             if value < 0.0:
                 yield (
-                    f"bed.diameter.{key} is {value:g}; allowed: at least 0, as the number of grains falls with "
+                    f"{name}.{key} is {value:g}; allowed: at least 0, as the number of grains falls with "
                     f"D**-{key}; write the size of the slope, without its sign"
                 )
     elif isinstance(sizes, Bell) and sizes.lower < sizes.upper:
@@ -126,7 +136,7 @@ def _distribution_problems(sizes: Constant | Between | Bell | PowerLaw) -> Itera
         try:
             TruncatedNormal(sizes.mean, sizes.std, sizes.lower, sizes.upper)
         except ValueError as error:
-            yield f"bed.diameter is refused: {error}"
+            yield f"{name} is refused: {error}"
 
 
 def _limit_state_problems(study: Study) -> Iterator[str]:
@@ -162,6 +172,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
         yield f"lander.file: {error}"
         return
     yield from size_problems(study, radius)
+    yield from boulder_problems(study, largest_diameter(study), radius)
     width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     least, why = BED_WIDTH_PER_LANDER * 2 * radius, f"twice the largest diameter of the lander ({2 * radius:.3g} m)"
     beside = widths_in_grains(study)[1]
@@ -176,10 +187,11 @@ def _shape_problems(study: Study) -> Iterator[str]:
 
 
 def narrowest_period(study: Study) -> float:
-    """Least width [m] of ground that repeats, for the lander and the grains of a study."""
+    """Least width [m] of ground that repeats, for the lander, the grains and the boulders of a study."""
     across, (per_grain, beside_lander) = 2.0 * lander_radius(study), widths_in_grains(study)
     largest = largest_diameter(study)
-    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest)
+    boulders = boulder_width(study, largest, 0.5 * across)
+    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest, boulders)
 
 
 def lander_radius(study: Study) -> float:

@@ -20,7 +20,8 @@ from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.touchdown import Bed, ContactModel, GrainSizes, Lander, Landing, Outcome
+    from lithobrake.study.bed_section import Bell, Between
+    from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
 # What a material is to a contact, by the names of the study file and of dem.Material.
@@ -78,6 +79,7 @@ STUDY_WORDS = {
     "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
     "World period is": 'bed.width with bed.sides = "periodic" is',
     "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
+    "BedRecipe.boulders.": "bed.boulders.",
     "BedRecipe.": "bed.",
     "Landing.incidence": "impact.incidence_deg, in radians,",
     "Landing.azimuth": "impact.azimuth_deg, in radians,",
@@ -205,9 +207,23 @@ def contact(study: Study) -> "ContactModel":
 
 def grain_sizes(study: Study) -> "GrainSizes":
     """The sizes of the grains."""
+    return sizes_of(study.bed.diameter)
+
+
+def boulders(study: Study) -> "Boulders | None":
+    """The boulders among the grains."""
+    from lithobrake.touchdown import Boulders
+
+    section = study.bed.boulders
+    if section is None:
+        return None
+    return Boulders(sizes=sizes_of(section.diameter), coverage=section.coverage, cover=section.cover)
+
+
+def sizes_of(sizes: "Constant | Between | Bell | PowerLaw") -> "GrainSizes":
+    """The size distribution of a table of the study file."""
     from lithobrake.touchdown import GrainSizes
 
-    sizes = study.bed.diameter
     if isinstance(sizes, Constant):
         return GrainSizes(distribution="constant", lower=sizes.value, upper=sizes.value)
     if isinstance(sizes, PowerLaw):

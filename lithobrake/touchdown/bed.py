@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from lithobrake.dem import ConvexHull, Material, World, pair_law
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import reading
+from lithobrake.touchdown.surface import heights_at
 from lithobrake.vocabulary.quantities import describe
 
 Floats = NDArray[np.float64]
@@ -94,13 +95,14 @@ class Bed:
     solid_fraction: float
     coordination_number: float
     sides: str = "walls"
+    boulder_count: int = 0  # of `grains`, the first ones
     frames: dict[str, Floats] = field(default_factory=dict)
     history: dict[str, Floats] = field(default_factory=dict)
 
     @property
     def grain_diameter(self) -> float:
-        """Mean diameter of the grains [m]."""
-        return float(self.diameter.mean())
+        """Mean diameter of the grains but for the boulders [m]."""
+        return float(self.diameter[self.boulder_count :].mean())
 
     @cached_property
     def elastic_energy_per_modulus(self) -> float:
@@ -113,6 +115,12 @@ class Bed:
     def period(self) -> tuple[float, float] | None:
         """Lengths after which the ground repeats along x and y [m]; None in a box."""
         return self.width if self.sides == "periodic" else None
+
+    def boulder_height(self, x: Floats, y: Floats) -> Floats:
+        """Height [m] of the boulders as they lie at places x, y [m] of any one shape; minus infinity beside them."""
+        first = slice(self.boulder_count)
+        lying = self.grains[first], self.position[first], self.orientation[first]
+        return heights_at(x, y, *lying, self.period)
 
     def world(
         self, material: Material, gravity: tuple[float, float, float], contact: ContactModel,
@@ -138,7 +146,7 @@ class Bed:
                     file[f"{group}/{name}"] = values
             describe(file)
             file.attrs["format"], file.attrs["format_version"] = "lithobrake bed", FORMAT_VERSION
-            for name in (*SCALARS, "sides"):
+            for name in (*SCALARS, "sides", "boulder_count"):
                 file.attrs[name] = getattr(self, name)
 
     @staticmethod
@@ -155,6 +163,7 @@ class Bed:
             scalars = {name: plain(file.attrs[name]) for name in SCALARS}
             # A bed of version 1 has walls.
             scalars["sides"] = str(file.attrs.get("sides", "walls"))
+            scalars["boulder_count"] = int(file.attrs.get("boulder_count", 0))
             groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
             arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}
             return Bed(grains=read_hulls(file), **arrays, **groups, **scalars)

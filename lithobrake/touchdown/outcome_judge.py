@@ -22,6 +22,8 @@ CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its ene
 CAPTURED_CONTACTS = 10.0
 # Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
 SUNK_FRACTION = 0.5
+# Where a boulder is looked for under a lander, in its bounding radii: its centre, and eight points around it.
+FOOTPRINT = np.array([[0.0, 0.0]] + [[math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)] for k in range(8)])
 
 
 def capture_lift(lander: Lander, gravity: float) -> float:
@@ -95,8 +97,20 @@ class OutcomeJudge:
         if self.world.is_touched:
             self.contacts += self.is_aloft
             self.is_aloft = False
-        elif height > self.clear_height:
+        elif height > self.ground()[1]:
             self.is_aloft = True
+
+    def ground(self) -> tuple[float, float]:
+        """Return the height of the ground under the lander, and that above which it is clear of it [m].
+
+        Both are those of the mean surface, or of the highest point of a boulder under it where that is higher.
+        """
+        ground, clear = self.bed.surface_height, self.clear_height
+        if self.bed.boulder_count == 0:
+            return ground, clear
+        across = self.lander.shape.bounding_radius * FOOTPRINT
+        boulder = float(self.bed.boulder_height(*(self.motion.position[:2] + across).T).max())
+        return max(ground, boulder), max(clear, boulder)
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
         """Return how the touchdown ended, or None while it is open."""
@@ -111,7 +125,7 @@ class OutcomeJudge:
             # Soil as it lies in the bed would go on there: what flies up has left it, of anything else nobody knows.
             self.over_rim = flies and outward and not held
             return TouchdownOutcome.CLEAR if self.over_rim else TouchdownOutcome.LEFT_SIDEWAYS
-        if flies and outward and height > self.clear_height:
+        if flies and outward and height > self.ground()[1]:
             return TouchdownOutcome.CLEAR
         if flies and held:
             return TouchdownOutcome.CAPTURED
@@ -132,8 +146,9 @@ class OutcomeJudge:
         """
         assert self.landing.hop_height is not None
         speed, inward = float(self.motion.velocity[2]), -float(self.world.gravity[2])
-        if has_touched and speed > 0.0 and height > self.clear_height and not self.world.is_touched:
-            apex = height - self.bed.surface_height + (0.5 * speed**2 / inward if inward > 0.0 else math.inf)
+        ground, clear = self.ground()
+        if has_touched and speed > 0.0 and height > clear and not self.world.is_touched:
+            apex = height - ground + (0.5 * speed**2 / inward if inward > 0.0 else math.inf)
             if apex > self.landing.hop_height:
                 return TouchdownOutcome.CLEAR
         if rest.is_over(self.world.time, self.motion):

@@ -10,6 +10,7 @@ from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
 from lithobrake.geometry.longest_grain import longest_reach
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world
+from lithobrake.touchdown.boulders import Boulders, place_boulders
 from lithobrake.touchdown.grains import GrainSizes, make_grain_within, random_orientation
 from lithobrake.touchdown.surface import height_map
 
@@ -29,6 +30,8 @@ PERIODS_LOOSENED = 10.0  # of a grain's small oscillation at its rest overlap un
 TOPPLING_TIMES = 3.0  # sqrt(diameter / gravity), for which a bed must rest before its gravity is lowered
 # A bed in which a grain creeps on, at a hundredth of its weight against the drag, is poured anew, so often in all.
 POURS = 3
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+BOULDERS = 1  # word of the seed of a bed's boulders
 RUNG = 100.0  # gravity under which loosened grains fall, over the local one: they fall ten times as fast
 
 
@@ -46,6 +49,7 @@ class BedRecipe:
     seed: int
     contact: ContactModel = field(default_factory=ContactModel)
     sides: str = "walls"  # or "periodic", see Bed
+    boulders: Boulders | None = None  # among the grains
 
     @property
     def period(self) -> tuple[float, float] | None:
@@ -112,7 +116,9 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     count = recipe.cloud_point_count
     longest = math.inf if recipe.period is None else longest_reach(count)
     grains = [make_grain_within(generator, count, d, longest) for d in diameter]
-    position, orientation = rain(generator, grains, recipe.width, recipe.period)
+    boulders, lying = boulders_of(recipe, grains)
+    position, orientation = rain(generator, grains, recipe.width, recipe.period, boulders, lying)
+    grains = boulders + grains
     down = (0.0, 0.0, -recipe.pour_gravity)
     frame = recipe.width, recipe.material, down, recipe.contact, recipe.sides
     world = boxed_world(grains, position, orientation, *frame)
@@ -136,22 +142,36 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     world = at_rest(settling_material, recipe.gravity)
     lower(world, recorder, recipe, lambda done: tell(0.7 + 0.15 * done, "letting loose grains fall"))
     settle(world, recorder, recipe, True, lambda done: tell(0.85 + 0.15 * done, "settling under the local gravity"))
+    diameter = np.append([2.0 * one.contact_radius for one in boulders], diameter)
     return finished(world, recorder, recipe, grains, diameter)
+
+
+def boulders_of(recipe: BedRecipe, grains: Sequence[Shape]) -> tuple[list[ConvexHull], Floats]:
+    """Return the boulders of a bed, as they are turned, and their centroids [m], shape [count, 3]; mostly none."""
+    if recipe.boulders is None:
+        return [], np.zeros((0, 3))
+    generator = np.random.default_rng([recipe.seed, BOULDERS])
+    volume = sum(grain.volume for grain in grains)
+    return place_boulders(recipe.boulders, generator, recipe.cloud_point_count, volume, recipe.width, recipe.period)
 
 
 def rain(
     generator: np.random.Generator, grains: Sequence[Shape], width: tuple[float, float],
-    period: tuple[float, float] | None = None,
+    period: tuple[float, float] | None = None, boulders: Sequence[Shape] = (), lying: Floats | None = None,
 ) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return positions and orientations of grains in a column above the bed, none touching.
+    """Return positions and orientations of boulders and then of grains in a column above them, no grain touching.
 
-    Each comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random places.
-    period [m]: after which the ground repeats; None: in a box, which holds the bounding spheres.
+    Each grain comes to lie as deep as its bounding sphere gets, over those before it, at the best of a few random
+    places. period [m]: after which the ground repeats; None: in a box, which holds the bounding spheres. lying: where
+    boulders are [m], shape [count, 3], as they are turned.
     """
-    reach = np.array([grain.bounding_radius for grain in grains])
+    first = len(boulders)
+    reach = np.array([grain.bounding_radius for grain in (*boulders, *grains)])
     largest = float(reach.max())
-    position = np.zeros((len(grains), 3))
-    for k, radius in enumerate(reach):
+    position = np.zeros((len(reach), 3))
+    if lying is not None:
+        position[:first] = lying
+    for k, radius in enumerate(reach[first:], first):
         slack = np.maximum(0.5 * np.array(width) - (radius if period is None else 0.0), 0.0)
         places = slack * generator.uniform(-1.0, 1.0, size=(RAIN_PLACES, 2))
         ground = position[:k, 2].max(initial=0.0) - RAIN_DEPTH * largest
@@ -162,7 +182,8 @@ def rain(
             heights = lying_heights(places, radius, position[:k], reach[:k], period)
         best = int(heights.argmin())
         position[k] = *places[best], heights[best]
-    return position, np.array([random_orientation(generator) for _ in grains])
+    turned = [UPRIGHT] * first + [random_orientation(generator) for _ in grains]
+    return position, np.array(turned)
 
 
 def lying_heights(
@@ -274,7 +295,7 @@ def settle(
 
 
 def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[ConvexHull], diameter: Floats) -> Bed:
-    """Return the bed at rest."""
+    """Return the bed at rest, the first of its grains the boulders."""
     position = folded(world.position, period_of(recipe.period))
     heights = height_map(grains, position, world.orientation, recipe.width, recipe.period)
     contacts = world.contacts()
@@ -292,5 +313,6 @@ def finished(world: World, recorder: Recorder, recipe: BedRecipe, grains: list[C
         surface_height=float(heights.mean()), surface_top=float(heights.max()),
         solid_fraction=sum(grain.volume for grain in grains) / (area * float(heights.mean())),
         coordination_number=2.0 * int((contacts["body_b"] >= 0).sum()) / len(grains), sides=recipe.sides,
+        boulder_count=len(grains) - recipe.grain_count,
         frames=frames, history=dict(zip(names, np.array(recorder.rows).T, strict=True)),
     )  # fmt: skip

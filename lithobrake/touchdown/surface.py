@@ -25,7 +25,18 @@ def height_map(
     spacing = np.mean([2.0 * grain.bounding_radius for grain in grains]) / RAYS_PER_DIAMETER
     axes = [(np.arange(n := max(1, round(w / spacing))) + 0.5) * w / n - 0.5 * w for w in width]
     x, y = np.meshgrid(*axes, indexing="ij")
-    heights = np.zeros_like(x)
+    return np.maximum(heights_at(x, y, grains, position, orientation, period), 0.0)
+
+
+def heights_at(
+    x: Floats, y: Floats, grains: list[ConvexHull], position: Floats, orientation: Floats,
+    period: tuple[float, float] | None = None,
+) -> Floats:  # fmt: skip
+    """Return the height [m] of the topmost grain at places x, y [m] of any one shape, minus infinity where none is.
+
+    period [m]: after which the ground repeats; None in a box.
+    """
+    heights = np.full_like(x, -np.inf)
     for grain, place, turn in zip(grains, position, orientation, strict=True):
         way = folded(np.stack([x - place[0], y - place[1]], axis=-1), period_of(period))
         near = way[..., 0] ** 2 + way[..., 1] ** 2 <= grain.bounding_radius**2

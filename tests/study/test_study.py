@@ -9,12 +9,15 @@ from typing import Any
 
 import pytest
 
+from lithobrake.pipeline.design.dependencies import bed_setting
+from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
 from lithobrake.study.known_bodies import BODIES, KnownBody, known_body
 from lithobrake.study.known_landers import LANDERS, known_lander
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.short_study import all_keys, escape_speed, short_study
 from lithobrake.study.template import template
+from lithobrake.study.touchdown_model import boulders
 
 from ..paper_tables import paper_tables
 
@@ -101,11 +104,16 @@ def test_escape_speed_of_bennu_is_that_of_its_mass_and_radius() -> None:
 @pytest.mark.parametrize("text", [template(), SHORT + all_keys()], ids=["first bounce", "journeys"])
 def test_every_key_has_a_meaning_in_a_template(text: str) -> None:
     for path, names in known_keys().items():
-        # The kinds of size distribution stand in the words of bed.diameter.
-        for name in names if path != "bed.diameter" else ():
+        # The kinds of size distribution stand in the words of bed.diameter, for boulders as for grains.
+        for name in names if path not in ("bed.diameter", "bed.boulders.diameter") else ():
             assert f"{name} =" in text or f"[{name}]" in text, f"{path}.{name}"
 
 
+def constant(diameter: float) -> dict[str, Any]:
+    return {"distribution": "constant", "value": diameter}
+
+
+BOULDERS = {"diameter": constant(0.2), "coverage": 0.1}
 REFUSED = [
     ("lander.mass", -3.0, ["lander.mass is -3", "above 0 [kg]"]),
     ("lander.mass", "3 kg", ["lander.mass", "without quotes"]),
@@ -242,6 +250,20 @@ REFUSED = [
     ("solver", {"command": "python3", "inputs": {"a$b": 1.0}}, ["solver.inputs.a$b is no name", "letters, digits"]),
     ("surface.gravity", -1e-5, ["bed.settle_gravity"]),
     ("lander.diameter", 0.2, ["does not go with this shape"]),
+    ("bed.boulders", {"coverage": 0.1}, ["bed.boulders.diameter is missing"]),
+    ("bed.boulders", {**BOULDERS, "coverage": 0.4}, ["bed.boulders.coverage is 0.4", "above 0 and at most 0.3"]),
+    ("bed.boulders", {**BOULDERS, "cover": [0.2, 0.1]}, ["bed.boulders.cover is [0.2, 0.1] m", "swap them"]),
+    ("bed.boulders", {**BOULDERS, "diameter": constant(0.01)}, ["boulders.diameter reaches from 0.01 m", "at least"]),
+    (
+        "bed.boulders",
+        {**BOULDERS, "diameter": constant(5.0)},
+        ["bed.width is", "for boulders of 5 m, as they lie between", "widen"],
+    ),
+    (
+        "bed.boulders",
+        {**BOULDERS, "diameter": {"distribution": "power_law", "lower": 0.3, "upper": 0.2}},
+        ["bed.boulders.diameter reaches from 0.3 to 0.2 m", "bed.boulders.diameter takes exponent or"],
+    ),
     ("site.mass", table("uniform", lower=0, upper=1), ["above 0 [kg]"]),
     ("site.spin_period", table("normal", mean=8136.0, std=1.0), ["-inf to inf"]),
 ]
@@ -252,6 +274,27 @@ def test_a_wrong_key_is_named_with_its_value_and_range(key: str, value: Any, wor
     said = "\n".join(problems({key: value}))
     for word in ["study.toml: ", *words]:
         assert word in said
+
+
+@pytest.mark.parametrize(("width", "is_wide"), [(0.9, False), (1.0, True)])
+def test_ground_that_repeats_is_as_wide_as_two_boulders_ask(width: float, is_wide: bool) -> None:
+    """2 (0.75 + 0.75) 0.3 m and half a grain of 0.08 m, where a bed has more than one boulder."""
+    several = {"diameter": constant(0.3), "coverage": 0.2, "cover": [-0.1, 0.05]}
+    said = problems({"bed.sides": "periodic", "bed.width": [width, width], "bed.boulders": several})
+    assert any("allowed: at least 0.94 m for boulders of 0.3 m" in one for one in said) != is_wide
+
+
+def test_the_boulders_of_a_study_are_those_of_its_beds() -> None:
+    tables = deepcopy(TABLES)
+    tables["bed"] |= {"boulders": {"diameter": constant(0.2), "coverage": 0.1, "cover": [0.0, 0.05]}}
+    study = check_tables(tables, Path())
+    found = boulders(study)
+    assert found is not None
+    assert (found.coverage, found.cover, found.sizes.upper) == (0.1, (0.0, 0.05), 0.2)
+    assert bed_recipe(study, 0).boulders == found
+    # A study without any keeps its name for what it depends on.
+    assert "boulders" in bed_setting(study)
+    assert "boulders" not in bed_setting(check_tables(TABLES, Path()))
 
 
 SOBOL = {"design.points": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}

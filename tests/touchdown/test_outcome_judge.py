@@ -11,7 +11,7 @@ from lithobrake.touchdown.outcome_judge import OutcomeJudge
 
 ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 LANDER = Lander(shape=Sphere(0.1), mass=1.0, material=ROCK)
-BED = SimpleNamespace(width=(1.0, 1.0), period=None, surface_height=0.5, grain_diameter=0.1)
+BED = SimpleNamespace(width=(1.0, 1.0), period=None, surface_height=0.5, grain_diameter=0.1, boulder_count=0)
 LANDING = SimpleNamespace(
     azimuth=0.0, time_limit=10.0, hop_height=None, contact=SimpleNamespace(steps_per_contact=50.0)
 )
@@ -64,3 +64,14 @@ def test_any_other_lander_over_the_rim_is_missing(changes):
 
 def test_a_low_lander_over_the_bed_is_still_open():
     assert judged(x=0.4).ended is None
+
+
+@pytest.mark.parametrize(("boulder_at", "ended"), [(0.4, None), (0.34, None), (0.1, "clear")])
+def test_over_a_boulder_a_lander_is_clear_above_its_top(boulder_at, ended):
+    """The lander, 0.1 m in radius at x = 0.4 m, is 0.12 m over the clear height of the grains, and under 0.6 m."""
+    boulder = {"boulder_count": 1, "boulder_height": lambda x, y: np.where(np.abs(x - boulder_at) < 0.05, 0.6, -np.inf)}
+    bed = SimpleNamespace(**(vars(BED) | {"surface_height": 0.3} | boulder))
+    judge = OutcomeJudge(bed, LANDER, LANDING, world(x=0.4), 0, 0)
+    judge.look()
+    assert judge.ended == ended
+    assert judge.ground() == (pytest.approx((0.6, 0.6)) if ended is None else pytest.approx((0.3, 0.4)))

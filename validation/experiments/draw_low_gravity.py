@@ -71,21 +71,3 @@ def of_balls(rows: list[Row], to: Path) -> None:
     axes[0].legend(fontsize=8)
     figure.savefig(to, dpi=110)
     plt.close(figure)
-
-
-def of_journeys(rows: list[Row], to: Path) -> None:
-    """How many contacts and how much time landers need until they rest, and how far they come."""
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.6), layout="constrained")
-    for axis, values, measured, text in (
-        (axes[0], column(rows, "rebounds") + 1.0, 4.0, "contacts until rest"),
-        (axes[1], column(rows, "time_s"), 663.0, "time from the first contact to rest [s]"),
-        (axes[2], column(rows, "path_length"), 17.0, "way along the ground [m]"),
-    ):
-        most = float(np.quantile(values, 0.98))
-        bins = np.arange(0.5, most + 1.0) if axis is axes[0] else np.linspace(0.0, max(most, 1.2 * measured), 30)
-        axis.hist(values, bins=bins, color=INK[0], alpha=0.8, density=True, label="ours")
-        axis.axvline(measured, color=INK[1], label="MASCOT")
-        axis.set(xlabel=text, yticks=[])
-    axes[0].legend(fontsize=8)
-    figure.savefig(to, dpi=110)
-    plt.close(figure)

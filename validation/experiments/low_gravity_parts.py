@@ -2,10 +2,9 @@
 
 import math
 import textwrap
-from collections import Counter
 
 import numpy as np
-from draw_low_gravity import of_balls, of_journeys, of_packing, of_plates
+from draw_low_gravity import of_balls, of_packing, of_plates
 from fits import Estimate, column, mean_of, powers
 from sphere_bed import Row, read_rows
 from table_lines import FIGURES, HERE, Lines, line
@@ -126,34 +125,3 @@ def balls_part() -> tuple[Lines, str]:
             f"| {row['duration_in_units']:.2f} | {row['peak_deceleration_in_g']:.1f} |"
         )
     return lines, table
-
-
-def mascot_part() -> tuple[Lines, str]:
-    """Rows and a sentence of the landers like MASCOT that rested."""
-    rows = read_rows(HERE / "mascot.csv")
-    if not rows:
-        return [], ""
-    rested = [row for row in rows if row["status"] == "settled"]
-    lines = [
-        spread("MASCOT: contacts from the first to rest", 4.0, column(rested, "rebounds") + 1.0),
-        spread("MASCOT: time from the first contact to rest [s]", 663.0, column(rested, "time_s")),
-        spread("MASCOT: way along the ground [m]", 17.0, column(rested, "path_length")),
-    ]
-    others = Counter(str(row["status"]) for row in rows)
-    of_journeys(rested, FIGURES / "mascot.png")
-    return lines, (
-        f"Of {len(rows)} landers whose first impact was like MASCOT's, "
-        + ", ".join(f"{count} ended as {status}" for status, count in sorted(others.items()))
-        + "."
-    )
-
-
-def spread(quantity: str, measured: float, ours: np.ndarray) -> tuple[str, bool]:
-    """Return a row of the table for one observation: it agrees where it lies within nine tenths of ours."""
-    low, middle, high = np.quantile(ours, [0.05, 0.5, 0.95])
-    agrees = bool(low <= measured <= high)
-    return (
-        f"| {quantity} | {measured:g}, once | {middle:.3g} (nine in ten: {low:.3g} to {high:.3g}) | {len(ours)} "
-        f"| {middle / measured:.2f} | {'yes' if agrees else 'no'} |",
-        agrees,
-    )

@@ -150,17 +150,9 @@ Wilson's. The modulus is 2e4 times density and the square of the speed, "softer"
 ## MASCOT on Ryugu
 
 [Scholten-2019]: MASCOT, a box of 10 kg, fell 41 m in 350 s, met Ryugu for the first time, and came
-to rest 663 s and four contacts later, some 17 m further on. Ours: a ball of Ryugu's volume, mass
-and spin [Watanabe-2019]; a box of 27.5 by 29 by 19.5 cm and 10 kg on beds of hulls of 16 cm with
-drawn soil, place, attitude and heading (216 landings on 22 beds, at .005 to .17 m/s and 0 to 88
-degrees); 20 000 landers go on from impact to impact by the emulator of these landings. Counted are
-those whose first impact was at .125 to .16 m/s within 25 degrees of the vertical.
-
-![mascot](experiments/mascot.png)
-
-{mascot}
-
-{why_mascot}
+to rest 663 s and four contacts later, some 17 m further on. Ours: landers that meet a boulder of 1
+to 3 m first and are followed to rest by simulated landings. [MASCOT on Ryugu](mascot.md) has beds,
+settings and the landers whose first contact is below the surface or on grains alone.
 
 {from_mascot}
 """
@@ -296,10 +288,3 @@ added when its drops rebounded, and the modulus was raised tenfold when stiffer 
 ball sooner; at the lower one 22 of 30 drops on pebbles rebounded. The bar of .5 mm is ours, and
 no other was tried. A pull as strong as that of sand of .1 mm pressed grains of this modulus into
 each other and was left out."""
-WHY["mascot"] = """Four contacts are within what ours give, 663 s and 17 m are not: ours lose more at each contact.
-MASCOT's first contact was on a large boulder, as its source says; ours are grains of half the
-lander's length, and a bed of such grains takes most of a blow. What is worse: of three landers in
-four nobody knows the end, as they meet the ground at an angle at which landings left over the rim
-of our beds (43 of 216) or still touched at the time limit (20). Those that are counted are the ones
-that stop early, so the intervals are too low. Wider beds with boulders among the grains, and a
-longer limit, would be the next step."""

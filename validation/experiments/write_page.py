@@ -13,7 +13,8 @@ import numpy as np
 from beads_part import beads_part
 from draw import of_grains, of_gravities
 from fits import Estimate, column, gravity_exponents, leaving, mean_of, speeds
-from low_gravity_parts import balls_part, mascot_part, packing_part, plate_part
+from low_gravity_parts import balls_part, packing_part, plate_part
+from mascot_part import mascot_part
 from page_text import TEXT, WHY
 from rebounds_part import rebounds_part
 from settling_in_other_gravities import DIAMETER
@@ -29,7 +30,7 @@ HEAD = "| quantity | measured | ours, 95 % | rows | ours over measured | agrees 
 TABLES = {
     "beads": "ball_into_beads", "gravity": "settling_in_other_gravities", "grains": "grain_on_its_own_kind",
     "plate": "plate_into_loose_grains", "packing": "packing_and_cohesion", "balls": "ball_under_gravities",
-    "rebounds": "who_rebounds", "mascot": "mascot",
+    "rebounds": "who_rebounds", "mascot": "../mascot/mascot",
 }  # fmt: skip
 
 
@@ -133,8 +134,7 @@ def main() -> None:
     packings, packing = packing_part()
     balls, ball = balls_part()
     rebounds, rebound = rebounds_part()
-    journeys, mascot = mascot_part()
-    lines = beads + gravities + grains + plates + packings + balls + rebounds + journeys
+    lines = beads + gravities + grains + plates + packings + balls + rebounds + mascot_part()
     yes = sum(agrees for _, agrees in lines)
     first = (
         f"{yes} of {len(lines)} quantities agree. Exponents of depth: {said(found['density'])} of the density (1/2), "
@@ -144,7 +144,7 @@ def main() -> None:
         **{f"why_{key}": text for key, text in WHY.items()},
         first=wrapped(first), table=HEAD + "\n".join(text for text, _ in lines),
         drops=drops, settled=settled, impacts=impacts, similar=wrapped(similar()), plate=plate, packing=packing,
-        ball=ball, rebound=rebound, mascot=wrapped(mascot),
+        ball=ball, rebound=rebound,
         **{f"from_{key}": wrapped(came_from(name)) for key, name in TABLES.items()},
     )  # fmt: skip
     PAGE.write_text(page)

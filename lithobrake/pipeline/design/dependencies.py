@@ -26,11 +26,16 @@ def bed_dependencies(study: Study) -> dict[str, Any]:
     values = medians(study)
     return {
         "seed": pour_seed(study, 0),
-        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "bed": bed_setting(study),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
         "contact": study.contact.model_dump(exclude={"stepping", "resolved_speed", "held_speed"}),
         "engine": engine_hash(),
     }
+
+
+def bed_setting(study: Study) -> dict[str, Any]:
+    """What is said of the beds but for how many there are; nothing of boulders where there are none."""
+    return study.bed.model_dump(exclude={"bed_count"} | ({"boulders"} if study.bed.boulders is None else set()))
 
 
 def pour_seed(study: Study, index: int) -> int:
@@ -72,7 +77,7 @@ def solver_dependencies(study: Study) -> dict[str, Any]:
 def solver_setting(study: Study) -> dict[str, Any]:
     """What a program is told beside the values of a run, as it stands in the study file."""
     return {
-        "bed": study.bed.model_dump(exclude={"bed_count"}),
+        "bed": bed_setting(study),
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file", "unit"}),
         "contact": study.contact.model_dump(),
         "time_limit": study.landing.time_limit,

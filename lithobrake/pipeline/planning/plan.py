@@ -7,7 +7,7 @@ from typing import Any
 from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedGrains, PlannedTile
+from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedBoulders, PlannedGrains, PlannedTile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.runs_a_bed import RunsABed
 
@@ -33,6 +33,7 @@ class Plan:
     warnings        in sentences, the most important first
     runs_a_bed      of a drawn study, beside the number that is best for the time; None for others
     grains          of the beds; None where all have one size
+    boulders        of the beds; None where there are none
     tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
     delivery        how landers that are delivered as states reach the ground, in a sentence; None for others
@@ -55,6 +56,7 @@ class Plan:
     site_slope_deg: float
     runs_a_bed: RunsABed | None = None
     grains: PlannedGrains | None = None
+    boulders: PlannedBoulders | None = None
     tile: PlannedTile | None = None
     delivery: str | None = None
     inference: ExpectedInference | None = None

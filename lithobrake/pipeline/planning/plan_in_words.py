@@ -30,6 +30,7 @@ def plan_lines(plan: Plan) -> list[str]:
     lines += [plan.delivery] if plan.delivery else []
     lines += [plan.tile.line()] if plan.tile else []
     lines += [plan.grains.line()] if plan.grains else []
+    lines += [plan.boulders.line()] if plan.boulders else []
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
     lines += plan.half_width.lines() if plan.half_width else []

@@ -13,7 +13,7 @@ from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
-from lithobrake.study.touchdown_model import grain_sizes, in_words_of_the_study
+from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_the_study
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,33 @@ class PlannedGrains:
             f"{self.count_per_m2:.3g} per m2 of bed, of which {LARGE_FRACTION * self.count_per_m2:.3g} are larger than "
             f"{self.large:.3g} m."
         )
+
+
+@dataclass(frozen=True)
+class PlannedBoulders:
+    """How many a bed has in the mean, their diameters [m], and the part of the ground under them."""
+
+    count: float
+    smallest: float
+    largest: float
+    coverage: float
+
+    def line(self) -> str:
+        """All of it in a line of text."""
+        sizes = f"{self.smallest:.3g} to {self.largest:.3g}" if self.smallest < self.largest else f"{self.largest:.3g}"
+        return (
+            f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {100.0 * self.coverage:.3g} % "
+            "of the ground."
+        )
+
+
+def planned_boulders(study: Study) -> PlannedBoulders | None:
+    """The boulders of a study's beds; None where there are none."""
+    rocks = boulders(study) if study.has_soil else None
+    if rocks is None:
+        return None
+    count = rocks.mean_count(math.prod(study.bed.width))
+    return PlannedBoulders(count, rocks.sizes.lower, rocks.sizes.upper, rocks.coverage)
 
 
 def planned_grains(study: Study) -> PlannedGrains | None:

@@ -19,7 +19,13 @@ from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
 from lithobrake.pipeline.planning.expected_width import expected_width
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, planned_beds, planned_grains, planned_tile
+from lithobrake.pipeline.planning.planned_beds import (
+    PlannedBeds,
+    planned_beds,
+    planned_boulders,
+    planned_grains,
+    planned_tile,
+)
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
@@ -101,6 +107,7 @@ def plan_of(
         site_slope_deg=site.slope_deg,
         runs_a_bed=runs_a_bed(study, soil, ended),
         grains=planned_grains(study),
+        boulders=planned_boulders(study),
         tile=planned_tile(study),
         delivery=_delivery(design),
     )

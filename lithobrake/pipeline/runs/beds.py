@@ -8,6 +8,7 @@ from lithobrake.pipeline.runs.pouring import pour_at_once
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import (
     acceleration,
+    boulders,
     contact,
     grain,
     grain_sizes,
@@ -54,4 +55,5 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
         seed=pour_seed(study, index),
         contact=contact(study),
         sides=study.bed.sides,
+        boulders=boulders(study),
     )

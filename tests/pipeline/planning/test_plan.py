@@ -33,7 +33,7 @@ from lithobrake.pipeline.planning.expected_time import (
     run_time,
 )
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
-from lithobrake.pipeline.planning.planned_beds import planned_grains, planned_tile
+from lithobrake.pipeline.planning.planned_beds import planned_boulders, planned_grains, planned_tile
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
@@ -115,6 +115,15 @@ def test_the_plan_says_how_many_and_how_large_the_grains_of_a_size_law_are() -> 
         "Grains: 0.05 to 0.1 m in diameter, mean 0.0667 m; 250 per m2 of bed, of which 25 are larger than 0.0877 m."
     )
     assert planned_grains(soft()) is None
+
+
+def test_the_plan_says_how_many_boulders_a_bed_has() -> None:
+    """Discs of 0.2 m on a tenth of 1 m2 are 3.18."""
+    rocks = {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1}
+    found = planned_boulders(soft(bed={"boulders": rocks, "width": [1.0, 1.0]}))
+    assert found is not None
+    assert found.line() == "Boulders: 3.18 in a bed in the mean, 0.2 m in diameter, on 10 % of the ground."
+    assert planned_boulders(soft()) is None
 
 
 def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:

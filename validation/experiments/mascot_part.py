@@ -1,0 +1,32 @@
+"""Rows of MASCOT in the table of the experiments: its first contact on a boulder at the surface (validation/mascot)."""
+
+import sys
+
+from table_lines import HERE, Lines
+
+# Behind this folder, which has files of the same names.
+sys.path.append(str(HERE.parent / "mascot"))
+sys.path.append(str(HERE.parents[1] / "benchmarks"))
+from answers import MEASURED, answer, column, rows_of
+
+QUANTITIES = {
+    "contacts": "MASCOT: contacts from the first to rest",
+    "time_s": "MASCOT: time from the first contact to rest [s]",
+    "path_m": "MASCOT: way along the ground [m]",
+}
+
+
+def mascot_part() -> Lines:
+    """A row for each quantity: it agrees where it lies within eight tenths of the landers."""
+    rows = rows_of("at the surface")
+    lines = []
+    for name, words in QUANTITIES.items():
+        one, measured = answer(column(rows, name), MEASURED[name]), MEASURED[name]
+        lines.append(
+            (
+                f"| {words} | {measured:g}, once | {one.middle:.3g} (eight in ten: {one.low:.3g} to {one.high:.3g}) "
+                f"| {len(rows)} | {one.middle / measured:.2f} | {'yes' if one.agrees else 'no'} |",
+                one.agrees,
+            )
+        )
+    return lines
