@@ -60,10 +60,14 @@ def add_walls(world: World, material: Material, bodies: range) -> None:
             world.add_plane(-half * normal, normal, material, bodies=bodies)
 
 
+def in_free_fall(time: float) -> tuple[float, float]:
+    """Return height [m] and velocity upwards [m/s] of the ball at a time [s] before it touches anything."""
+    return START - SPEED * time - 0.5 * GRAVITY * time**2, -SPEED - GRAVITY * time
+
+
 def add_ball(world: World, place: tuple[float, float]) -> int:
     """Add the steel ball above a place [m], where it is in its free fall at the world's time, and return its number."""
-    height = START - SPEED * world.time - 0.5 * GRAVITY * world.time**2
-    velocity = (0.0, 0.0, -SPEED - GRAVITY * world.time)
-    ball = world.add_body(Sphere(BALL_RADIUS), STEEL_OF_GRAINS, (*place, height), velocity)
+    height, velocity = in_free_fall(world.time)
+    ball = world.add_body(Sphere(BALL_RADIUS), STEEL_OF_GRAINS, (*place, height), (0.0, 0.0, velocity))
     add_walls(world, STEEL_OF_BALL, range(ball, ball + 1))
     return ball
