@@ -5,10 +5,17 @@ MercuryDPM's ends are those that its repository keeps, Drivers/Papers/OSBenchmar
 """
 
 import math
+import sys
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 from lithobrake.dem import Material, Sphere, World
+from lithobrake.dem.law.material_pair import pair_law
+from lithobrake.dem.law.restitution import damping_ratio_of
+
+VALIDATION = Path(__file__).parents[2] / "validation" / "nine_codes"
 
 STEP = 5e-7
 # Of M1 on steel restitution is 0.4 and friction 0.2, the smaller of both.
@@ -65,3 +72,43 @@ def test_mindlin_ball_slides_as_derived() -> None:
     inertia = 0.4 * RADIUS**2
     assert RADIUS * speed + inertia * spin == pytest.approx(RADIUS * 5.0 * time, rel=1e-4)
     assert math.isclose(world.velocity[0, 1], 0.0, abs_tol=1e-15)
+
+
+@pytest.fixture(scope="module")
+def impact_bed():
+    sys.path.insert(0, str(VALIDATION))
+    try:
+        return import_module("impact_bed")
+    finally:
+        del sys.path[0]
+
+
+def test_pairs_of_the_impact_have_the_published_values(impact_bed) -> None:
+    """Restitution, friction and effective moduli of the driver: its MercuryOS.h, and its restart files for moduli."""
+    ball, of_grains, of_ball, m1 = (
+        impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_BALL, impact_bed.M1
+    )  # fmt: skip
+    for pair, restitution, friction, young, shear in (
+        ((m1, m1), 0.5, 0.3, 520833333.333333, 115740740.740741),
+        ((m1, ball), 0.4, 0.2, 1036729857.81991, 230384412.848868),
+        ((m1, of_grains), 0.4, 0.2, 1036729857.81991, 230384412.848868),
+        ((ball, of_ball), 0.6, 0.5, 109375000000.0, 24305555555.5556),
+    ):
+        law = pair_law(*pair, pair_rule="mean")
+        assert law.damping_ratio == pytest.approx(damping_ratio_of(restitution), rel=1e-9)
+        assert law.friction == pytest.approx(friction, rel=1e-12)
+        assert law.young_modulus == pytest.approx(young, rel=1e-12)
+        assert law.shear_modulus == pytest.approx(shear, rel=1e-12)
+
+
+def test_ball_and_grains_meet_walls_of_their_own(impact_bed) -> None:
+    """A grain on the floor touches the floor of grains alone; the ball falls as it does freely."""
+    world = impact_bed.world_of(impact_bed.np.array([[0.03, 0.0, impact_bed.FLOOR + 0.000999]]), 1e-7)
+    world.time = 0.02
+    ball = impact_bed.add_ball(world, (0.0, 0.0))
+    assert world.position[ball, 2] == pytest.approx(0.06 - 5.0 * 0.02 - 4.9 * 0.02**2, rel=1e-12)
+    steel_of_grains, steel_of_ball = range(5), range(5, 10)
+    assert {world.planes[k].meets for k in steel_of_grains} == {frozenset({0})}
+    assert {world.planes[k].meets for k in steel_of_ball} == {frozenset({ball})}
+    world.run(steps=1)
+    assert len(world.contacts()) == 1
