@@ -201,6 +201,31 @@ def export(
         tell(f"Wrote {path}" for path in written)
 
 
+@app.command(epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv")
+def push(
+    folder: StudyDirectory,
+    speed: Annotated[float, typer.Option(help="Change of velocity [m/s].", show_default=False)],
+    elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground [deg].")] = 45.0,
+    heading: Annotated[float, typer.Option(help="Its direction, from north toward east [deg].")] = 0.0,
+    speed_std: Annotated[float, typer.Option(help="Standard deviation of the speed [m/s].")] = 0.0,
+    direction_std: Annotated[float, typer.Option(help="Of the direction, along either axis across it [deg].")] = 0.0,
+    spin: Annotated[float, typer.Option(help="Angular velocity that the push leaves [rad/s].")] = 0.0,
+    seed: Annotated[int, typer.Option(help="Of the errors.")] = 1,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="A table for delivery.states.")] = Path("push.csv"),
+    force: Force = False,
+) -> None:
+    """Write the states of the landers at rest just after a push, as the delivery of the next study."""
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        results = open_study(folder)
+        refuse_written(out, force)
+        from lithobrake.export import Push, write_push
+
+        count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
+    tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
+
+
 @app.command(epilog="Example: lithobrake infer results --bounce bounces.csv")
 def infer(
     folder: StudyDirectory,

@@ -4,12 +4,14 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.vocabulary.quantities import JOURNEYS_FILE, TOUCHDOWN_COST, TOUCHDOWNS_FILE
+from lithobrake.vocabulary.quantities import JOURNEY, JOURNEYS_FILE, TOUCHDOWN_COST, TOUCHDOWNS_FILE
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record
 
 JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = JOURNEYS_FILE, TOUCHDOWNS_FILE, "designs/touchdowns.csv"
+# Columns that every table of journeys has; one of an earlier version lacks attitudes.
+NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
 # Columns of the runs that the table of touchdowns has already.
 _TWICE = ("input:journey", "input:touchdown", "key", "outcome")
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import NUMBER, DamagedFileError, read_json, read_rows, reading
 from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
-from lithobrake.results.journey_tables import JOURNEYS, TOUCHDOWN_RUNS, TOUCHDOWNS, joined_touchdowns
+from lithobrake.results.journey_tables import JOURNEYS, NEEDED, TOUCHDOWN_RUNS, TOUCHDOWNS, joined_touchdowns
 from lithobrake.vocabulary.quantities import (
     ARC,
     BEDS,
@@ -208,7 +208,7 @@ class StudyResults:
     @cached_property
     def journeys(self) -> "Table":
         """Each lander from its delivery to rest: how, when and where its journey ended (docs/journeys.md)."""
-        return self._table("journey", self._journey_rows(JOURNEYS, tuple(JOURNEY)), tuple(JOURNEY), JOURNEY)
+        return self._table("journey", self._journey_rows(JOURNEYS, NEEDED), tuple(JOURNEY), JOURNEY)
 
     @cached_property
     def touchdowns(self) -> "Table":
