@@ -7,7 +7,8 @@
 
 A case is a document beside its table that says by which command it was made. The command runs in a copy of the folders
 validation, benchmarks, scenarios and docs, where the rows that are asked for were taken out of the table; scripts make
-what their table lacks. Nothing of the repository is changed. The copy and the beds that a script pours stay in --work.
+what their table lacks. Nothing of the repository is changed. The copy and the beds that a script pours stay in --work,
+and beds that are there are used. Of a case without a table nothing is compared: its document is made anew.
 
 --note writes what a whole case cost, and how it compared, to recreated.json beside this script; times that a document
 does not keep are taken from there. The same bits come out on the machine that made a row; elsewhere single bounces
@@ -16,6 +17,7 @@ differ, and their statistics agree.
 
 import csv
 import json
+import math
 import os
 import resource
 import shlex
@@ -31,6 +33,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import ROOT, command_line, origin, write_document
 
+MARK = "made_by_recreate"  # a file in a copy
 COPIED = ("validation", "benchmarks", "scenarios", "docs")
 PLACE = "FOLDER"  # stands in a command for a folder of beds and studies
 COSTS = ("cpu_s_of_rows", "cpu_s_of_landings", "cpu_s")
@@ -142,7 +145,11 @@ def taken_out(table: Path, rows: list[int] | None) -> tuple[list[Line], list[Lin
 def copied(folder: Path) -> Path:
     """Copy what scripts read and write into a folder; returns the root of the copy."""
     tree = folder / "tree"
+    if tree.exists() and not (tree / MARK).exists():
+        raise ValueError(f"{tree} is none of this script's; choose another folder with --work.")
     shutil.rmtree(tree, ignore_errors=True)
+    tree.mkdir(parents=True)
+    (tree / MARK).touch()
     for name in COPIED:
         shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
     return tree
@@ -170,7 +177,11 @@ def gap(old: str, new: str) -> float:
     try:
         one, other = float(old), float(new)
     except ValueError:
-        return float("inf")
+        return math.inf
+    if one == other or (math.isnan(one) and math.isnan(other)):
+        return 0.0
+    if not (math.isfinite(one) and math.isfinite(other)):
+        return math.inf
     return abs(one - other) / max(abs(one), abs(other))
 
 
@@ -197,11 +208,11 @@ def told(name: str, apart: list[dict[str, float]], spent: tuple[float, float]) -
         for key, value in one.items():
             worst[key] = max(worst.get(key, 0.0), value)
     for key, value in sorted(worst.items(), key=lambda item: -item[1]):
-        print(f"  {key}: differs by up to {100.0 * value:.3g} %" if value < float("inf") else f"  {key}: another word")
+        print(f"  {key}: differs by up to {100.0 * value:.3g} %" if value < math.inf else f"  {key}: another word")
     return max(worst.values(), default=0.0)
 
 
-def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False) -> float:
+def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False, within: float = math.inf) -> float:
     """Make rows of a case anew, and print how they compare; returns the largest relative difference.
 
     note: keep what it cost and how it compared, if all rows were made anew.
@@ -212,6 +223,8 @@ def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False)
         raise ValueError(f"{case.name}: {case.why_not}")
     if case.table is None and rows is not None:
         raise ValueError(f"{case.name} has no table of rows; leave --rows out to make all of it anew.")
+    if case.table is None and math.isfinite(within):
+        raise ValueError(f"{case.name} has no table to compare; leave --within out.")
     count = 0 if case.table is None else len(lines(ROOT / case.table))
     if rows is not None and not all(0 <= row < count for row in rows):
         raise ValueError(f"{case.name} has rows 0 to {count - 1}; --rows has {rows}.")
@@ -255,7 +268,7 @@ def listed(known: dict[str, Case]) -> None:
 
 def main() -> int:
     """List cases, or recreate rows of some."""
-    parser = command_line(__doc__, within=float("inf"))
+    parser = command_line(__doc__, within=math.inf)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--rows", type=int, nargs="+", help="of one case, counted from 0")
     parser.add_argument("--note", action="store_true", help="keep what whole cases cost, and how they compared")
@@ -271,7 +284,9 @@ def main() -> int:
         parser.error("--rows counts the rows of one case; name one.")
     work = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
     try:
-        largest = max(recreate(known[name], given.rows, work.resolve(), given.note) for name in given.names)
+        largest = max(
+            recreate(known[name], given.rows, work.resolve(), given.note, given.within) for name in given.names
+        )
     except ValueError as error:
         parser.error(str(error))
     if largest > given.within:

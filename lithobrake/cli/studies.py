@@ -19,15 +19,15 @@ from lithobrake.cli.arguments import (
 )
 from lithobrake.cli.terminal import BAD_INPUT, command_line, leave, one_sentence, study_headline, tell, tell_json
 
+BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
+
 
 @app.command(epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
-    body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = "Dimorphos",
-    lander: Annotated[str, typer.Option(help="A lander by name: 1U to 12U, Juventas, Milani, MASCOT.")] = "2U",
-    at: Annotated[
-        str, typer.Option(metavar="LAT,LON", help="Aim point, latitude and longitude in degrees.")
-    ] = "10,-60",
+    body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = BODY,
+    lander: Annotated[str, typer.Option(help="A lander by name: 1U to 12U, Juventas, Milani, MASCOT.")] = LANDER,
+    at: Annotated[str, typer.Option(metavar="LAT,LON", help="Aim point, latitude and longitude in degrees.")] = AT,
     shape: Annotated[
         str | None, typer.Option(metavar="FILE", help="Mesh of the body, its path as seen from the study.")
     ] = None,
@@ -45,6 +45,9 @@ def new(
             raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
         from lithobrake.study.template import template
 
+        given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
+        if first_bounce and (full or any(given.values())):
+            raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
         text = template() if first_bounce else _journeys(body, lander, at, shape, full)
         _write_new(path, text)
     tell([f"Wrote {path}. Edit it, then: {command_line('run', path)}"])

@@ -9,7 +9,7 @@ from lithobrake.smallbody.ray_facet import intersect_facet
 from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.given_numbers import numbers
 
-# Directions in a day: the fraction of a day is known to half of one over this.
+# Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.
 DIRECTIONS = 144
 # Part of the radius by which an eye stands above its own facet, so that it does not hide itself.
 EYE = 1e-6

@@ -1,5 +1,6 @@
 """The study file that `lithobrake new` writes: a short study of journeys that runs."""
 
+import json
 import math
 
 from lithobrake.study.known_bodies import KnownBody
@@ -13,8 +14,11 @@ GRAINS = 2.5  # over the square of width over diameter: some three deep
 # Of the escape speed of a ball of the body's mass and size: what a lander comes in with. Nothing lands faster than
 # FASTEST [m/s].
 SPEEDS, FASTEST = (0.5, 0.9), 0.5
+SLOW_WORDS = f"{SPEEDS[0]:g} to {SPEEDS[1]:g} of the escape speed"
+FAST_WORDS = "far below the escape speed: a fall from afar is faster, and needs stiffer grains"
 # Over density and square of the speed: what a contact must have to be stiff, and the least of any use [Pa].
 STIFFNESS, SOFTEST = 16_000.0, 2e5
+LOST_PARTNER = "A mesh has no partner: the other body of the binary neither attracts nor is hit."
 DENSITY = 2500.0  # kg/m3
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 
@@ -34,7 +38,7 @@ pour_gravity = 0.5    # m/s2; they then settle under the local gravity
 
 [grain]
 density = {density}    # kg/m3
-young_modulus = {{ distribution = "log_uniform", lower = {softest:.0e}, upper = {stiffest:.0e} }}    # Pa
+young_modulus = {{ distribution = "log_uniform", lower = {softest}, upper = {stiffest} }}    # Pa
 poisson_ratio = 0.25
 restitution = {{ distribution = "uniform", lower = 0.3, upper = 0.9 }}
 friction = {{ distribution = "uniform", lower = 0.4, upper = 0.9 }}
@@ -52,7 +56,7 @@ longitude_deg = {longitude}
 north_error = {{ distribution = "normal", mean = 0.0, std = 15.0 }}    # m
 east_error = {{ distribution = "normal", mean = 0.0, std = 15.0 }}    # m
 heading_deg = {{ distribution = "uniform", lower = 0.0, upper = 360.0 }}    # from north toward east
-speed = {{ distribution = "uniform", lower = {slow}, upper = {fast} }}    # m/s
+speed = {{ distribution = "uniform", lower = {slow}, upper = {fast} }}    # m/s; {speed_words}
 incidence_deg = {{ distribution = "uniform", lower = 0.0, upper = 40.0 }}    # 0 is straight down
 spin_x = {{ distribution = "normal", mean = 0.0, std = 0.02 }}    # rad/s
 
@@ -81,9 +85,10 @@ def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float]
     softest = max(SOFTEST, STIFFNESS * DENSITY * speeds[1] ** 2)
     text = _STUDY.format(
         body=body, lander=lander, grains=round(GRAINS * (width / diameter) ** 2), width=width, diameter=diameter,
-        density=DENSITY, softest=softest, stiffest=10.0 * softest,
+        density=DENSITY, softest=rounded_up(softest), stiffest=rounded_up(10.0 * softest),
         edges=list(lander.edges), latitude=place[0], longitude=place[1], slow=float(f"{speeds[0]:.2g}"),
         fast=float(f"{speeds[1]:.2g}"),
+        speed_words=SLOW_WORDS if speeds[1] < FASTEST else FAST_WORDS,
     )  # fmt: skip
     return text + _site(body, shape)
 
@@ -107,6 +112,12 @@ def all_keys() -> str:
     return "\n".join(["\n" + _ALL_KEYS + DISTRIBUTION_WORDS, *map(commented, sections())])
 
 
+def rounded_up(value: float) -> str:
+    """A number to one digit that is not smaller."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return f"{math.ceil(value / power * (1.0 - 1e-12)) * power:.0e}"
+
+
 def escape_speed(body: KnownBody) -> float:
     """Escape speed from the ground of a ball of the body's mass and size [m/s]."""
     return math.sqrt(2.0 * GRAVITATIONAL_CONSTANT * body.mass / body.mean_radius)
@@ -118,13 +129,16 @@ def _site(body: KnownBody, shape: str | None) -> str:
         raise ValueError(
             f"the package has no shape of {body.name}; give a closed mesh (OBJ, STL, PDS plates, ICQ) with --shape FILE"
         )
+    if shape is not None and not shape.strip():
+        raise ValueError("shape is empty; give the path of a closed mesh, or leave --shape out")
     if shape is None:
         return f'[site]\nbody = "{body.name.lower()}"    # or a mesh with mass and spin_period\n'
-    head = f"# {body.missing}\n" if body.missing else ""
+    missing = LOST_PARTNER if body.is_built_in else body.missing
+    head, quoted = f"# {missing}\n" if missing else "", json.dumps(shape, ensure_ascii=False)
     pole = ""
     if body.pole is not None:
         pole = f"# Its pole: right ascension {body.pole[0]} deg, declination {body.pole[1]} deg (ICRF).\n"
     return (
-        f'{head}# {body.name}: {body.source}.\n{pole}[site]\nbody = "{shape}"    # unit = "km" if it is not in m\n'
+        f'{head}# {body.name}: {body.source}.\n{pole}[site]\nbody = {quoted}    # unit = "km" if it is not in m\n'
         f'name = "{body.name}"\nmass = {body.mass:g}    # kg\nspin_period = {body.spin_period:.8g}    # s\n'
     )

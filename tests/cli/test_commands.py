@@ -109,6 +109,13 @@ def test_new_names_body_lander_and_place(tmp_path: Path, monkeypatch: pytest.Mon
     assert "the package has no shape of Bennu; give a closed mesh" in refused(["new", "x", "--body", "bennu"])
     assert "known are Didymos, Dimorphos, Bennu" in refused(["new", "x", "--body", "pluto"])
     assert "known are 1U, 2U" in refused(["new", "x", "--lander", "4u"])
+    assert "shape is empty" in refused(["new", "x", "--shape", ""])
+    assert "--first-bounce takes none of" in refused(["new", "x", "--first-bounce", "--lander", "6u"])
+    odd = 'C:\\new\\"table".obj'
+    assert RUNNER.invoke(app, ["new", "odd", "--body", "dimorphos", "--shape", odd]).exit_code == 0
+    text = (tmp_path / "odd.toml").read_text()
+    assert tomllib.loads(text)["site"]["body"] == odd
+    assert "A mesh has no partner" in text
     for at in ("91,0", "10", "a,b", "nan,0"):
         assert "it takes a latitude of -90 to 90" in refused(["new", "x", "--at", at])
     assert not (tmp_path / "x.toml").exists()

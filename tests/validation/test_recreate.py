@@ -49,6 +49,21 @@ def test_rows_that_are_asked_for_are_made_anew_and_compared(root: Path, capsys: 
     assert "2,4.4" in (root / "validation" / "squares.csv").read_text(), "the repository keeps its table"
 
 
+def test_a_number_that_is_none_any_more_counts_as_another() -> None:
+    gap = RUNNER["gap"]
+    assert gap("0", "0.0") == gap("nan", "NaN") == 0.0
+    assert gap("1.0", "nan") == gap("inf", "1") == gap("clear", "captured") == float("inf")
+    assert gap("2", "1") == 0.5
+
+
+def test_a_folder_of_a_users_own_is_left_alone(root: Path) -> None:
+    (root / "work" / "tree").mkdir(parents=True)
+    (root / "work" / "tree" / "mine").touch()
+    with pytest.raises(ValueError, match="is none of this script's"):
+        RUNNER["recreate"](RUNNER["cases"](root)["squares"], None, root / "work")
+    assert (root / "work" / "tree" / "mine").exists()
+
+
 def test_a_whole_case_is_noted_with_its_cost(root: Path) -> None:
     RUNNER["recreate"](RUNNER["cases"](root)["squares"], None, root / "work", note=True)
     kept = json.loads((root / "validation" / "recreated.json").read_text())["squares"]

@@ -59,6 +59,9 @@ def test_the_sky_without_journeys_is_refused() -> None:
     tables["sky"] = {"sun_latitude_deg": 0.0}
     with pytest.raises(StudyError, match="leave one out or add the other"):
         check_tables(tables, Path())
+    tables["sky"] = {"mask_deg": 10.0}
+    with pytest.raises(StudyError, match="leave it out, or ask for Earth"):
+        check_tables(tables, Path())
     tables["sky"] = {"sun_latitude_deg": 91.0}
     with pytest.raises(StudyError, match="at least -90 and at most 90"):
         check_tables(tables, Path())
