@@ -143,7 +143,7 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
     """Total effects of soil and impact point by ratio: rows of grains, columns of outputs, steep impacts."""
     kinds = {"hull": "hulls", "sphere": "spheres"}
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.0), layout="constrained", sharey=True, sharex=True)
+        figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.3), layout="constrained", sharey=True, sharex=True)
         for row, (grain, word) in zip(axes, kinds.items(), strict=True):
             for axis, (name, title) in zip(row, OUTPUTS.items(), strict=True):
                 for part, (label, colour, marker, shift) in PARTS.items():
@@ -161,7 +161,7 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
                 if grain == "hull":
                     axis.set_title(title)
             row[0].set_ylabel(f"{word}\ntotal effect / variance")
-        axes[0, 0].legend(loc="upper right")
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
         figure.supxlabel("longest edge of the lander over diameter of the grains", fontsize=9)
         figure.savefig(PAGES / "grain_size.png", dpi=150)
         plt.close(figure)
@@ -215,8 +215,13 @@ def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
         shown = f"from a ratio of {above[0]:g} on" if above else f"not up to a ratio of {finest:g}"
         if not above and last.upper >= 1.0:
             shown = f"not shown up to a ratio of {finest:g}"
-        said.append(f"{shown} on {grain}s (total effect of the soil over that of the impact point there {last})")
-    return f"For the rebound speed the soil matters more than the impact point {', and '.join(said)}."
+        listed = ", ".join(f"{one} at {ratio:g}" for ratio, one in of)
+        said.append(f"{'On' if not said else 'on'} {grain}s {shown} ({listed})")
+    attitude = next(p["speed_out"].attitude for g, p in reversed(of_steep(found).items()) if g.startswith("hull"))
+    return (
+        f"Does the soil move the rebound speed more than the impact point? {'; '.join(said)} (total effect of the soil "
+        f"over that of the impact point). On the finest hulls the attitude has a total effect of {attitude}."
+    )
 
 
 HEAD = """# Soil against impact point, by grain size
@@ -282,7 +287,7 @@ def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
     found = {key: {name: parts(own, name) for name in OUTPUTS} for key, own in of.items()}
     draw(found)
     names = {name for name, _ in found}
-    absent = [f"{g.grain}s at {g.ratio:g}" for name, g in GROUNDS.items() if name not in names]
+    absent = [f'"{name}"' for name in GROUNDS if name not in names]
     steep, flat = WAYS["steep"], WAYS["flat"]
     texts = {
         "edges": " x ".join(f"{edge:g}" for edge in EDGES), "mass": MASS, "edge": max(EDGES), "level": 100 * LEVEL,
