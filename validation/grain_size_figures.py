@@ -245,7 +245,8 @@ draws are used on all grounds. The total effect of a factor is half the mean squ
 landings that differ in it alone, over the variance, which comes from landings that differ in all
 three ([Jansen-1999]). Total effects include interactions: they may add up to more than 1. "Soil
 alone" is the main effect of the soil, without interactions. Intervals ({level:.0f} %) come from
-{resamples} resamples of the blocks. "Twins" is the part that 0.1 mm make.
+{resamples} resamples of the blocks. A lander that is captured, or not clear at its time limit, has
+no rebound: its pairs are left out. "Twins" is the part that 0.1 mm make.
 
 Ground repeats, and is as wide as the rule of the smallest bed asks, and two grains more. Hulls are
 those of the package; spheres have a rolling resistance of {rolling:g} in place of corners. They
@@ -270,13 +271,14 @@ LIMITS = """
 
 - The impact point includes its bed: two impact points of a block lie on two beds where a ground has
   more than one. Two to four beds a ratio serve all blocks, so intervals hold over soils, impact
-  points and attitudes on these beds, and not fully over beds. Of the kind of ground with one bed the
-  impact point is without the difference of beds.
+  points and attitudes on these beds, and not fully over beds.
 - All grains of a bed are of one size: boulders among fine grains are impact points of their own.
 - Attitudes are drawn over all rotations. A lander that holds its attitude removes that part.
 - Return fractions are of {flights} flights a landing over {hours:g} h, which is what makes "twins"
   differ there.
 - Few blocks give intervals that are too narrow.
+- Where landers are captured, what is left is of those that leave.
+- A ratio of 20 (12 000 grains and more) costs too much.
 - {missing}
 """
 
