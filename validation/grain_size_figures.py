@@ -153,9 +153,9 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
                     ends = np.array([[max(e.value - e.lower, 0.0), max(e.upper - e.value, 0.0)] for _, e in points]).T
                     axis.errorbar(x, y, ends, color=colour, marker=marker, ms=4.5, capsize=3, lw=1.0, label=label)
                 axis.set_xscale("log")
-                axis.set_xticks([2, 5, 10, 20], ["2", "5", "10", "20"])
+                axis.set_xticks([2, 5, 10], ["2", "5", "10"])
                 axis.minorticks_off()
-                axis.set_xlim(1.6, 25)
+                axis.set_xlim(1.6, 13)
                 axis.set_ylim(0.0, 1.05)
                 axis.grid(axis="y", color=QUIET, lw=0.2)
                 if grain == "hull":
