@@ -244,6 +244,8 @@ such errors reached?
 
 ![Sweeps and errors](expansion_accuracy.png)
 
+Above, each marker is a bed (circles 0, squares 1, diamonds 2); below, errors on fresh points.
+
 ## Method
 
 Lander, medians and full ranges are those of `scenarios/one_place.toml`, its impact at 15 degrees
