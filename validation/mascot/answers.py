@@ -60,6 +60,11 @@ def farther(rows: list[Row]) -> float:
     return float(np.mean(squares[:-1] > squares[-1]))
 
 
+def said(value: float) -> str:
+    """A number to three digits, never in powers of ten."""
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+
+
 def ratio(rows: list[Row]) -> np.ndarray:
     """Speed after over speed before the first contact, of those that left it."""
     values: np.ndarray = column(rows, "rebound_speed") / column(rows, "first_speed")

@@ -17,7 +17,9 @@ three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting
 A time to rest counts from the first contact until no point of the lander has moved by 3 mm for 35
 s, so it holds these 35 s and the minutes in which a lander creeps and rocks by centimetres; the
 time until it stays within 0.1 m is the one that was observed. Paths are horizontal, contacts
-include the first.
+include the first. Landers that have just as many as MASCOT count half as below it.
+
+{last}
 
 {readings}
 
