@@ -8,7 +8,9 @@ TEXT = """\
 MASCOT, a box of 10 kg, fell 41 m in 350 s, met Ryugu, bounced for 663 s, and came to rest after
 four intermediate contacts; its path is known to about 0.1 m [Scholten-2019]. It touched down on the
 side of a boulder and went another 17 m [DLR-2019, Grott-2021]. Fixed before the runs: each of the
-three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting.
+three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting. The time is the
+time to rest of journeys; the one until a lander stays within 0.1 m stands beside it as the reason
+where that fails.
 
 ![time, contacts and path of the landers](mascot.png)
 

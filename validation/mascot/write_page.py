@@ -61,7 +61,16 @@ def verdicts(settings: dict[str, list[Row]]) -> str:
         sentences.append(
             f"{text}{percent(farther(rows))} of the landers are farther from the middle in all three together."
         )
-    return " ".join(sentences)
+    return " ".join([*sentences, on_grains(settings["grains alone"])])
+
+
+def on_grains(rows: list[Row]) -> str:
+    """What landers without any boulder say."""
+    inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
+              if answer(column(rows, name), MEASURED[name]).agrees]  # fmt: skip
+    which = "all three" if len(inside) == len(UNITS) else listed(inside)
+    verb = "is" if len(inside) == 1 else "are"
+    return f"On grains alone, without a boulder, {which} {verb} inside: {len(rows)} landers followed to rest."
 
 
 def listed(words: list[str]) -> str:
