@@ -29,6 +29,11 @@ class Answer:
     interval: tuple[float, float]
     agrees: bool
 
+    @property
+    def is_open(self) -> bool:
+        """Whether more landers may change whether it agrees: a limit lies within the interval."""
+        return any(self.interval[0] <= tail <= self.interval[1] for tail in TAILS)
+
 
 def rows_of(setting: str, table: Path = HERE / "mascot.csv") -> list[Row]:
     """The landers of a setting."""

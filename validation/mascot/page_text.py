@@ -12,6 +12,8 @@ three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting
 time to rest of journeys; the one until a lander stays within 0.1 m stands beside it as the reason
 where that fails.
 
+{stopped}
+
 ![time, contacts and path of the landers](mascot.png)
 
 {answers}

@@ -51,7 +51,10 @@ def verdicts(settings: dict[str, list[Row]]) -> str:
         )
         text += f"{listed(inside)} {'lie' if len(inside) > 1 else 'lies'} in the central 80 % of what they give"
         text += f"; {listed(outside)} {'do' if len(outside) > 1 else 'does'} not. " if outside else ". "
-        if not agree["time_s"].agrees:
+        edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].is_open]
+        if edge:
+            text += f"Of {listed(edge)} more landers may change this, as the table's interval holds a limit. "
+        if not agree["time_s"].agrees or agree["time_s"].is_open:
             seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
             text += (
                 f"{percent(agree['time_s'].below)} of the landers need less than 663 s until they rest; "
@@ -68,9 +71,12 @@ def on_grains(rows: list[Row]) -> str:
     """What landers without any boulder say."""
     inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
               if answer(column(rows, name), MEASURED[name]).agrees]  # fmt: skip
+    edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
+            if answer(column(rows, name), MEASURED[name]).is_open]  # fmt: skip
     which = "all three" if len(inside) == len(UNITS) else listed(inside)
     verb = "is" if len(inside) == 1 else "are"
-    return f"On grains alone, without a boulder, {which} {verb} inside: {len(rows)} landers followed to rest."
+    few = f", {listed(edge)} so near to a limit that more landers may change it" if edge else ""
+    return f"On grains alone, without a boulder, {which} {verb} inside ({len(rows)} landers{few})."
 
 
 def listed(words: list[str]) -> str:
@@ -144,6 +150,19 @@ def readings(rows: list[Row]) -> str:
     )
 
 
+def stopped(rows: list[Row]) -> str:
+    """Where the runs were stopped, and what fewer rows said: nobody may choose the number by what came out."""
+    parts = []
+    for count in range(20, len(rows), 20):
+        one = answer(column(rows[:count], "time_s"), MEASURED["time_s"])
+        parts.append(f"{one.below:.2f} of the first {count}")
+    return wrapped(
+        "150 landers with a boulder at and below the surface each were planned; the time for the runs ended them at "
+        f"the numbers in the table. So that this end can be judged: at the surface {listed(parts)} landers rest within "
+        "663 s."
+    )
+
+
 def last_way(settings: dict[str, list[Row]]) -> str:
     """How long the last 0.1 m take."""
     times = []
@@ -200,7 +219,7 @@ def main() -> None:
     page = TEXT.format(
         first=wrapped(verdicts(settings)), answers=table_of_answers(settings), bounces=table_of_bounces(settings),
         thuillet=thuillet(settings), halves=halves(surface),
-        last=last_way(settings), readings=readings(surface), beds=table_of_beds(),
+        stopped=stopped(surface), last=last_way(settings), readings=readings(surface), beds=table_of_beds(),
         index=f"{INDEX:g}", flattest=f"{FLATTEST:g}", fewest=percent(coverage(FLATTEST)),
         most=percent(coverage(INDEX)), boulder_beds=BOULDER_BEDS, grain_beds=GRAIN_BEDS,
         grain=f"{GRAIN[0]:g} to {GRAIN[1]:g}", exponent=f"{0.5 * (INDEX + FLATTEST):g}",
