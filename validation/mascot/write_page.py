@@ -53,7 +53,7 @@ def verdicts(settings: dict[str, list[Row]]) -> str:
         text += f"; {listed(outside)} {'do' if len(outside) > 1 else 'does'} not. " if outside else ". "
         edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].is_open]
         if edge:
-            text += f"Of {listed(edge)} more landers may change this, as the table's interval holds a limit. "
+            text += f"For {listed(edge)} more landers may change this, as the table's interval holds a limit. "
         if not agree["time_s"].agrees or agree["time_s"].is_open:
             seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
             text += (
