@@ -7,7 +7,7 @@ from table_lines import HERE, Lines
 # Behind this folder, which has files of the same names.
 sys.path.append(str(HERE.parent / "mascot"))
 sys.path.append(str(HERE.parents[1] / "benchmarks"))
-from answers import MEASURED, answer, column, rows_of
+from answers import MEASURED, answer, column, rows_of, said
 
 QUANTITIES = {
     "contacts": "MASCOT: contacts from the first to rest",
@@ -24,7 +24,8 @@ def mascot_part() -> Lines:
         one, measured = answer(column(rows, name), MEASURED[name]), MEASURED[name]
         lines.append(
             (
-                f"| {words} | {measured:g}, once | {one.middle:.3g} (eight in ten: {one.low:.3g} to {one.high:.3g}) "
+                f"| {words} | {measured:g}, once "
+                f"| {said(one.middle)} (eight in ten: {said(one.low)} to {said(one.high)}) "
                 f"| {len(rows)} | {one.middle / measured:.2f} | {'yes' if one.agrees else 'no'} |",
                 one.agrees,
             )

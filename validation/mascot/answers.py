@@ -29,6 +29,11 @@ class Answer:
     interval: tuple[float, float]
     agrees: bool
 
+    @property
+    def is_open(self) -> bool:
+        """Whether more landers may change whether it agrees: a limit lies within the interval."""
+        return any(self.interval[0] <= tail <= self.interval[1] for tail in TAILS)
+
 
 def rows_of(setting: str, table: Path = HERE / "mascot.csv") -> list[Row]:
     """The landers of a setting."""
@@ -58,6 +63,11 @@ def farther(rows: list[Row]) -> float:
     away = np.vstack([values, np.log(list(MEASURED.values()))]) - values.mean(axis=0)
     squares = np.einsum("ij,jk,ik->i", away, inverse, away)
     return float(np.mean(squares[:-1] > squares[-1]))
+
+
+def said(value: float) -> str:
+    """A number to three digits, never in powers of ten."""
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
 
 
 def ratio(rows: list[Row]) -> np.ndarray:

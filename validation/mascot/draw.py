@@ -30,6 +30,6 @@ def of_landers(settings: dict[str, list[Row]], to: Path) -> None:
         most = max(float(np.quantile(column(rows, name), 0.98)) for rows in settings.values())
         axis.set(xlabel=WORDS[name], xlim=(0.0, max(most, 1.2 * measured)), ylim=(0.0, 1.0))
     axes[0].set(ylabel="part of the landers")
-    axes[0].legend(fontsize=8, loc="lower right", title="first contact (landers)")
+    axes[2].legend(fontsize=8, loc="lower right", title="first contact (landers)")
     figure.savefig(to, dpi=110)
     plt.close(figure)

@@ -8,7 +8,11 @@ TEXT = """\
 MASCOT, a box of 10 kg, fell 41 m in 350 s, met Ryugu, bounced for 663 s, and came to rest after
 four intermediate contacts; its path is known to about 0.1 m [Scholten-2019]. It touched down on the
 side of a boulder and went another 17 m [DLR-2019, Grott-2021]. Fixed before the runs: each of the
-three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting.
+three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting. The time is the
+time to rest of journeys; the one until a lander stays within 0.1 m stands beside it as the reason
+where that fails.
+
+{stopped}
 
 ![time, contacts and path of the landers](mascot.png)
 
@@ -17,7 +21,9 @@ three numbers lies between the quantiles 0.1 and 0.9 of the landers of a setting
 A time to rest counts from the first contact until no point of the lander has moved by 3 mm for 35
 s, so it holds these 35 s and the minutes in which a lander creeps and rocks by centimetres; the
 time until it stays within 0.1 m is the one that was observed. Paths are horizontal, contacts
-include the first.
+include the first. Landers that have just as many as MASCOT count half as below it.
+
+{last}
 
 {readings}
 

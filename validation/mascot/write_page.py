@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from answers import BOUNCING, HERE, MEASURED, OBSERVED, answer, column, farther, ratio, rows_of
+from answers import BOUNCING, HERE, MEASURED, OBSERVED, answer, column, farther, ratio, rows_of, said
 from draw import of_landers
 from ground import BOULDER_BEDS, FLATTEST, GRAIN, GRAIN_BEDS, INDEX, coverage
 from harness import PAGES, Row, read_rows
@@ -38,7 +38,7 @@ def percent(share: float) -> str:
 
 def verdicts(settings: dict[str, list[Row]]) -> str:
     """The first sentences: what is inside the central 80 %, and what is not."""
-    said = []
+    sentences = []
     for setting in BOULDERS:
         rows = settings[setting]
         agree = {name: answer(column(rows, name), measured) for name, measured in MEASURED.items()}
@@ -51,15 +51,32 @@ def verdicts(settings: dict[str, list[Row]]) -> str:
         )
         text += f"{listed(inside)} {'lie' if len(inside) > 1 else 'lies'} in the central 80 % of what they give"
         text += f"; {listed(outside)} {'do' if len(outside) > 1 else 'does'} not. " if outside else ". "
-        if not agree["time_s"].agrees:
+        edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].is_open]
+        if edge:
+            text += f"For {listed(edge)} more landers may change this, as the table's interval holds a limit. "
+        if not agree["time_s"].agrees or agree["time_s"].is_open:
             seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
             text += (
                 f"{percent(agree['time_s'].below)} of the landers need less than 663 s until they rest; "
                 f"{percent(seen.below)} until they stay within 0.1 m of that place, which is how well MASCOT's path is "
                 "known. "
             )
-        said.append(f"{text}{percent(farther(rows))} of the landers are farther from the middle in all three together.")
-    return " ".join(said)
+        sentences.append(
+            f"{text}{percent(farther(rows))} of the landers are farther from the middle in all three together."
+        )
+    return " ".join([*sentences, on_grains(settings["grains alone"])])
+
+
+def on_grains(rows: list[Row]) -> str:
+    """What landers without any boulder say."""
+    inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
+              if answer(column(rows, name), MEASURED[name]).agrees]  # fmt: skip
+    edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
+            if answer(column(rows, name), MEASURED[name]).is_open]  # fmt: skip
+    which = "all three" if len(inside) == len(UNITS) else listed(inside)
+    verb = "is" if len(inside) == 1 else "are"
+    few = f", {listed(edge)} so near to a limit that more landers may change it" if edge else ""
+    return f"On grains alone, without a boulder, {which} {verb} inside ({len(rows)} landers{few})."
 
 
 def listed(words: list[str]) -> str:
@@ -80,8 +97,8 @@ def table_of_answers(settings: dict[str, list[Row]]) -> str:
             one = answer(column(rows, name), measured)
             low, high = one.interval
             lines.append(
-                f"| {setting} | {len(rows)} | {NAMES[name]} | {measured:g} | {one.middle:.3g} ({one.low:.3g} to "
-                f"{one.high:.3g}) | {one.below:.2f} ({low:.2f} to {high:.2f}) | {'yes' if one.agrees else 'no'} |"
+                f"| {setting} | {len(rows)} | {NAMES[name]} | {measured:g} | {said(one.middle)} ({said(one.low)} to "
+                f"{said(one.high)}) | {one.below:.2f} ({low:.2f} to {high:.2f}) | {'yes' if one.agrees else 'no'} |"
             )
     return "\n".join(lines)
 
@@ -118,7 +135,7 @@ def halves(rows: list[Row]) -> str:
         values = column(rows, name)
         middle = float(np.median(values))
         for half, text in ((values <= middle, f"at most {middle:.2f}"), (values > middle, f"more than {middle:.2f}")):
-            medians = (f"{np.median(column(rows, key)[half]):.3g}" for key in MEASURED)
+            medians = (said(float(np.median(column(rows, key)[half]))) for key in MEASURED)
             lines.append(f"| {words.format(text)} | {' | '.join(medians)} |")
     return "\n".join(lines)
 
@@ -131,6 +148,30 @@ def readings(rows: list[Row]) -> str:
         "one in which it settles, these are five or six. The part of the landers at the surface below each: "
         f"{', '.join(shares)}."
     )
+
+
+def stopped(rows: list[Row]) -> str:
+    """Where the runs were stopped, and what fewer rows said: nobody may choose the number by what came out."""
+    parts = []
+    for count in range(20, len(rows), 20):
+        one = answer(column(rows[:count], "time_s"), MEASURED["time_s"])
+        parts.append(f"{one.below:.2f} of the first {count}")
+    return wrapped(
+        "150 landers with a boulder at and below the surface each were planned; the time for the runs ended them at "
+        f"the numbers in the table. So that this end can be judged: at the surface {listed(parts)} landers rest within "
+        "663 s."
+    )
+
+
+def last_way(settings: dict[str, list[Row]]) -> str:
+    """How long the last 0.1 m take."""
+    times = []
+    for setting in BOULDERS:
+        low, middle, high = np.quantile(
+            column(settings[setting], "time_s") - column(settings[setting], "settled_s"), [0.1, 0.5, 0.9]
+        )
+        times.append(f"{middle:.0f} s ({low:.0f} to {high:.0f}) {setting}")
+    return wrapped(f"The last 0.1 m and the 35 s take, in the median and the central 80 %, {' and '.join(times)}.")
 
 
 def table_of_beds() -> str:
@@ -157,7 +198,7 @@ def thuillet(settings: dict[str, list[Row]]) -> str:
         f"{name} {middle:.2f} and {spread:.2f}" for name, middle, spread in zip(found, medians, spreads, strict=True)
     ]
     rises = medians == sorted(medians), spreads == sorted(spreads)
-    said = {
+    words_of = {
         (True, True): "so it is here",
         (True, False): "the ratio does so here, the scatter does not",
         (False, True): "the scatter does so here, the ratio does not",
@@ -165,7 +206,7 @@ def thuillet(settings: dict[str, list[Row]]) -> str:
     }
     return wrapped(
         "[Thuillet-2021]: a boulder in the bed raises the ratio of speeds and its scatter, more so nearer to the "
-        f"surface. Median and standard deviation of those that leave: {', '.join(words)}; {said[rises]}."
+        f"surface. Median and standard deviation of those that leave: {', '.join(words)}; {words_of[rises]}."
     )
 
 
@@ -177,7 +218,8 @@ def main() -> None:
     surface = settings["at the surface"]
     page = TEXT.format(
         first=wrapped(verdicts(settings)), answers=table_of_answers(settings), bounces=table_of_bounces(settings),
-        thuillet=thuillet(settings), halves=halves(surface), readings=readings(surface), beds=table_of_beds(),
+        thuillet=thuillet(settings), halves=halves(surface),
+        stopped=stopped(surface), last=last_way(settings), readings=readings(surface), beds=table_of_beds(),
         index=f"{INDEX:g}", flattest=f"{FLATTEST:g}", fewest=percent(coverage(FLATTEST)),
         most=percent(coverage(INDEX)), boulder_beds=BOULDER_BEDS, grain_beds=GRAIN_BEDS,
         grain=f"{GRAIN[0]:g} to {GRAIN[1]:g}", exponent=f"{0.5 * (INDEX + FLATTEST):g}",
