@@ -25,7 +25,7 @@ UNTIL = 0.05  # s
 # Dashpot across the normal over that along it: none, as MercuryDPM, and nearly as this engine (2 sqrt(G*/E*)).
 DASHPOTS = {"no_dashpot": 0.0, "dashpot": 0.94}
 # s: the ball is then in the bed. Steps a turn, and turns.
-TIMED_AT, TIMED_STEPS, TURNS = 0.0225, 400, 5
+TIMED_AT, TIMED_STEPS, TURNS = 0.0215, 300, 3
 
 
 def write_world(world: World, path: Path) -> None:
