@@ -152,13 +152,13 @@ def what_rounding_does(found: dict[str, Curve]) -> list[str]:
             for name in ("published", "nudged", "mercury")}  # fmt: skip
     return ["", paragraph(
         "**After it no two runs do.** The ball leaves nearly as fast as it came down on the last grains, which are "
-        "3000 times lighter, so that what it keeps follows from how few grains lie between it and the floor. An impact "
+        "2880 times lighter, so that what it keeps follows from how few grains lie between it and the floor. An impact "
         f"here that is a billionth of a metre to the side is {before} mm off at 29 ms, {at_50} mm at 50 ms and "
         f"{at_100} mm at 100 ms: rounding alone moves the ball by more than the criterion at both times. The larger "
         "difference from MercuryDPM begins before it turns: in the 0.5 ms after "
         f"{1000.0 * BOTTOM:g} ms the ball loses {lost['published']:.2f} m/s here, {lost['nudged']:.2f} in the nudged "
-        f"run and {lost['mercury']:.2f} there, to grains that it meets. Whether the steps of 3e-6 s that MercuryDPM takes "
-        "from 30 ms on add to that was not tested."
+        f"run and {lost['mercury']:.2f} there, to grains that it meets. Whether the steps of 3e-6 s that MercuryDPM "
+        "takes from 30 ms on add to that was not tested."
     )]  # fmt: skip
 
 
@@ -232,8 +232,9 @@ def time_table() -> list[str]:
     count, load = int(rows[0]["spheres"]), json.loads((HERE / "lammps.json").read_text())["load"]
     return [*lines, paragraph(
         f"From the state at {1000.0 * TIMED_AT:g} ms, with the ball in the bed, both took {rows[0]['steps']:.0f} "
-        f"steps of 5e-7 s in turn, {len(rows)} times, with one thread each: median {1000.0 * ours:.1f} ms of CPU time "
-        f"a step here, {1000.0 * theirs:.1f} ms in LAMMPS, ratio {statistics.median(ratios):.2f} ({ratios[0]:.2f} to "
+        f"steps of 5e-7 s in turn, {len(rows)} times, with one thread each (LAMMPS: pair style granular, "
+        f"hertz/material, mindlin, coeff_restitution): median {1000.0 * ours:.1f} ms of CPU time a step "
+        f"here, {1000.0 * theirs:.1f} ms in LAMMPS, ratio {statistics.median(ratios):.2f} ({ratios[0]:.2f} to "
         f"{ratios[-1]:.2f}); that is {count / ours / 1e6:.1f} and {count / theirs / 1e6:.1f} million sphere-steps a "
         f"CPU second. The load was {load:.0f} on two cores, so that both are slower than alone."
     )]  # fmt: skip
