@@ -176,7 +176,7 @@ def draw(found: dict[str, Curve]) -> None:
         left.legend(fontsize=8)
         reference = found["published"]
         others = [name for name in found if name not in ("published", "mercury")]
-        colours = dict(zip(others, INPUT_COLOURS[1:], strict=False)) | {"mercury": SITE}
+        colours = dict(zip(others, (*INPUT_COLOURS[1:3], *INPUT_COLOURS[4:]), strict=False)) | {"mercury": SITE}
         for name in ("mercury", *others):
             time = reference[0][reference[0] <= found[name][0][-1] + 1e-6]
             gap = np.interp(time, *found[name][:2]) - np.interp(time, *reference[:2])
