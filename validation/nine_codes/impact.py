@@ -48,13 +48,13 @@ class Impact:
 
 # The first is as published; the others come down elsewhere, or a billionth of a metre off, or at half the step.
 RUNS = (
-    Impact("published", 0.0, 0.0, 5e-7, 0.035, 0.1),
-    Impact("east", 0.005, 0.0, 5e-7, 0.035, 0.05),
-    Impact("north", 0.0, 0.005, 5e-7, 0.035, 0.05),
-    Impact("west", -0.005, 0.0, 5e-7, 0.035, 0.05),
-    Impact("south", 0.0, -0.005, 5e-7, 0.035, 0.05),
-    Impact("nudged", 1e-9, 0.0, 5e-7, 0.035, 0.05),
-    Impact("half_step", 0.0, 0.0, 2.5e-7, 0.035, 0.05),
+    Impact("published", 0.0, 0.0, 5e-7, 0.032, 0.1),
+    Impact("east", 0.005, 0.0, 5e-7, 0.032, 0.05),
+    Impact("north", 0.0, 0.005, 5e-7, 0.032, 0.05),
+    Impact("west", -0.005, 0.0, 5e-7, 0.032, 0.05),
+    Impact("south", 0.0, -0.005, 5e-7, 0.032, 0.05),
+    Impact("nudged", 1e-9, 0.0, 5e-7, 0.032, 0.05),
+    Impact("half_step", 0.0, 0.0, 2.5e-7, 0.032, 0.05),
 )
 # Of the largest step that the contacts allow; it is looked at anew after so many.
 SHARE, STEPS = 0.9, 50
