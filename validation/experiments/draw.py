@@ -7,37 +7,37 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from ball_into_beads import FALL, path_name
 from fits import (
     Estimate,
     below_first_touch,
     below_mean_surface,
     column,
-    drop_exponents,
+    density_exponent,
     leaving,
     mean_of,
     scale,
     speeds,
 )
 from matplotlib.axes import Axes
-from sphere_bed import Row
+from result_rows import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
 
 
-def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> None:
-    """Depth against the experiment's law, stopping time and deceleration in the finest beads, exponents over size.
+def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate, work: Path, to: Path) -> None:
+    """Depth against the experiment's law, stopping time, deceleration, and the exponent of density in other beds.
 
-    beds: the drops into beads of each size, finest first.
+    rows: drops into our beads. beds: a light and a heavy drop into each bed.
     """
-    rows = beds[0]
     figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
     draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
         speed, depth = column(own, "impact_speed"), column(own, "deepest")
         middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
-        path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
+        path = work / path_name(str(own[0]["bed"]), density, own[0]["diameter"], FALL)
         if path.exists():
             time, _, _, deceleration = np.load(path).T
             wide = np.ones(5) / 5
@@ -48,7 +48,7 @@ def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> No
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
     right.set(xlabel="time since contact [ms]", ylabel="deceleration over g")
-    right.set_title("fall .1 m; mean of 2.5 ms", fontsize=10)
+    right.set_title(f"fall {FALL:g} m; mean of 2.5 ms", fontsize=10)
     right.axhline(0.0, color="0.8", lw=0.8)
     draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
@@ -72,21 +72,19 @@ def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
     axis.legend(fontsize=8)
 
 
-def draw_exponents(axis: Axes, beds: list[list[Row]]) -> None:
-    """Exponents of density and drop distance over the size of the beads, from either surface."""
-    for which, name, law, ink in ((0, "density", 0.5, INK[0]), (1, "drop distance", 1 / 3, INK[1])):
-        axis.axhspan(law - 0.05, law + 0.05, color=ink, alpha=0.15, lw=0)
-        for shift, depth_of, face, text in (
-            (-0.04, below_mean_surface, ink, name), (0.04, below_first_touch, "none", f"{name}, from the first touch"),
-        ):  # fmt: skip
-            found = [drop_exponents(rows, depth_of(rows))[which] for rows in beds]
-            axis.errorbar(
-                [1e3 * rows[0]["bead_size"] + shift for rows in beds], [one.value for one in found],
-                [one.half for one in found], fmt="o", color=ink, mfc=face, capsize=3, label=text,
-            )  # fmt: skip
-    axis.set(xlabel="size of the beads [mm]", ylabel="exponent", xlim=(0.0, None), ylim=(0.0, 1.0))
-    axis.set_title("bands: measured +- .05", fontsize=10)
-    axis.legend(fontsize=8)
+def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
+    """Exponent of density that a light and a heavy ball give in each bed, from either surface."""
+    axis.axvspan(0.45, 0.55, color=MEASURED, alpha=0.25, lw=0, label="measured, +-0.05")
+    at = np.arange(len(beds))[::-1]
+    for depth_of, ink, face, text in (
+        (below_mean_surface, INK[0], INK[0], "from the mean surface"),
+        (below_first_touch, INK[0], "none", "from the first touch"),
+    ):
+        found = [density_exponent(light, heavy, depth_of) for light, heavy in beds.values()]
+        axis.plot(found, at, "o", color=ink, mfc=face, label=text)
+    axis.set_yticks(at, list(beds), fontsize=7)
+    axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
+    axis.legend(fontsize=7)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:

@@ -1,0 +1,176 @@
+"""What the rows of each experiment say of its causes: the sentences under its tables, with their numbers."""
+
+from collections.abc import Callable
+
+import numpy as np
+from beads_part import OURS, SURFACES, causes_of
+from fits import (
+    column,
+    density_exponent,
+    leaving,
+    mean_of,
+    powers,
+    speeds,
+)
+from plate_part import force_exponent
+from rebounds_part import FINEST, JSC, PULLING, rebounds
+from result_rows import Row, read_rows
+from table_lines import HERE, said
+
+
+def rows_of(name: str) -> list[Row]:
+    """Return the rows of a table."""
+    return read_rows(HERE / f"{name}.csv")
+
+
+def of_kind(rows: list[Row], kind: str) -> list[Row]:
+    """Return the rows of a kind."""
+    return [row for row in rows if row["kind"] == kind]
+
+
+def beads() -> str:
+    """Ball into beads: what walls, packing and the size of beads do to the exponent of density."""
+    every = rows_of("ball_into_beads")
+    beds = causes_of(every)
+    steep = {
+        name: [density_exponent(light, heavy, depth_of) for depth_of in SURFACES.values()]
+        for name, (light, heavy) in beds.items()
+    }  # fmt: skip
+
+    def step(text: str, before: str, after: str) -> str:
+        (a, b), (c, d) = steep[before], steep[after]
+        deep = [100 * beds[name][0]["deepest"] for name in (before, after)]
+        return f"{text}: {a:.2f} to {c:.2f} ({b:.2f} to {d:.2f}), the light ball from {deep[0]:.2f} to {deep[1]:.2f} cm"
+
+    causes = "; ".join([
+        step("finer beads, 8 to 5 mm", "8 mm, walls, dense", "5 mm, walls, dense"),
+        step("no walls", "5 mm, walls, dense", "5 mm, periodic as wide as the box"),
+        step("a tile of 4 in place of 3 balls", "5 mm, periodic as wide as the box", "5 mm, periodic"),
+        step("of 6 in place of 4", "5 mm, periodic", "5 mm, periodic, 6 ball diameters"),
+        step("a loose bed", "5 mm, periodic", "5 mm, periodic, loose"),
+        step("a deeper one", "5 mm, periodic, loose", "5 mm, periodic, loose, deeper"),
+        step("and 3 mm in place of 5 mm", "5 mm, periodic, loose, deeper", OURS),
+    ])  # fmt: skip
+    return (
+        "The exponent of density of a light and a heavy ball, from the mean surface (from the first touch), tells "
+        f"what each cause does: {causes}. Loose packing and finer beads bring it to 1/2, walls and width hardly "
+        "change it."
+    )
+
+
+def gravity() -> str:
+    """Sphere that settles: scatter and softness."""
+    rows = rows_of("settling_in_other_gravities")
+    depth = column(rows, "depth")
+    from settling_in_other_gravities import DIAMETER, EARTH, GRAINS
+
+    soft = GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER)
+    return (
+        f"The sphere sinks by {depth.min() / DIAMETER:.2f} to {depth.max() / DIAMETER:.2f} diameters. Grains of one "
+        f"modulus are stiffer under less gravity; here they are stiff under each (modulus over weight {soft:.0f} under "
+        "Earth's), so that only the scatter from bed to bed is left."
+    )
+
+
+def grains() -> str:
+    """Grain on its own kind: what stays."""
+    every = rows_of("grain_on_its_own_kind")
+    base = of_kind(every, "basalt")
+    kinds = [name for name in dict.fromkeys(row["kind"] for row in every) if name != "basalt"]
+    others = [mean_of(speeds(of_kind(every, name))).value for name in kinds]
+    left = [mean_of(leaving(of_kind(every, name))).value for name in kinds]
+    return (
+        f"Of the grains {1.0 - len(leaving(base)) / len(base):.2f} stay, in a pocket between others; those that leave "
+        f"keep {mean_of(leaving(base)).value:.2f} of their speed. On the other beds, one respect changed in each, all "
+        f"together keep {min(others):.2f} to {max(others):.2f}, and those that leave {min(left):.2f} to "
+        f"{max(left):.2f}."
+    )
+
+
+def plate() -> str:
+    """Plate: the flight, the corners and the exponent."""
+    every = rows_of("plate_into_loose_grains")
+    by_name = {row["name"]: row for row in every}
+    light = [by_name[f"half density {share}"]["speed_6"] for share in ("0.58", "0.6")]
+    speed = [row for row in every if row["series"] == "speeds"]
+    free, pulled = ([row for row in speed if row["cohesion"] == pull] for pull in (0.0, 10.0))
+    text = (
+        f"At half of Bennu's bulk density a plate keeps {by_name['filled 0.3']['speed_6']:.3f} m/s where dense grains "
+        f"fill 0.3, and {light[0]:.3f} and {light[1]:.3f} m/s where light ones fill 0.58 and 0.6: packing decides, not "
+        "bulk density."
+    )
+    if free and pulled:
+        text += (
+            f" The mean force on the plate goes as its speed to the {said(force_exponent(free))} where grains do not "
+            "pull: nothing else there has a speed, so that the exponent must be 2. Where contacts pull by 10 Pa it is "
+            f"{said(force_exponent(pulled))}."
+        )
+    return text
+
+
+def packing() -> str:
+    """Packing: cohesion is the cause."""
+    rows = rows_of("packing_and_cohesion")
+    none = column([row for row in rows if row["pull"] <= 0.3], "solid_fraction")
+    return (
+        "Without a pull no gravity changes the volume, by similarity; chance from bed to bed is "
+        f"{none.max() - none.min():.4f} in three pours. So what was measured is cohesion. Coarse basalt has not run: "
+        "its first bed, 1256 hulls, was not at rest after 228 s of CPU time."
+    )
+
+
+def balls() -> str:
+    """Ball under several gravities: stiffness, and a contradiction."""
+    every = rows_of("ball_under_gravities")
+    rows, stiff = of_kind(every, "plain"), of_kind(every, "stiffer")
+    slow = [row for row in rows if row["froude"] < 3.0]
+    reach = column(slow, "depth") + column(slow, "touch_height")
+    by_speed, by_gravity = powers(reach, column(slow, "speed"), column(slow, "share"))
+    text = (
+        "Depth follows the Froude number, as Sunday found; so at one speed a ball comes the deeper the less the "
+        f"gravity. Murdoch's Froude numbers are 0.06 to 2.8; ours below 3 alone give {said(by_gravity)} for gravity "
+        f"and {said(by_speed)} for speed. Both rules cannot hold for one material that does not pull; why sand "
+        "differs, no row here shows."
+    )
+    if stiff:
+        swapped = [
+            next((other for other in stiff if (other["share"], other["froude"]) == (row["share"], row["froude"])), row)
+            for row in rows
+        ]  # fmt: skip
+        found = powers(column(swapped, "duration_in_units"), column(swapped, "share"))[0]
+        text += (
+            " Under Earth's gravity the beads are too soft for the fast balls, which bounce. With the two drops on ten "
+            f"times stiffer beads in their place, the exponent of duration is {said(found)}."
+        )
+    return text
+
+
+def rebound() -> str:
+    """Balls on grains: size of the grains, pull, restitution."""
+    every = rows_of("who_rebounds")
+
+    def share(kind: str) -> str:
+        rows = of_kind(every, kind)
+        return f"{rebounds(rows)} of {len(rows)}"
+
+    fast = {kind: [row for row in of_kind(every, kind) if row["froude"] == 30.0] for kind in ("6 mm", FINEST, "3 mm")}
+    told = ", ".join(f"{rebounds(rows)} of {len(rows)} in {kind}" for kind, rows in fast.items())
+    out = {kind: float(np.mean(column(of_kind(every, kind), "upward_out"))) for kind in (FINEST, JSC)}
+    return (
+        f"Without a pull the size of the grains decides: at a Froude number of 30 rebound {told}. Grains that pull as "
+        f"lunar soil throw balls back: {share(PULLING)} at 1e-4 g, {share('lunar, 1e-3 g')} at 1e-3 g and 42 cm/s, "
+        f"{share('lunar, 1e-2 g')} at 1e-2 g; at 1e-3 g a ball of Teflon leaves with {out[JSC]:.3f} of its speed, one "
+        f"of quartz on grains that do not pull with {out[FINEST]:.3f}. From pebbles rebound {share('pebbles')} at a "
+        f"restitution of 0.6, {share('pebbles, restitution 0.83')} at 0.83, that of rock on rock [Durda-2011]."
+    )
+
+
+EVERY: dict[str, Callable[[], str]] = {
+    "beads": beads, "gravity": gravity, "grains": grains, "plate": plate, "packing": packing, "balls": balls,
+    "rebounds": rebound,
+}  # fmt: skip
+
+
+def every() -> dict[str, str]:
+    """Return all sentences by the key of their section."""
+    return {key: tell() for key, tell in EVERY.items()}
