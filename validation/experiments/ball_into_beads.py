@@ -2,10 +2,9 @@
 
     python validation/experiments/ball_into_beads.py --work FOLDER --out FOLDER [--series NAME ...]
 
-Series: drops and diameters are held against the experiment, in beads of 3 mm as in its demonstration; more are the
-other eight of the experiment's twelve drops; fine repeats some in beads of 2 mm; causes drops a light and a heavy ball
-into beds that differ from these step by step; repose is the slope of a heap. Rows that stand in the tables are not run
-again.
+Series: drops and diameters are held against the experiment, in beads of 3 mm as in its demonstration; causes drops a
+light and a heavy ball into beds that differ from these step by step; sizes drops balls of other diameters into some of
+them; repose is the slope of a heap. Rows that stand in the tables are not run again.
 
 Source: [Uehara-2003]; [Ambroso-2005]; [Ambroso-2005b]; for the set-up DEM-Engine's DEMdemo_BallDrop.cpp.
 """
@@ -14,7 +13,6 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 from ball_drop import Ball, dropped
 from repose import angle_of_repose
 from result_rows import Row, note, options_of, read_rows
@@ -29,10 +27,10 @@ SPREAD = tuple((25 + k) / 30 for k in range(11))  # eleven sizes from 5/6 to 7/6
 GLASS = Material(young_modulus=1e7, poisson_ratio=0.24, restitution=0.9, friction=0.3, density=2500.0)
 PACE = 5e-4  # s between looks at the ball
 LIGHT, HEAVY, FALL = 2200.0, 15000.0, 0.1
-FALLS = (0.05, FALL, 0.2)  # m
+OURS, LOOSE, FINE = "3 mm, walls, dense", "5 mm, periodic, loose, deeper", "3 mm, periodic, loose, deeper"
 DIAMETERS = (0.0127, 0.018, 0.036)
 SLOW = 0.6  # sqrt(g d), at which beads fall for a loose bed: the experiment's beds are loose
-SERIES = ("drops", "diameters", "causes", "repose", "more", "fine")
+SERIES = ("drops", "diameters", "causes", "sizes", "repose")
 
 
 def bed_of(size: float, width: float = 3.0 * BALL, depth: float = 0.11, **other: float) -> Beads:
@@ -49,59 +47,59 @@ def bed_of(size: float, width: float = 3.0 * BALL, depth: float = 0.11, **other:
     return replace(plain, material=replace(GLASS, **stuff), **ours)
 
 
+def boxed(size: float) -> Beads:
+    """Return a bed of a mean bead size [m] between walls, three ball diameters wide, of beads that fell fast."""
+    return bed_of(size, depth=0.085, walls=True, tiles=1, fall_speed=Beads.fall_speed)
+
+
 def causes() -> dict[str, Beads]:
-    """Return beds by name, from the coarse, narrow, dense and walled one to that of the drops."""
-    box = {"width": 3.0 * BALL, "depth": 0.085, "walls": True, "tiles": 1, "fall_speed": Beads.fall_speed}
-    walled = bed_of(0.005, **box)
+    """Return beds by name, from coarse beads between walls to a loose bed on wide ground, a step at a time."""
+    walled = boxed(0.005)
     wide = replace(walled, width=4.0 * BALL, walls=False, tiles=2)
     return {
-        "8 mm, walls, dense": bed_of(0.008, **box),
+        "8 mm, walls, dense": boxed(0.008),
         "5 mm, walls, dense": walled,
         "5 mm, periodic as wide as the box": replace(walled, walls=False),
         "5 mm, periodic": wide,
         "5 mm, periodic, 6 ball diameters": replace(wide, width=6.0 * BALL, tiles=3),
         "5 mm, periodic, loose": replace(wide, fall_speed=SLOW),
-        "5 mm, periodic, loose, deeper": replace(wide, fall_speed=SLOW, depth=0.11),
+        LOOSE: replace(wide, fall_speed=SLOW, depth=0.11),
     }
 
 
 def grains() -> dict[str, Beads]:
-    """Return beds that differ from the last of the causes in the law of their contacts."""
+    """Return beds that differ from the last of the causes in the law of their contacts, or in the size of the beads."""
     wide = {"width": 4.0 * BALL}
     return {
         "5 mm, as the one before, friction 0.6": bed_of(0.005, **wide, friction=0.6),
         "5 mm, rolling resistance 0.2": bed_of(0.005, **wide, rolling_friction=0.2),
+        FINE: bed_of(0.003),
     }
 
 
-def drops() -> dict[str, dict[str, list[tuple[str, Beads, Ball, float]]]]:
+def drops() -> dict[str, list[tuple[str, Beads, Ball, float]]]:
     """Return by series what is dropped: name of the bed, bed, ball, fall [m]."""
-    bed, fine = bed_of(0.003), bed_of(0.002, width=2.5 * BALL, depth=0.06)
-    light = Ball(BALL, LIGHT)
+    light, every = Ball(BALL, LIGHT), causes() | grains()
     return {
-        "drops": [("3 mm", bed, Ball(BALL, density), fall) for fall in (FALL, 0.2) for density in (LIGHT, HEAVY)],
-        "more": [
-            ("3 mm", bed, Ball(BALL, density), fall) for fall, density in (
-                (0.05, LIGHT), (0.05, HEAVY), *((fall, density) for fall in FALLS for density in (3800.0, 7800.0))
-            )
+        "drops": [
+            (OURS, boxed(0.003), Ball(BALL, density), fall)
+            for fall in (FALL, 0.05, 0.2) for density in (LIGHT, HEAVY, 7800.0, 3800.0)
         ],
-        "diameters": [("3 mm", bed, light._replace(diameter=d), FALL) for d in DIAMETERS],
-        "causes": [
-            (name, other, Ball(BALL, density), FALL)
-            for name, other in (causes() | grains()).items() for density in (LIGHT, HEAVY)
-        ],
-        "fine": [("2 mm", fine, light._replace(diameter=d), FALL) for d in (*DIAMETERS[:2], BALL)]
-        + [("2 mm", fine, Ball(BALL, 7800.0), FALL)],
+        "diameters": [(OURS, boxed(0.003), light._replace(diameter=d), FALL) for d in DIAMETERS],
+        "causes": [(name, bed, Ball(BALL, density), FALL) for name, bed in every.items() for density in (LIGHT, HEAVY)],
+        "sizes": [
+            (name, every[name], light._replace(diameter=d), FALL)
+            for name in ("5 mm, walls, dense", LOOSE) for d in DIAMETERS
+        ] + [(FINE, every[FINE], light, 0.2)],
     }  # fmt: skip
 
 
 def drop_row(work: Path, name: str, beads: Beads, ball: Ball, fall: float) -> Row:
-    """Drop one ball into a bed; its path goes into the work folder."""
+    """Drop one ball into a bed."""
     start = time.process_time()
     world = kept(beads, work)
     bulk = bulk_density(world, beads)
-    result, path = dropped(world, ball, beads.material, fall, PACE)
-    np.save(work / path_name(name, ball.density, ball.diameter, fall), path)
+    result, _ = dropped(world, ball, beads.material, fall, PACE)
     return {
         "bed": name, "density": ball.density, "fall": fall, "diameter": ball.diameter,
         "bead_size": beads.mean_diameter, "beads": beads.count, "width": beads.width, "bed_depth": beads.depth,
@@ -109,11 +107,6 @@ def drop_row(work: Path, name: str, beads: Beads, ball: Ball, fall: float) -> Ro
         "young_modulus": beads.material.young_modulus, "bulk_density": bulk, **result,
         "cpu_s": time.process_time() - start,
     }  # fmt: skip
-
-
-def path_name(bed: str, density: float, diameter: float, fall: float) -> str:
-    """Return the file name of the path of a drop."""
-    return f"path_{bed.replace(' ', '_').replace(',', '')}_{density:g}_{1e3 * diameter:g}_{fall:g}.npy"
 
 
 def run_drops(series: str, work: Path, out: Path) -> None:

@@ -2,9 +2,8 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 
-from ball_into_beads import BALL, FALL, HEAVY, LIGHT
+from ball_into_beads import BALL, FALL, HEAVY, LIGHT, OURS
 from draw import of_drops
 from fits import (
     Estimate,
@@ -22,7 +21,6 @@ from sphere_bed import Floats
 from table_lines import FIGURES, HERE, Lines, line, said, table
 
 SURFACES = {"the mean surface": below_mean_surface, "the first touch": below_first_touch}
-OURS, FINE, COARSE = "3 mm", "2 mm", "8 mm, walls, dense"
 
 
 def of_bed(rows: list[Row], bed: str) -> list[Row]:
@@ -46,7 +44,7 @@ def pair(rows: list[Row], heavy: float) -> tuple[Row, Row]:
     return by_density[LIGHT], by_density[heavy]
 
 
-def beads_part(work: Path) -> tuple[Lines, str]:
+def beads_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table and verdict."""
     every = read_rows(HERE / "ball_into_beads.csv")
     slope = mean_of([math.tan(math.radians(row["angle_deg"])) for row in read_rows(HERE / "repose.csv")])
@@ -56,7 +54,7 @@ def beads_part(work: Path) -> tuple[Lines, str]:
         lines += surface_lines(where, depth_of, drops, sized, 0.14 / slope.value)
     lines.append(line("ball into beads: stopping time over depth / impact speed", 3.0, mean_of(stopping(drops)), 0.75,
                       "3", "table of beds"))  # fmt: skip
-    of_drops(drops, causes_of(every), slope, work, FIGURES / "ball_into_beads.png")
+    of_drops(drops, causes_of(every), slope, FIGURES / "ball_into_beads.png")
     return lines, "\n\n".join((drop_table(every), bed_table(every)))
 
 
@@ -78,44 +76,34 @@ def surface_lines(
 
 
 def drop_table(every: list[Row]) -> str:
-    """Return the table of the drops into our beads and the finer ones."""
-    heads = ("beads", "density [kg/m3]", "diameter [mm]", "fall [m]", "depth below the mean surface [cm]",
+    """Return the table of the drops into our beads."""
+    heads = ("density [kg/m3]", "diameter [mm]", "fall [m]", "depth below the mean surface [cm]",
              "below the first touch [cm]", "stopping time [d/v]")  # fmt: skip
-    rows = [row for bed in (OURS, FINE) for row in of_bed(every, bed)]
-    rows.sort(key=lambda row: (-row["bead_size"], row["diameter"], row["density"], row["fall"]))
+    rows = sorted(of_bed(every, OURS), key=lambda row: (row["diameter"], row["density"], row["fall"]))
     return table(heads, (
-        (str(row["bed"]), f"{row['density']:g}", f"{1e3 * row['diameter']:g}", f"{row['fall']:g}",
-         f"{100 * row['deepest']:.2f}", f"{100 * (row['deepest'] + row['touch_height']):.2f}",
-         f"{stopping([row])[0]:.1f}") for row in rows
+        (f"{row['density']:g}", f"{1e3 * row['diameter']:g}", f"{row['fall']:g}", f"{100 * row['deepest']:.2f}",
+         f"{100 * (row['deepest'] + row['touch_height']):.2f}", f"{stopping([row])[0]:.1f}") for row in rows
     ))  # fmt: skip
 
 
 def causes_of(every: list[Row]) -> dict[str, tuple[Row, Row]]:
     """Return a light and a heavy drop from one height into each bed, by its name."""
-    names = [name for name in dict.fromkeys(str(row["bed"]) for row in every) if name not in (OURS, FINE)]
-    return {name: pair(of_bed(every, name), HEAVY) for name in (*names, OURS)}
+    heavy = [row for row in every if (row["density"], row["fall"]) == (HEAVY, FALL)]
+    return {name: pair(of_bed(every, name), HEAVY) for name in dict.fromkeys(str(row["bed"]) for row in heavy)}
 
 
 def bed_table(every: list[Row]) -> str:
     """Return the table of beds: what each changes of the exponents."""
     heads = ("bed", "beads", "filled", "depth of 2200 kg/m3 [cm]", "of 15000 kg/m3",
              "exponent of density, from the mean surface", "from the first touch", "of diameter, from the mean surface",
-             "from the first touch", "stopping time of 2200 kg/m3 [d/v]")  # fmt: skip
+             "from the first touch", "prefactor of the two", "stopping time of 2200 kg/m3 [d/v]")  # fmt: skip
     rows = []
     for name, (light, heavy) in causes_of(every).items():
         sized = of_diameters(of_bed(every, name))
         rows.append([*bed_cells(name, light), f"{100 * heavy['deepest']:.2f}",
                      *(f"{density_exponent(light, heavy, depth_of):.2f}" for depth_of in SURFACES.values()),
-                     *diameter_cells(sized), f"{stopping([light])[0]:.1f}"])  # fmt: skip
-    for name in (OURS, FINE):
-        own = of_bed(every, name)
-        if not own:
-            continue
-        light, heavy = pair(own, 7800.0)
-        few = [row for row in of_diameters(own) if row["diameter"] <= BALL]
-        rows.append([*bed_cells(f"{name}, balls up to 7800 kg/m3 and 25.4 mm", light), "-",
-                     *(f"{density_exponent(light, heavy, depth_of):.2f}" for depth_of in SURFACES.values()),
-                     *diameter_cells(few), f"{stopping([light])[0]:.1f}"])  # fmt: skip
+                     *diameter_cells(sized), f"{mean_prefactor([light, heavy]):.2f}",
+                     f"{stopping([light])[0]:.1f}"])  # fmt: skip
     return table(heads, rows)
 
 
@@ -130,3 +118,8 @@ def diameter_cells(sized: list[Row]) -> list[str]:
         return ["-", "-"]
     found: list[Estimate] = [diameter_exponent(sized, depth_of(sized)) for depth_of in SURFACES.values()]
     return [said(one) if len(sized) > 3 else f"{one.value:.2f}" for one in found]
+
+
+def mean_prefactor(rows: list[Row]) -> float:
+    """Return the mean prefactor of some drops, from the mean surface."""
+    return float((below_mean_surface(rows) / scale(rows)).mean())

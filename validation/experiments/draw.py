@@ -7,7 +7,6 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from ball_into_beads import FALL, path_name
 from fits import (
     Estimate,
     below_first_touch,
@@ -26,30 +25,21 @@ INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
 
 
-def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate, work: Path, to: Path) -> None:
-    """Depth against the experiment's law, stopping time, deceleration, and the exponent of density in other beds.
+def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate, to: Path) -> None:
+    """Depth against the experiment's law, stopping time, and the exponent of density in other beds.
 
     rows: drops into our beads. beds: a light and a heavy drop into each bed.
     """
-    figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
+    figure, (left, middle, last) = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
     draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
-        speed, depth = column(own, "impact_speed"), column(own, "deepest")
-        middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
-        path = work / path_name(str(own[0]["bed"]), density, own[0]["diameter"], FALL)
-        if path.exists():
-            time, _, _, deceleration = np.load(path).T
-            wide = np.ones(5) / 5
-            smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
-            right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
+        middle.plot(column(own, "deepest") / column(own, "impact_speed") * 1e3, column(own, "stopping_time") * 1e3, "o",
+                    color=ink)  # fmt: skip
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
-    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g")
-    right.set_title(f"fall {FALL:g} m; mean of 2.5 ms", fontsize=10)
-    right.axhline(0.0, color="0.8", lw=0.8)
     draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
     plt.close(figure)

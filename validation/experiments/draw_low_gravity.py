@@ -25,7 +25,7 @@ def of_plates(rows: list[Row], to: Path) -> None:
     axes[0].axhspan(0.039, 0.041, color=MEASURED, alpha=0.5, lw=0, label="OSIRIS-REx")
     axes[0].axvline(0.5 * 1190.0, color=MEASURED, ls=":", label="half of Bennu's bulk density")
     for label, (ink, style, chosen) in groups.items():
-        own = [row for row in flight if chosen(str(row["name"]))]
+        own = sorted((row for row in flight if chosen(str(row["name"]))), key=lambda row: row["filled"])
         axes[0].plot(
             column(own, "bulk_density"), np.maximum(column(own, "speed_6"), 0.0), style, color=ink, label=label
         )

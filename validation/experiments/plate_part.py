@@ -23,6 +23,7 @@ def plate_part() -> tuple[Lines, str]:
     rows = [row for row in every if row["series"] == "flight"]
     plain = [row for row in rows if row["name"] in PLAIN]
     filled = [row for row in rows if str(row["name"]).startswith("filled ")]
+    filled.sort(key=lambda row: row["filled"])
     speed, density = column(filled, "speed_6"), column(filled, "bulk_density")
     needed = float(np.interp(-SPEED_AFTER_6, -speed, density))
     half = float(np.interp(0.5 * BENNU, density, speed))

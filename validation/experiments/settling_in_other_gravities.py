@@ -8,7 +8,6 @@ in settling_in_other_gravities.csv are not run again.
 Source: [Altshuler-2014].
 """
 
-import itertools
 import math
 import time
 from dataclasses import replace
@@ -33,7 +32,7 @@ BED = Beads(
     diameters=tuple(round(0.0021 * share, 7) for share in SPREAD), material=GRAINS, gravity=EARTH,
     width=3.0 * DIAMETER, depth=3.5 * DIAMETER, seed=1, fall_speed=SLOW, tiles=2,
 )  # fmt: skip
-SEEDS = (1, 2)
+STIFF = 5e6  # Pa, of stiffer grains
 PLACES = ((0.0, 0.0), (0.25 * BED.width, 0.25 * BED.width))  # m, between and amid the tiles
 STEPS = 24.0  # in the shortest contact: a ball that lies in the bed has stiffer contacts than one that meets it
 PACE = 0.02  # sqrt(D / g) between looks
@@ -57,14 +56,23 @@ def settled(work: Path, bed: Beads, share: float, place: int) -> Row:
     }  # fmt: skip
 
 
+def cases() -> list[tuple[Beads, float, int]]:
+    """Return what is run: bed, share of Earth's gravity, number of the place; under Earth's also on stiffer grains."""
+    stiffer = replace(BED, material=replace(GRAINS, young_modulus=STIFF))
+    own = [(BED, share, place) for share in SHARES for place in range(len(PLACES))]
+    stiff = [(stiffer, 1.0, place) for place in range(len(PLACES))]
+    again = [(replace(BED, seed=2), share, place) for share in SHARES for place in range(len(PLACES))]
+    return own + stiff + again
+
+
 def main() -> None:
     """Run what has no row yet."""
     given = options_of(__doc__)
     table = given.out / NAME
-    ran = {(row["share"], row["seed"], row["place"]) for row in read_rows(table)}
-    for seed, share, place in itertools.product(SEEDS, SHARES, range(len(PLACES))):
-        if (share, seed, place) not in ran:
-            note(table, settled(given.work, replace(BED, seed=seed), share, place))
+    ran = {(row["young_modulus"], row["share"], row["seed"], row["place"]) for row in read_rows(table)}
+    for bed, share, place in cases():
+        if (bed.material.young_modulus, share, bed.seed, place) not in ran:
+            note(table, settled(given.work, bed, share, place))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from beads_part import OURS, SURFACES, causes_of
+from ball_into_beads import FINE, LOOSE
+from beads_part import SURFACES, causes_of
 from fits import (
     column,
     density_exponent,
@@ -15,6 +16,7 @@ from fits import (
 from plate_part import force_exponent
 from rebounds_part import FINEST, JSC, PULLING, rebounds
 from result_rows import Row, read_rows
+from settling_in_other_gravities import DIAMETER, EARTH, GRAINS, SHARES, STIFF
 from table_lines import HERE, said
 
 
@@ -48,8 +50,8 @@ def beads() -> str:
         step("a tile of 4 in place of 3 balls", "5 mm, periodic as wide as the box", "5 mm, periodic"),
         step("of 6 in place of 4", "5 mm, periodic", "5 mm, periodic, 6 ball diameters"),
         step("a loose bed", "5 mm, periodic", "5 mm, periodic, loose"),
-        step("a deeper one", "5 mm, periodic, loose", "5 mm, periodic, loose, deeper"),
-        step("and 3 mm in place of 5 mm", "5 mm, periodic, loose, deeper", OURS),
+        step("a deeper one", "5 mm, periodic, loose", LOOSE),
+        step("and 3 mm in place of 5 mm", LOOSE, FINE),
     ])  # fmt: skip
     return (
         "The exponent of density of a light and a heavy ball, from the mean surface (from the first touch), tells "
@@ -59,17 +61,23 @@ def beads() -> str:
 
 
 def gravity() -> str:
-    """Sphere that settles: scatter and softness."""
-    rows = rows_of("settling_in_other_gravities")
-    depth = column(rows, "depth")
-    from settling_in_other_gravities import DIAMETER, EARTH, GRAINS
+    """Sphere that settles: softness under Earth's gravity."""
+    every = rows_of("settling_in_other_gravities")
+    rows = [row for row in every if row["young_modulus"] == GRAINS.young_modulus]
+    stiff = [row for row in every if row["young_modulus"] == STIFF]
 
-    soft = GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER)
-    return (
-        f"The sphere sinks by {depth.min() / DIAMETER:.2f} to {depth.max() / DIAMETER:.2f} diameters. Grains of one "
-        f"modulus are stiffer under less gravity; here they are stiff under each (modulus over weight {soft:.0f} under "
-        "Earth's), so that only the scatter from bed to bed is left."
+    def deep(rows: list[Row]) -> str:
+        return f"{np.mean(column(rows, 'depth')) / DIAMETER:.2f}"
+
+    ends = {share: [row for row in rows if row["share"] == share] for share in (SHARES[0], SHARES[-1])}
+    text = (
+        f"The sphere sinks by {deep(ends[1.0])} diameters under Earth's gravity and by {deep(ends[SHARES[-1]])} under "
+        "a tenth of it. Only the modulus over density, gravity and diameter tells the two apart: "
+        f"{GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER):.0f} under Earth's, and ten times as much."
     )
+    if stiff:
+        text += f" On ten times stiffer grains it sinks by {deep(stiff)} diameters under Earth's gravity, too."
+    return text
 
 
 def grains() -> str:

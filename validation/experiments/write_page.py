@@ -1,12 +1,10 @@
 """Write docs/validation/experiments.md and its figures from the tables of the experiments.
 
-python validation/experiments/write_page.py --work FOLDER
+python validation/experiments/write_page.py
 """
 
-import argparse
 import json
 import textwrap
-from pathlib import Path
 
 import verdicts
 from beads_part import beads_part
@@ -42,9 +40,7 @@ def came_from(name: str) -> str:
 
 def main() -> None:
     """Write the page."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--work", type=Path, required=True, help="folder with the paths of the drops")
-    beads, drops = beads_part(parser.parse_args().work)
+    beads, drops = beads_part()
     gravities, settled = settling_part()
     grains, impacts = grains_part()
     plates, plate = plate_part()
