@@ -159,7 +159,7 @@ def pressed_in(soil: Soil, work: Path) -> tuple[Row, Floats]:
         row[f"depth_{instant:g}"] = float(np.interp(instant, way[:, 0], way[:, 1]))
         row[f"speed_{instant:g}"] = float(np.interp(instant, way[:, 0], way[:, 2]))
     row["stopped_after"] = float(way[-1, 0]) if way[-1, 2] <= 0.0 else math.nan
-    row["depth"], row["mean_force"] = float(way[:, 1].max()), mean_force(way)
+    row["deepest"], row["mean_force"] = float(way[:, 1].max()), mean_force(way)
     return {**row, "cpu_s": time.process_time() - start}, way
 
 

@@ -73,7 +73,8 @@ def rebounds_part() -> tuple[Lines, str]:
     lines.append(share_line("rebounds: the same, grains that pull as lunar soil", "rebounds", expected, pulling))
     out = between(every, JSC, 1e-3, 0.01, 0.2)
     lines.append(line("rebounds: speed out over speed in, 1e-3 g, 1-20 cm/s (COLLIDE-1)", 0.05,
-                      mean_of(list(column(out, "upward_out"))), 0.025, "order of 0.05"))  # fmt: skip
+                      mean_of(list(column(out, "upward_out"))), 0.025, "order of 0.05",
+                      "rebounds: 4 mm, 6 mm"))  # fmt: skip
     thrown = [row for row in every if row["kind"] == FINEST and row["froude"] == 30.0 and row["ejecta"] > 0]
     lines.append(line("rebounds: mean ejecta speed over speed in, Froude number 30 (COLLIDE-2)", 0.0,
                       mean_of(list(column(thrown, "ejecta_speed"))), 0.10, "below 0.10"))  # fmt: skip

@@ -53,10 +53,12 @@ def beads() -> str:
         step("a deeper one", "5 mm, periodic, loose", LOOSE),
         step("and 3 mm in place of 5 mm", LOOSE, FINE),
     ])  # fmt: skip
+    laws = [name for name in ("5 mm, as the one before, friction 0.6", "5 mm, rolling resistance 0.2") if name in beds]
+    law = "; ".join(f"{name.split(', ')[-1]} {steep[name][0]:.2f} ({steep[name][1]:.2f})" for name in laws)
     return (
         "The exponent of density of a light and a heavy ball, from the mean surface (from the first touch), tells "
-        f"what each cause does: {causes}. Loose packing and finer beads bring it to 1/2, walls and width hardly "
-        "change it."
+        f"what each cause does: {causes}. "
+        f"On the loose bed of {LOOSE.split(',')[0]} beads, with another law of contact: {law}."
     )
 
 
@@ -91,7 +93,11 @@ def grains() -> str:
         f"Of the grains {1.0 - len(leaving(base)) / len(base):.2f} stay, in a pocket between others; those that leave "
         f"keep {mean_of(leaving(base)).value:.2f} of their speed. On the other beds, one respect changed in each, all "
         f"together keep {min(others):.2f} to {max(others):.2f}, and those that leave {min(left):.2f} to "
-        f"{max(left):.2f}."
+        f"{max(left):.2f}. How many are ejected depends on how little a rise is seen, and on the restitution: "
+        f"{np.mean(column(base, 'risen_0.1')):.1f} grains rise by more than 0.1 grain, "
+        f"{np.mean(column(base, 'risen_0.5')):.1f} by more than 0.5; at a restitution of 0.5 "
+        f"{np.mean(column(of_kind(every, 'restitution 0.5'), 'risen_0.1')):.1f} and "
+        f"{np.mean(column(of_kind(every, 'restitution 0.5'), 'risen_0.5')):.1f}."
     )
 
 
@@ -163,12 +169,16 @@ def rebound() -> str:
 
     fast = {kind: [row for row in of_kind(every, kind) if row["froude"] == 30.0] for kind in ("6 mm", FINEST, "3 mm")}
     told = ", ".join(f"{rebounds(rows)} of {len(rows)} in {kind}" for kind, rows in fast.items())
-    out = {kind: float(np.mean(column(of_kind(every, kind), "upward_out"))) for kind in (FINEST, JSC)}
+    slow = {
+        kind: np.mean([row["upward_out"] for row in of_kind(every, kind) if row["froude"] <= 10.0])
+        for kind in (FINEST, "6 mm", JSC)
+    }
     return (
         f"Without a pull the size of the grains decides: at a Froude number of 30 rebound {told}. Grains that pull as "
         f"lunar soil throw balls back: {share(PULLING)} at 1e-4 g, {share('lunar, 1e-3 g')} at 1e-3 g and 42 cm/s, "
-        f"{share('lunar, 1e-2 g')} at 1e-2 g; at 1e-3 g a ball of Teflon leaves with {out[JSC]:.3f} of its speed, one "
-        f"of quartz on grains that do not pull with {out[FINEST]:.3f}. From pebbles rebound {share('pebbles')} at a "
+        f"{share('lunar, 1e-2 g')} at 1e-2 g. Up to a Froude number of 10 a ball leaves with {slow[FINEST]:.3f} of its "
+        f"speed from 4 mm, {slow['6 mm']:.3f} from 6 mm, and {slow[JSC]:.3f} (Teflon, 1e-3 g) from 6 mm that pull: the "
+        f"size of the grains and the pull decide, and 0.05 lies between. From pebbles rebound {share('pebbles')} at a "
         f"restitution of 0.6, {share('pebbles, restitution 0.83')} at 0.83, that of rock on rock [Durda-2011]."
     )
 
