@@ -151,12 +151,12 @@ often bounce.
 
 Set-up: that ball (2650 kg/m3; "teflon" 2200) on spheres of 3, 4 and 6 mm, 2 cm deep, of quartz's
 density, restitution 0.6, friction 0.5, rolling resistance 0.1, on ground that repeats after three
-balls; or on "pebbles", hulls of 10 mm, 3.5 cm deep. "Lunar" are spheres of 6 mm that pull on each
-other with the surface energy of clean lunar soil, 0.0029 J/m2 [Perko-2001], of which JSC-1 is a
-simulant. Beds settle under Earth's gravity, which is then taken off slowly. Drops on stiff grains
-that do not pull differ in the Froude number alone, so one cell stands for every gravity with its
-speed. A ball rebounds if it rises by 0.5 mm from its deepest place. The rows of the table at the top
-are those of 4 mm unless they say otherwise.
+balls; or on "pebbles", hulls of 10 mm, 3.5 cm deep. "Lunar" are spheres, of 6 mm unless the name
+says otherwise, that pull on each other with the surface energy of clean lunar soil, 0.0029 J/m2
+[Perko-2001], of which JSC-1 is a simulant. Beds settle under Earth's gravity, which is then taken
+off slowly. Drops on stiff grains that do not pull differ in the Froude number alone, so one cell
+stands for every gravity with its speed. A ball rebounds if it rises by 0.5 mm from its deepest
+place. The rows of the table at the top are those of 4 mm unless they say otherwise.
 
 ![who rebounds](experiments/who_rebounds.png)
 

@@ -27,9 +27,9 @@ SAID = {
     LOWEST: (1e-4, 0.01, 0.1, 1.0),
 }
 FINEST = "4 mm"  # of the beds with all speeds
-PULLING = "lunar, 1e-4 g"
+PULLING = "lunar, 4 mm, 1e-4 g"
 JSC = "lunar, 1e-3 g, teflon"  # what COLLIDE-1 had
-SHOWN = ("4 mm", "6 mm", "lunar, 1e-4 g", "lunar, 1e-3 g", "pebbles", "pebbles, restitution 0.83")
+SHOWN = ("4 mm", "6 mm", "lunar, 1e-4 g", "lunar, 4 mm, 1e-4 g", "pebbles", "pebbles, restitution 0.83")
 
 
 def froude(share: float, speed: float) -> float:
@@ -60,8 +60,8 @@ def rebounds_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "who_rebounds.csv")
     causes = {
-        "1e-3 g, 25-100 cm/s (COLLIDE-2)": "rebounds: lunar, 1e-3 g", LOWEST: "rebounds: lunar, 1e-4 g",
-        "1e-2 g, 4-230 cm/s (PRIME)": "rebounds: lunar, 1e-2 g",
+        "1e-3 g, 25-100 cm/s (COLLIDE-2)": "rebounds: 6 mm; lunar, 4 mm, 1e-3 g", LOWEST: f"rebounds: {PULLING}",
+        "1e-2 g, 4-230 cm/s (PRIME)": "rebounds: 6 mm",
     }  # fmt: skip
     lines = [
         share_line(f"rebounds: {text}", "rebounds" if expected else "stays", expected,

@@ -95,6 +95,8 @@ KINDS = {
     "lunar, 1e-3 g": replace(PULLING, share=1e-3, froude=(30.0,)),
     "lunar, 1e-3 g, teflon": replace(PULLING, share=1e-3, ball_density=TEFLON, froude=(1.0, 3.0, 10.0)),
     "lunar, 1e-2 g": replace(PULLING, share=1e-2, froude=FEW),
+    "lunar, 4 mm, 1e-4 g": Kind(surface_energy=LUNAR, share=1e-4, steps=40.0, froude=(3.0, 10.0)),
+    "lunar, 4 mm, 1e-3 g": Kind(surface_energy=LUNAR, share=1e-3, steps=40.0, froude=(30.0,)),
     "pebbles": PEBBLES,
     "pebbles, restitution 0.83": replace(PEBBLES, material=replace(QUARTZ, restitution=ROCK)),
 }
