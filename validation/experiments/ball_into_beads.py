@@ -72,7 +72,6 @@ def grains() -> dict[str, Beads]:
     wide = {"width": 4.0 * BALL}
     return {
         "5 mm, as the one before, friction 0.6": bed_of(0.005, **wide, friction=0.6),
-        "5 mm, rolling resistance 0.2": bed_of(0.005, **wide, rolling_friction=0.2),
         FINE: bed_of(0.003),
     }
 

@@ -1,5 +1,6 @@
 """What the rows of the ball dropped into beads say: rows of the page's table, and its section."""
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -53,7 +54,7 @@ def beads_part() -> tuple[Lines, str]:
     for where, depth_of in SURFACES.items():
         lines += surface_lines(where, depth_of, drops, sized, 0.14 / slope.value)
     lines.append(line("ball into beads: stopping time over depth / impact speed", 3.0, mean_of(stopping(drops)), 0.75,
-                      "3", "table of beds"))  # fmt: skip
+                      "3"))  # fmt: skip
     of_drops(drops, causes_of(every), slope, FIGURES / "ball_into_beads.png")
     return lines, "\n\n".join((drop_table(every), bed_table(every)))
 
@@ -64,14 +65,13 @@ def surface_lines(
     """Return the rows of the table for depths below one of the surfaces."""
     density, total = drop_exponents(drops, depth_of(drops))
     prefactor = mean_of(list(depth_of(drops) / scale(drops)))
-    name, cause = f"ball into beads, below {where}", "table of beds"
+    name = f"ball into beads, below {where}"
     return [
-        line(f"{name}: exponent of the ball's density", 0.5, density, 0.05, "1/2", cause),
-        line(f"{name}: exponent of the total drop distance", 1 / 3, total, 0.05, "1/3", cause),
-        line(f"{name}: prefactor", law, prefactor, 0.25 * law, f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified",
-             cause),
+        line(f"{name}: exponent of the ball's density", 0.5, density, 0.05, "1/2"),
+        line(f"{name}: exponent of the total drop distance", 1 / 3, total, 0.05, "1/3"),
+        line(f"{name}: prefactor", law, prefactor, 0.25 * law, f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified"),
         line(f"{name}: exponent of the ball's diameter", 2 / 3, diameter_exponent(sized, depth_of(sized)), 0.05, "2/3",
-             cause),
+             "ball into beads: 12.7 to 36 mm"),
     ]  # fmt: skip
 
 
@@ -123,3 +123,9 @@ def diameter_cells(sized: list[Row]) -> list[str]:
 def mean_prefactor(rows: list[Row]) -> float:
     """Return the mean prefactor of some drops, from the mean surface."""
     return float((below_mean_surface(rows) / scale(rows)).mean())
+
+
+def steps_of_diameter(every: list[Row], depth_of: Callable[[list[Row]], Floats]) -> list[float]:
+    """Return the exponents of the diameter between one ball and the next larger, in our beads."""
+    sized = sorted(of_diameters(of_bed(every, OURS)), key=lambda row: row["diameter"])
+    return [diameter_exponent(list(two), depth_of(list(two))).value for two in itertools.pairwise(sized)]

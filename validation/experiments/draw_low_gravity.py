@@ -19,7 +19,6 @@ def of_plates(rows: list[Row], to: Path) -> None:
     groups = {
         "grains of 2000 kg/m$^3$": (INK[0], "o-", lambda name: name.startswith("filled ")),
         "again": ("0.3", ".", lambda name: name.startswith("again")),
-        "finer": (INK[3], "P", lambda name: name == "finer"),
         "lighter grains": (INK[1], "s", lambda name: name.startswith("half density")),
     }
     axes[0].axhspan(0.039, 0.041, color=MEASURED, alpha=0.5, lw=0, label="OSIRIS-REx")

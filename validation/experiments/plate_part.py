@@ -27,12 +27,11 @@ def plate_part() -> tuple[Lines, str]:
     speed, density = column(filled, "speed_6"), column(filled, "bulk_density")
     needed = float(np.interp(-SPEED_AFTER_6, -speed, density))
     half = float(np.interp(0.5 * BENNU, density, speed))
-    cause = "plate: lighter grains, half density"
+    cause = "plate: half density"
     lines = [
         line("plate: speed 6 s after contact, 0.58 filled, no cohesion [m/s]", SPEED_AFTER_6,
-             mean_of(list(column(plain, "speed_6"))), 0.25 * SPEED_AFTER_6, cause="plate: finer, filled 0.6"),
-        line("plate: depth then [m]", DEPTH_AFTER_6, mean_of(list(column(plain, "depth_6"))), 0.25 * DEPTH_AFTER_6,
-             cause="plate: finer"),
+             mean_of(list(column(plain, "speed_6"))), 0.25 * SPEED_AFTER_6, cause="plate: filled 0.6"),
+        line("plate: depth then [m]", DEPTH_AFTER_6, mean_of(list(column(plain, "depth_6"))), 0.25 * DEPTH_AFTER_6),
         line("plate: speed 6 s after contact at half of Bennu's bulk density [m/s]", SPEED_AFTER_6,
              Estimate(half, math.nan, 2), 0.25 * SPEED_AFTER_6, cause=cause),
         line("plate: bulk density that leaves 0.04 m/s after 6 s [kg/m3]", 0.5 * BENNU,

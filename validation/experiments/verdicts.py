@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from ball_into_beads import FINE, LOOSE
-from beads_part import SURFACES, causes_of
+from ball_into_beads import FINE, LOOSE, OURS
+from beads_part import SURFACES, causes_of, mean_prefactor, steps_of_diameter
 from fits import (
     column,
     density_exponent,
@@ -40,26 +40,29 @@ def beads() -> str:
         for name, (light, heavy) in beds.items()
     }  # fmt: skip
 
-    def step(text: str, before: str, after: str) -> str:
+    def step(before: str, after: str) -> str:
         (a, b), (c, d) = steep[before], steep[after]
-        deep = [100 * beds[name][0]["deepest"] for name in (before, after)]
-        return f"{text}: {a:.2f} to {c:.2f} ({b:.2f} to {d:.2f}), the light ball from {deep[0]:.2f} to {deep[1]:.2f} cm"
+        return f"{a:.2f} to {c:.2f} ({b:.2f} to {d:.2f})"
 
-    causes = "; ".join([
-        step("finer beads, 8 to 5 mm", "8 mm, walls, dense", "5 mm, walls, dense"),
-        step("no walls", "5 mm, walls, dense", "5 mm, periodic as wide as the box"),
-        step("a tile of 4 in place of 3 balls", "5 mm, periodic as wide as the box", "5 mm, periodic"),
-        step("of 6 in place of 4", "5 mm, periodic", "5 mm, periodic, 6 ball diameters"),
-        step("a loose bed", "5 mm, periodic", "5 mm, periodic, loose"),
-        step("a deeper one", "5 mm, periodic, loose", LOOSE),
-        step("and 3 mm in place of 5 mm", LOOSE, FINE),
-    ])  # fmt: skip
-    laws = [name for name in ("5 mm, as the one before, friction 0.6", "5 mm, rolling resistance 0.2") if name in beds]
-    law = "; ".join(f"{name.split(', ')[-1]} {steep[name][0]:.2f} ({steep[name][1]:.2f})" for name in laws)
+    causes = (
+        f"finer beads, 8 to 5 mm, {step('8 mm, walls, dense', '5 mm, walls, dense')}, and 5 to 3 mm "
+        f"{step('5 mm, walls, dense', OURS)}; no walls "
+        f"{step('5 mm, walls, dense', '5 mm, periodic as wide as the box')}; ground 6 in place of 3 balls wide "
+        f"{step('5 mm, periodic as wide as the box', '5 mm, periodic, 6 ball diameters')}; a loose bed "
+        f"{step('5 mm, periodic', '5 mm, periodic, loose')}; a deeper one {step('5 mm, periodic, loose', LOOSE)}; "
+        f"there, 3 in place of 5 mm {step(LOOSE, FINE)}"
+    )
+    law = step(LOOSE, "5 mm, as the one before, friction 0.6")
+    larger = [", ".join(f"{one:.2f}" for one in steps_of_diameter(every, depth_of)) for depth_of in SURFACES.values()]
     return (
-        "The exponent of density of a light and a heavy ball, from the mean surface (from the first touch), tells "
-        f"what each cause does: {causes}. "
-        f"On the loose bed of {LOOSE.split(',')[0]} beads, with another law of contact: {law}."
+        "The exponent of density that a light and a heavy ball give, from the mean surface (from the first touch): "
+        f"{causes}; and there, friction of 0.6 in place of 0.3 {law}. So a loose bed brings it nearer to 1/2, from "
+        "the first touch to within the bar in beads of 5 mm, but not in 3 mm. Walls, width, depth and friction do not "
+        "make the rest, and no row here shows what does. On the loose bed of 3 mm the prefactor of "
+        f"the two is {mean_prefactor(list(beds[FINE])):.2f}, on the dense one {mean_prefactor(list(beds[OURS])):.2f}."
+        "\n\nThe exponent of the diameter falls from ball to ball of 12.7, 18, 25.4 and 36 mm: "
+        f"{larger[0]} (from the first touch {larger[1]}). The more beads across the ball, the nearer to 2/3. That "
+        "walls hold a ball up was measured, too [Nelson-2008]."
     )
 
 
@@ -121,8 +124,9 @@ def plate() -> str:
         f"\n\nOf the four corners at 0.6 filled, {sum(a == b for a, b in zip(right, expected, strict=True))} are as "
         "[Ballouz-2021] has them. Rough grains without cohesion slow the plate to "
         f"{by_name['corner 0.6 rough 0 Pa']['speed_6']:.3f} m/s in 6 s but do not stop it: their heaps are hardly "
-        f"steeper than 28 degrees, and packing is critical: at 0.62 filled {by_name['filled 0.62']['speed_6']:.3f} m/s "
-        "are left. At 0.5 filled rough grains stop it where they pull by 50 Pa; those that pull by 10 Pa leave it "
+        "steeper than 28 degrees, and packing is critical: at 0.58 filled "
+        f"{by_name['filled 0.58']['speed_6']:.3f} m/s are left, at 0.55 {by_name['filled 0.55']['speed_6']:.3f}. At "
+        "0.5 filled rough grains stop it where they pull by 50 Pa; those that pull by 10 Pa leave it "
         f"{by_name['speed 10 Pa 0.1']['speed_6']:.3f} m/s. What a cohesion in Pa is of a contact, the abstract does "
         "not say. The mean force on the plate, over the first half of its diameter, goes as its speed to the "
         f"{said(force_exponent(free))} where grains do not pull: nothing else there has a speed, so the exponent must "
