@@ -88,7 +88,7 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
     left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity over Earth's", ylabel="depth over diameter")
     left.axvspan(0.4, 1.2, color="0.9", zorder=0, label="gravities of the experiment")
     left.legend(fontsize=8)
-    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to .9 of the depth")):
+    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to 0.9 of the depth")):
         times = column(rows, name)
         right.plot(share, times, "o", color=ink, alpha=0.7, label=f"ours, {text}")
         middle = np.exp((np.log(times) + 0.5 * np.log(share)).mean())
@@ -105,7 +105,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
     base = kinds["basalt"]
     left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
-    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about .20 (bar .15 to .25)")
+    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about 0.20 (bar 0.15 to 0.25)")
     left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
     left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
     left.set(xlabel="speed out over speed in", ylabel="impacts")

@@ -44,6 +44,8 @@ def of_plates(rows: list[Row], to: Path) -> None:
     middle = float(np.median([row["mean_force"] for row in rows if row["series"] == "speeds"]))
     axes[2].plot(reach, middle * (reach / 0.14) ** (4 / 3), "--", color=MEASURED, label="4/3")
     axes[2].set(xscale="log", yscale="log", xlabel="speed at contact [m/s]", ylabel="mean force [N]")
+    axes[2].set_xticks([0.05, 0.1, 0.2, 0.4], ["0.05", "0.1", "0.2", "0.4"])
+    axes[2].set_xticks([], minor=True)
     axes[2].legend(fontsize=8)
     figure.savefig(to, dpi=110)
     plt.close(figure)

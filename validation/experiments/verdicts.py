@@ -82,7 +82,9 @@ def gravity() -> str:
         f"{GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER):.0f} under Earth's, and ten times as much."
     )
     if stiff:
-        text += f" On ten times stiffer grains it sinks by {deep(stiff)} diameters under Earth's gravity, too."
+        text += (
+            f" On ten times stiffer grains under Earth's gravity, the same number, it sinks by {deep(stiff)} diameters."
+        )
     return text
 
 
