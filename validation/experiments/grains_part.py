@@ -23,7 +23,7 @@ def grains_part() -> tuple[Lines, str]:
              "about 0.20", STAYED),
         line("own kind: the same of those that leave upwards", 0.2, mean_of(leaving(base)), 0.05, "about 0.20"),
         line("own kind: share of impacts with fewer than 10 grains ejected", 1.0, few, 0.5, "typical",
-             "own kind: restitution 0.5"),
+             "own kind: restitution 0.5, rolling resistance"),
         line("own kind: share of impacts whose median grain rises less than its diameter", 1.0, low, 0.5, "typical"),
     ]  # fmt: skip
     of_grains(kinds, FIGURES / "grain_on_its_own_kind.png")

@@ -29,9 +29,9 @@ Ours: a modulus of 1e7 Pa (theirs 7e7); a box of three balls, 85 mm deep (theirs
 rows of the table at the top are the twelve drops, and four diameters, into that bed ("3 mm, walls,
 dense"). A light and a heavy ball from 0.1 m then meet other beds: on ground that repeats
 ("periodic"), four balls wide unless the name says otherwise; of beads that fell at no more than 0.6
-in place of 3 sqrt(g d) ("loose"); 110 in place of 85 mm deep ("deeper"). Beds on periodic ground are
-poured on tiles and laid out. Depth is that of the ball's lowest point, below the mean height of the
-topmost points of the beads or below the point of first touch.
+in place of 3 sqrt(g d) ("loose"); 110 in place of 85 mm deep ("deeper"). Beds on periodic ground
+are poured on tiles and laid out. Depth is that of the ball's lowest point, below the mean height of
+the topmost points of the beads or below the point of first touch.
 
 ![drops](experiments/ball_into_beads.png)
 
@@ -66,9 +66,9 @@ of 150 um hit a granular bed at 0.8 m/s. The grain keeps about 0.20 of its speed
 than ten others are ejected, and they rise by less than a grain typically.
 
 Set-up: spheres of three sizes from 0.95 to 1.05 of 150 um, 2900 kg/m3, modulus 1e7 Pa, restitution
-0.8, friction 0.5 (neither is in what could be read), on ground that repeats after eight grains; four
-beds, random points. A grain counts as ejected where, touching nothing, its flight takes it so far
-above where it lay. A grain that still touches the bed after 1.5 ms, or falls back, stays. The
+0.8, friction 0.5 (neither is in what could be read), on ground that repeats after eight grains;
+four beds, random points. A grain counts as ejected where, touching nothing, its flight takes it so
+far above where it lay. A grain that still touches the bed after 1.5 ms, or falls back, stays. The
 source says of the grain that it "still rebounds"; whether its mean counts grains that stay it does
 not say, so both means stand here.
 
