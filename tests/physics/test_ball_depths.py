@@ -1,5 +1,6 @@
 """How the depths of balls dropped into beads are fitted: rows made by the experiment's own law give it back."""
 
+import itertools
 import sys
 from pathlib import Path
 
@@ -45,30 +46,30 @@ def test_the_fit_counts_the_drop_distance_down_to_the_lowest_point() -> None:
     assert diameter_exponent(sized, below_mean_surface(sized)).value == pytest.approx(2 / 3, abs=1e-9)
 
 
-def test_beads_without_size_are_a_straight_line_in_each_drop() -> None:
-    """Coarse beads make the exponent of density steeper; the limit takes off what is proportional to them."""
-    from fits import below_mean_surface, drop_exponents, without_beads
+def test_the_beds_of_the_causes_lead_from_walls_to_ours_one_step_at_a_time() -> None:
+    from ball_into_beads import bed_of, causes
 
-    beds = [twelve(0.003), twelve(0.005), twelve(0.008)]
-    steep = [drop_exponents(rows, below_mean_surface(rows))[0].value for rows in beds]
-    assert 0.5 < steep[0] < steep[1] < steep[2]
-    limit = without_beads(beds, ("density", "diameter", "fall"))
-    density, total = drop_exponents(limit, below_mean_surface(limit))
-    assert density.value == pytest.approx(0.5, abs=1e-9)
-    assert total.value == pytest.approx(1 / 3, abs=1e-9)
+    beds = list(causes().values())
+    for before, after in itertools.pairwise(beds):
+        changed = {key for key in vars(before) if vars(before)[key] != vars(after)[key]} - {"tiles"}
+        assert len(changed) == 1 or before.width > after.width, changed
+    # The last but for its beads.
+    assert vars(beds[-1]) | {"diameters": (), "width": 0.0} == vars(bed_of(0.003)) | {"diameters": (), "width": 0.0}
 
 
-def test_other_beds_differ_in_one_respect_and_take_a_light_and_a_heavy_ball() -> None:
-    from ball_into_beads import bed_of, series
+def test_a_bed_laid_out_from_tiles_repeats_and_lies_as_high_as_its_tile() -> None:
+    from dataclasses import replace
 
-    plain = vars(bed_of(0.005))
-    found = series(0.005)
-    for name, keywords in found["box"] + found["grains"]:
-        bed = vars(keywords["beads"])
-        assert sum(bed[key] != plain[key] for key in plain) == 1, name
-    named = dict(found["box"])
-    assert named["5mm_wider"]["density"] == 2200.0
-    assert named["5mm_wider_heavy"]["density"] == 15000.0
+    import numpy as np
+    from ball_into_beads import bed_of
+    from sphere_bed import places_of, poured
+
+    bed = bed_of(0.005, width=0.06, depth=0.02, fall_speed=3.0)
+    tile, whole = poured(replace(bed, width=0.03, tiles=1)), poured(bed)
+    assert len(whole.bodies) == 4 * len(tile.bodies) == bed.count
+    assert whole.period == (0.06, 0.06)
+    np.testing.assert_allclose(np.abs(places_of(whole)[:, :2]).max(), 0.03, atol=0.005)
+    assert whole.position[:, 2].mean() == pytest.approx(tile.position[:, 2].mean(), abs=2e-4)
 
 
 def test_a_low_restitution_gets_more_steps() -> None:

@@ -20,7 +20,7 @@ def test_a_similar_drop_has_the_numbers_of_the_drop_it_stands_for() -> None:
     """Froude number, modulus over density v^2, and pull over density v^2 d are the true drop's."""
     from who_rebounds import DIAMETER, EARTH, KINDS
 
-    kind = KINDS["lunar_0.01"]
+    kind = KINDS["lunar, 1e-2 g"]
     speed, gravity, stuff = kind.scaled(3.0)
     assert speed / np.sqrt(gravity * DIAMETER) == pytest.approx(3.0)
     true_speed = 3.0 * np.sqrt(EARTH * kind.share * DIAMETER)
@@ -34,9 +34,9 @@ def test_a_fast_ball_throws_grains_and_none_leaves_faster_than_a_pair(
     """Ejecta begin with speed [Brisset-2018]; a bed gives back less than the restitution of its grains."""
     import who_rebounds
 
-    kind = replace(who_rebounds.KINDS["sand"], grain=0.007, width=0.05)
-    monkeypatch.setitem(who_rebounds.KINDS, "sand", kind)
-    slow, fast = (who_rebounds.drop(tmp_path, "sand", froude, 0) for froude in (1.0, 30.0))
+    kind = replace(who_rebounds.KINDS["6 mm"], grain=0.007, width=0.06)
+    monkeypatch.setitem(who_rebounds.KINDS, "6 mm", kind)
+    slow, fast = (who_rebounds.drop(tmp_path, "6 mm", froude, 0) for froude in (1.0, 30.0))
     assert slow["ejecta"] == 0
     assert fast["ejecta"] > 10
     assert all(0.0 <= row["upward_out"] < kind.material.restitution for row in (slow, fast))
@@ -46,7 +46,10 @@ def test_a_share_agrees_where_most_do_what_was_seen() -> None:
     from rebounds_part import RISEN, share_line
 
     rows = [{"rise": 2.0 * RISEN}] * 3 + [{"rise": 0.0}] * 7
-    text, agrees = share_line("ball", "stays", 0.0, rows)
-    assert agrees
-    assert "0.30 (0.11 to 0.60)" in text
-    assert not share_line("ball", "rebounds", 1.0, rows)[1]
+    line = share_line("ball", "stays", 0.0, rows, "a row")
+    assert line.agrees
+    assert line.ours == "0.30 (0.11 to 0.60)"
+    assert line.cells()[-1] == ""
+    other = share_line("ball", "rebounds", 1.0, rows, "a row")
+    assert not other.agrees
+    assert other.cells()[-1] == "a row"

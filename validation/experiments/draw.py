@@ -12,44 +12,34 @@ from fits import (
     below_first_touch,
     below_mean_surface,
     column,
-    drop_exponents,
+    density_exponent,
     leaving,
     mean_of,
     scale,
     speeds,
 )
 from matplotlib.axes import Axes
-from sphere_bed import Row
+from result_rows import Row
 
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
 
 
-def of_drops(beds: list[list[Row]], slope: Estimate, work: Path, to: Path) -> None:
-    """Depth against the experiment's law, stopping time and deceleration in the finest beads, exponents over size.
+def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate, to: Path) -> None:
+    """Depth against the experiment's law, stopping time, and the exponent of density in other beds.
 
-    beds: the drops into beads of each size, finest first.
+    rows: drops into our beads. beds: a light and a heavy drop into each bed.
     """
-    rows = beds[0]
-    figure, ((left, middle), (right, last)) = plt.subplots(2, 2, figsize=(10, 7.6), layout="constrained")
+    figure, (left, middle, last) = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
     draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
-        speed, depth = column(own, "impact_speed"), column(own, "deepest")
-        middle.plot(depth / speed * 1e3, column(own, "stopping_time") * 1e3, "o", color=ink)
-        path = work / f"path_{next((row['name'] for row in own if row['fall'] == 0.1), own[0]['name'])}.npy"
-        if path.exists():
-            time, _, _, deceleration = np.load(path).T
-            wide = np.ones(5) / 5
-            smooth = np.convolve(deceleration, wide, mode="valid") / 9.81
-            right.plot(time[2:-2] * 1e3, smooth, color=ink, lw=1.2)
+        middle.plot(column(own, "deepest") / column(own, "impact_speed") * 1e3, column(own, "stopping_time") * 1e3, "o",
+                    color=ink)  # fmt: skip
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
-    right.set(xlabel="time since contact [ms]", ylabel="deceleration over g")
-    right.set_title("fall .1 m; mean of 2.5 ms", fontsize=10)
-    right.axhline(0.0, color="0.8", lw=0.8)
     draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
     plt.close(figure)
@@ -72,21 +62,19 @@ def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
     axis.legend(fontsize=8)
 
 
-def draw_exponents(axis: Axes, beds: list[list[Row]]) -> None:
-    """Exponents of density and drop distance over the size of the beads, from either surface."""
-    for which, name, law, ink in ((0, "density", 0.5, INK[0]), (1, "drop distance", 1 / 3, INK[1])):
-        axis.axhspan(law - 0.05, law + 0.05, color=ink, alpha=0.15, lw=0)
-        for shift, depth_of, face, text in (
-            (-0.04, below_mean_surface, ink, name), (0.04, below_first_touch, "none", f"{name}, from the first touch"),
-        ):  # fmt: skip
-            found = [drop_exponents(rows, depth_of(rows))[which] for rows in beds]
-            axis.errorbar(
-                [1e3 * rows[0]["bead_size"] + shift for rows in beds], [one.value for one in found],
-                [one.half for one in found], fmt="o", color=ink, mfc=face, capsize=3, label=text,
-            )  # fmt: skip
-    axis.set(xlabel="size of the beads [mm]", ylabel="exponent", xlim=(0.0, None), ylim=(0.0, 1.0))
-    axis.set_title("bands: measured +- .05", fontsize=10)
-    axis.legend(fontsize=8)
+def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
+    """Exponent of density that a light and a heavy ball give in each bed, from either surface."""
+    axis.axvspan(0.45, 0.55, color=MEASURED, alpha=0.25, lw=0, label="measured, +-0.05")
+    at = np.arange(len(beds))[::-1]
+    for depth_of, ink, face, text in (
+        (below_mean_surface, INK[0], INK[0], "from the mean surface"),
+        (below_first_touch, INK[0], "none", "from the first touch"),
+    ):
+        found = [density_exponent(light, heavy, depth_of) for light, heavy in beds.values()]
+        axis.plot(found, at, "o", color=ink, mfc=face, label=text)
+    axis.set_yticks(at, list(beds), fontsize=7)
+    axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
+    axis.legend(fontsize=7)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
@@ -100,7 +88,7 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
     left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity over Earth's", ylabel="depth over diameter")
     left.axvspan(0.4, 1.2, color="0.9", zorder=0, label="gravities of the experiment")
     left.legend(fontsize=8)
-    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to .9 of the depth")):
+    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to 0.9 of the depth")):
         times = column(rows, name)
         right.plot(share, times, "o", color=ink, alpha=0.7, label=f"ours, {text}")
         middle = np.exp((np.log(times) + 0.5 * np.log(share)).mean())
@@ -117,7 +105,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
     base = kinds["basalt"]
     left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
-    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about .20 (bar .15 to .25)")
+    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about 0.20 (bar 0.15 to 0.25)")
     left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
     left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
     left.set(xlabel="speed out over speed in", ylabel="impacts")

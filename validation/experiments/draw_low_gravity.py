@@ -9,36 +9,44 @@ import matplotlib.pyplot as plt
 import numpy as np
 from draw import INK, MEASURED
 from fits import column
-from sphere_bed import Row
+from result_rows import Row
 
 
 def of_plates(rows: list[Row], to: Path) -> None:
-    """Speed and depth 6 s after contact over bulk density."""
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.0), layout="constrained")
+    """Speed 6 s after contact over bulk density and in the corners, and mean force over speed."""
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4.0), layout="constrained")
+    flight = [row for row in rows if row["series"] == "flight"]
     groups = {
-        "no cohesion": (INK[0], "o", lambda name: name.startswith("filled_")),
-        "10 Pa": (INK[1], "s", lambda name: "_10Pa" in name),
-        "100 Pa": (INK[1], "^", lambda name: "_100Pa" in name),
-        "friction .2": (INK[2], "v", lambda name: "smooth" in name),
-        "no rolling resistance": (INK[2], "D", lambda name: "round" in name),
-        "finer": (INK[3], "P", lambda name: "finer" in name),
-        "stiffer": (INK[3], "X", lambda name: "stiffer" in name),
-        "wider, deeper, anew": ("0.3", ".", lambda name: name.split("_")[1] in ("wider", "deeper", "again")),
+        "grains of 2000 kg/m$^3$": (INK[0], "o-", lambda name: name.startswith("filled ")),
+        "again": ("0.3", ".", lambda name: name.startswith("again")),
+        "lighter grains": (INK[1], "s", lambda name: name.startswith("half density")),
     }
-    for axis, name, text, measured in (
-        (axes[0], "speed_6", "speed after 6 s [m/s]", (0.04, 0.04)),
-        (axes[1], "depth_6", "depth after 6 s [m]", (0.37, 0.42)),
-    ):
-        axis.axhspan(0.98 * measured[0], 1.02 * measured[1], color=MEASURED, alpha=0.5, lw=0, label="OSIRIS-REx")
-        axis.axvline(0.5 * 1190.0, color=MEASURED, ls=":", label="half of Bennu's bulk density")
-        for label, (ink, mark, chosen) in groups.items():
-            own = [row for row in rows if chosen(str(row["name"]))]
-            style = "-" if label == "no cohesion" else ""
-            if own:
-                axis.plot(column(own, "bulk_density"), np.maximum(column(own, name), 0.0), mark + style, color=ink,
-                          label=label)  # fmt: skip
-        axis.set(xlabel="bulk density [kg/m$^3$]", ylabel=text)
+    axes[0].axhspan(0.039, 0.041, color=MEASURED, alpha=0.5, lw=0, label="OSIRIS-REx")
+    axes[0].axvline(0.5 * 1190.0, color=MEASURED, ls=":", label="half of Bennu's bulk density")
+    for label, (ink, style, chosen) in groups.items():
+        own = sorted((row for row in flight if chosen(str(row["name"]))), key=lambda row: row["filled"])
+        axes[0].plot(
+            column(own, "bulk_density"), np.maximum(column(own, "speed_6"), 0.0), style, color=ink, label=label
+        )
+    axes[0].set(xlabel="bulk density [kg/m$^3$]", ylabel="speed after 6 s [m/s]")
     axes[0].legend(fontsize=8)
+    corners = [row for row in rows if row["series"] == "corners"]
+    at = np.arange(len(corners))[::-1]
+    axes[1].barh(at, 100.0 * np.maximum(column(corners, "speed_6"), 0.0), color=INK[0])
+    axes[1].set_yticks(at, [str(row["name"]).removeprefix("corner ") for row in corners], fontsize=8)
+    axes[1].axvline(1.0, color=MEASURED, ls=":")
+    axes[1].set(xlabel="speed after 6 s [cm/s]; left of the line: resists")
+    for pull, ink in zip(sorted({row["cohesion"] for row in rows if row["series"] == "speeds"}), INK, strict=False):
+        own = [row for row in rows if row["series"] == "speeds" and row["cohesion"] == pull]
+        own.sort(key=lambda row: row["speed"])
+        axes[2].plot(column(own, "speed"), column(own, "mean_force"), "o-", color=ink, label=f"{pull:g} Pa")
+    reach = np.array([0.05, 0.4])
+    middle = float(np.median([row["mean_force"] for row in rows if row["series"] == "speeds"]))
+    axes[2].plot(reach, middle * (reach / 0.14) ** (4 / 3), "--", color=MEASURED, label="4/3")
+    axes[2].set(xscale="log", yscale="log", xlabel="speed at contact [m/s]", ylabel="mean force [N]")
+    axes[2].set_xticks([0.05, 0.1, 0.2, 0.4], ["0.05", "0.1", "0.2", "0.4"])
+    axes[2].set_xticks([], minor=True)
+    axes[2].legend(fontsize=8)
     figure.savefig(to, dpi=110)
     plt.close(figure)
 

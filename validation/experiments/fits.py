@@ -5,11 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from result_rows import Row
 from scipy.stats import t as student
-from sphere_bed import Floats, Row
-
-FALL = 0.1  # m, of the drops that everything but the drop series repeats
-LIGHT = 2200.0  # kg/m3, likewise
+from sphere_bed import Floats
 
 
 @dataclass(frozen=True)
@@ -77,21 +75,6 @@ def density_exponent(light: Row, heavy: Row, depth_of: Callable[[list[Row]], Flo
     pair = [light, heavy]
     low, high = depth_of(pair) / total_drop(pair) ** (1 / 3)
     return math.log(high / low) / math.log(heavy["density"] / light["density"])
-
-
-def without_beads(beds: list[list[Row]], cell: tuple[str, ...]) -> list[Row]:
-    """Return drops as they would be in beads of no size: for each drop a straight line over the bead size, at 0.
-
-    beds: rows of the same drops in beds of several sizes of beads; cell: the columns that tell drops in a bed apart.
-    """
-    found = []
-    for row in beds[0]:
-        same = [other for bed in beds for other in bed if all(other[key] == row[key] for key in cell)]
-        lines = {
-            name: np.polyfit(column(same, "bead_size"), column(same, name), 1) for name in ("deepest", "touch_height")
-        }
-        found.append(row | {name: float(line[1]) for name, line in lines.items()} | {"bead_size": 0.0})
-    return found
 
 
 def scale(rows: list[Row]) -> Floats:

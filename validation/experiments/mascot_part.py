@@ -2,7 +2,7 @@
 
 import sys
 
-from table_lines import HERE, Lines
+from table_lines import HERE, Line, Lines
 
 # Behind this folder, which has files of the same names.
 sys.path.append(str(HERE.parent / "mascot"))
@@ -22,12 +22,6 @@ def mascot_part() -> Lines:
     lines = []
     for name, words in QUANTITIES.items():
         one, measured = answer(column(rows, name), MEASURED[name]), MEASURED[name]
-        lines.append(
-            (
-                f"| {words} | {measured:g}, once "
-                f"| {said(one.middle)} (eight in ten: {said(one.low)} to {said(one.high)}) "
-                f"| {len(rows)} | {one.middle / measured:.2f} | {'yes' if one.agrees else 'no'} |",
-                one.agrees,
-            )
-        )
+        told = f"{said(one.middle)} (eight in ten: {said(one.low)} to {said(one.high)})"
+        lines.append(Line(words, f"{measured:g}, once", told, len(rows), f"{one.middle / measured:.2f}", one.agrees))
     return lines

@@ -1,10 +1,12 @@
 """The slope at which a heap of beads stays when one end of its box is opened."""
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
-from sphere_bed import Beads, Row, come_to_rest
+from result_rows import Row
+from sphere_bed import LOOKS, Beads, come_to_rest
 
 from lithobrake.dem import Sphere, World
 
@@ -16,7 +18,7 @@ def angle_of_repose(beads: Beads, seed: int) -> Row:
 
     The lowest two layers stay behind the gate: a floor as rough as the heap. What leaves is caught below.
     """
-    generator = np.random.default_rng(seed)
+    start, generator = time.process_time(), np.random.default_rng(seed)
     size, material, gravity = beads.mean_diameter, beads.material, beads.gravity
     count = round(0.58 * LONG * HIGH * ACROSS / (math.pi / 6.0))
     smooth = replace(material, friction=0.0)
@@ -38,7 +40,7 @@ def angle_of_repose(beads: Beads, seed: int) -> Row:
     world.add_plane((0, 0, -8.0 * size), (0, 0, 1), material)
     gate = world.add_plane((LONG * size, 0, 0), (-1, 0, 0), material)
     world.drag = math.sqrt(gravity / size) / 3.0
-    come_to_rest(world, beads)
+    come_to_rest(world, beads, LOOKS)
     filled = float(world.position[:, 2].max())
     world.move_plane(gate, bodies=[int(k) for k in np.flatnonzero(world.position[:, 2] < 2.0 * size)])
     tick = 2.0 * math.sqrt(size / gravity)
@@ -52,6 +54,7 @@ def angle_of_repose(beads: Beads, seed: int) -> Row:
     return {
         "seed": seed, "friction": material.friction, "beads": count, "stayed": len(staying),
         "height_left": float(left[:, 2].max()) / filled, "angle_deg": surface_slope(left, size, LONG * size),
+        "cpu_s": time.process_time() - start,
     }  # fmt: skip
 
 

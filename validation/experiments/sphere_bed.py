@@ -1,35 +1,27 @@
-"""Beads poured into a box, and a ball dropped on them: what the experiments on this page share.
+"""Beads poured on ground that repeats, or into a box: the beds of the experiments.
 
 A bed is settled once and kept with the springs of its contacts (World.save) in a work folder, so that every drop
 starts from the same rest.
 """
 
-import argparse
+import hashlib
 import math
-import sys
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from lithobrake.dem import Material, Sphere, World
+from lithobrake.dem import Material, Sphere, World, folded, period_of
 from lithobrake.touchdown import settling
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-import harness
-from harness import Row, origin, write_document
 
 Floats = NDArray[np.float64]
 
 POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle
-DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
-DAMPED, DAMPED_STEPS = 0.6, 30.0  # below such a restitution damping asks for more steps: up to 25 at .5
+DAMPED, DAMPED_STEPS = 0.6, 30.0  # below such a restitution damping asks for more steps: up to 25 at 0.5
 LOOKS = 12  # a time of free fall through the whole column
 PATIENCE = 40  # times of fall
-FOLLOWED = 1.05  # times the stopping time
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,10 +31,12 @@ class Beads:
     diameters: tuple[float, ...]  # m, each as frequent as the others
     material: Material
     gravity: float  # m/s2, downwards
-    width: float  # m, of the square box
-    depth: float  # m, that the bed has if it fills .58 of it
+    width: float  # m, after which the ground repeats along x and y, or of the square box
+    depth: float  # m, that the bed has if it fills 0.58 of it
     seed: int
     fall_speed: float = 3.0  # sqrt(g d), the most at which beads fall while the bed is poured: slow makes it loose
+    walls: bool = False
+    tiles: int = 1  # along x and y: the bed is poured on a tile of width / tiles, and laid out so often
 
     @property
     def mean_diameter(self) -> float:
@@ -53,13 +47,16 @@ class Beads:
     def count(self) -> int:
         """Number of beads."""
         volume = math.pi / 6.0 * float(np.mean(np.array(self.diameters) ** 3))
-        return round(0.58 * self.width**2 * self.depth / volume)
+        return round(0.58 * (self.width / self.tiles) ** 2 * self.depth / volume) * self.tiles**2
 
 
-def walled_world(beads: Beads) -> World:
-    """Return an empty box of the material of its beads: a floor at height 0 and four walls."""
-    world = World((0.0, 0.0, -beads.gravity), None)
-    add_box(world, beads.width, 0.0, beads.material)
+def empty_world(beads: Beads) -> World:
+    """Return ground at height 0 without beads, of their material."""
+    world = World((0.0, 0.0, -beads.gravity), None, period=None if beads.walls else (beads.width, beads.width))
+    if beads.walls:
+        add_box(world, beads.width, 0.0, beads.material)
+    else:
+        world.add_plane((0, 0, 0), (0, 0, 1), beads.material)
     return world
 
 
@@ -73,6 +70,23 @@ def add_box(world: World, width: float, floor: float, material: Material) -> Non
             world.add_plane(-0.5 * width * normal, normal, material)
 
 
+def add_beads(world: World, radii: Floats, material: Material, places: Floats) -> None:
+    """Add beads of radii [m] at places [m], shape [count, 3]."""
+    shapes = {radius: Sphere(float(radius)) for radius in np.unique(radii)}
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(radii), 1))
+    world.add_bodies([shapes[radius] for radius in radii], material, places, upright)
+
+
+def radii_of(world: World) -> Floats:
+    """Radii of the bodies of a world [m]."""
+    return np.array([body.shape.bounding_radius for body in world.bodies])
+
+
+def places_of(world: World, about: tuple[float, float] = (0.0, 0.0)) -> Floats:
+    """Positions [m] of the bodies of a world from a point of its ground, of their nearest images where it repeats."""
+    return folded(world.position - [*about, 0.0], period_of(world.period))
+
+
 def poured(beads: Beads) -> World:
     """Return beads that fell from a loose lattice under their gravity and came to rest.
 
@@ -80,20 +94,41 @@ def poured(beads: Beads) -> World:
     below 1e-5 of that which lifts all beads by a diameter, with the drag of their fall and then without it. These are
     the criteria of touchdown/settling.py.
     """
+    if beads.tiles > 1:
+        return laid_out(beads)
     generator = np.random.default_rng(beads.seed)
-    world = walled_world(beads)
+    world = empty_world(beads)
     sizes = generator.choice(beads.diameters, beads.count)
-    shapes = {size: Sphere(0.5 * size) for size in beads.diameters}
     row = int(beads.width / (1.03 * max(beads.diameters)))
     pitch = beads.width / row
     play = 0.5 * (pitch - max(beads.diameters))
-    for k, size in enumerate(sizes):
-        cell = np.array([k % row, k // row % row, k // row**2]) + 0.5
-        place = cell * pitch - [0.5 * beads.width, 0.5 * beads.width, 0.0]
-        world.add_body(shapes[size], beads.material, place + play * generator.uniform(-1.0, 1.0, 3))
-    world.drag = math.sqrt(beads.gravity / beads.mean_diameter) / beads.fall_speed
+    k = np.arange(beads.count)
+    cells = np.stack([k % row, k // row % row, k // row**2], axis=1) + 0.5
+    corner = np.array([0.5 * beads.width, 0.5 * beads.width, 0.0])
+    add_beads(
+        world, 0.5 * sizes, beads.material, cells * pitch - corner + play * generator.uniform(-1.0, 1.0, cells.shape)
+    )
+    world.drag = fall_drag(beads)
+    come_to_rest(world, beads, LOOKS)
+    return world
+
+
+def laid_out(beads: Beads) -> World:
+    """Return copies of a poured tile side by side, at rest together."""
+    tile = poured(replace(beads, width=beads.width / beads.tiles, tiles=1))
+    places, width = places_of(tile), beads.width / beads.tiles
+    steps = (np.arange(beads.tiles) - 0.5 * (beads.tiles - 1)) * width
+    every = np.concatenate([places + np.array([x, y, 0.0]) for x in steps for y in steps])
+    world = empty_world(beads)
+    add_beads(world, np.tile(radii_of(tile), beads.tiles**2), beads.material, every)
+    world.drag = fall_drag(beads)
     come_to_rest(world, beads)
     return world
+
+
+def fall_drag(beads: Beads) -> float:
+    """Return the drag [1/s] that holds falling beads below their fall speed."""
+    return math.sqrt(beads.gravity / beads.mean_diameter) / beads.fall_speed
 
 
 def steps_for(material: Material, steps: float) -> float:
@@ -101,9 +136,10 @@ def steps_for(material: Material, steps: float) -> float:
     return steps if material.restitution >= DAMPED else max(steps, DAMPED_STEPS)
 
 
-def come_to_rest(world: World, beads: Beads) -> None:
+def come_to_rest(world: World, beads: Beads, hanging: int = 0) -> None:
     """Run a world under its drag until it is at rest, and on without drag until it is at rest.
 
+    hanging: looks for which beads that hang in the air at first, and are slow, must have had time to fall.
     Raises ValueError where it is not at rest after its patience.
     """
     fall = math.sqrt(2.0 * float(world.position[:, 2].max()) / beads.gravity)
@@ -112,8 +148,7 @@ def come_to_rest(world: World, beads: Beads) -> None:
     for look in range(PATIENCE * LOOKS):
         world.run(duration=fall / LOOKS)
         ratio = settling.kinetic_ratio(world, beads.mean_diameter, beads.gravity)
-        # The lattice hangs in the air at first, and is slow: it must have had time to fall.
-        if look < LOOKS or ratio > settling.KINETIC_RATIO:
+        if look < hanging or ratio > settling.KINETIC_RATIO:
             continue
         if settling.unbalanced_force(world) < settling.UNBALANCED_FORCE:
             if world.drag == 0.0:
@@ -124,28 +159,19 @@ def come_to_rest(world: World, beads: Beads) -> None:
 
 def kept(beads: Beads, work: Path) -> World:
     """Return the settled bed from the work folder, poured if it is not there."""
-    sizes = f"{min(beads.diameters):g}-{max(beads.diameters):g}"
-    stuff = beads.material
-    name = (
-        f"bed_{sizes}_{beads.width:g}_{beads.depth:g}_E{stuff.young_modulus:g}_e{stuff.restitution:g}"
-        f"_mu{stuff.friction:g}_rho{stuff.density:g}_g{beads.gravity:g}_{beads.seed}"
-    )
-    if beads.fall_speed != Beads.fall_speed:
-        name += f"_fall{beads.fall_speed:g}"
-    path = work / f"{name}.h5"
+    told = repr(sorted(asdict(beads).items()))
+    path = work / f"bed_{hashlib.sha256(told.encode()).hexdigest()[:16]}.h5"
     if not path.exists():
-        work.mkdir(parents=True, exist_ok=True)
         poured(beads).save(path)
     return World.load(path)
 
 
-def column_tops(world: World, reach: float, spacing: float) -> Floats:
-    """Heights [m] of the highest point of a bead above each point of a grid, out to a reach [m] from the middle."""
+def column_tops(world: World, reach: float, spacing: float, about: tuple[float, float] = (0.0, 0.0)) -> Floats:
+    """Heights [m] of the highest point of a bead above each point of a grid, out to a reach [m] from a place [m]."""
     steps = math.floor(reach / spacing)
     axis = np.arange(-steps, steps + 1) * spacing
     tops = np.zeros((len(axis), len(axis)))
-    radius = np.array([body.shape.bounding_radius for body in world.bodies])
-    for place, r in zip(world.position, radius, strict=True):
+    for place, r in zip(places_of(world, about), radii_of(world), strict=True):
         near_x, near_y = np.abs(axis - place[0]) < r, np.abs(axis - place[1]) < r
         if near_x.any() and near_y.any():
             off = (axis[near_x, None] - place[0]) ** 2 + (axis[None, near_y] - place[1]) ** 2
@@ -166,98 +192,8 @@ def bulk_density(world: World, beads: Beads) -> float:
     low = np.array([-0.25 * beads.width, -0.25 * beads.width, 2.0 * size])
     high = np.array([0.25 * beads.width, 0.25 * beads.width, level - 4.0 * size])
     points = generator.uniform(low, high, (40_000, 3))
-    radius = np.array([body.shape.bounding_radius for body in world.bodies])
     inside = np.zeros(len(points), dtype=bool)
     tree = cKDTree(points)
-    for near in tree.query_ball_point(world.position, radius):
+    for near in tree.query_ball_point(places_of(world), radii_of(world)):
         inside[near] = True
     return float(inside.mean()) * beads.material.density
-
-
-def dropped(
-    world: World,
-    ball: Sphere,
-    material: Material,
-    mass: float,
-    place: tuple[float, float],
-    fall: float,
-    pace: float,
-    local: float = 0.0,
-    touch_speed: float | None = None,
-    steps: float = DROP_STEPS,
-) -> tuple[Row, Floats]:
-    """Let a ball fall from a height [m] of its lowest point above the mean surface, and follow it until it stops.
-
-    touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between
-    two looks. steps: in the shortest contact. local: steps in a contact at its own; 0: all at the world's step.
-    Returns the row of results and the path: time since the surface was reached [s], depth of the lowest point below the
-    mean surface [m], speed downwards [m/s], deceleration [m/s2], shape [looks, 4].
-    """
-    gravity, radius = -float(world.gravity[2]), ball.radius
-    tops = column_tops(world, 1.2 * radius, 0.1 * radius)
-    level = float(tops.mean())
-    offset = world.position[:, :2] - place
-    sizes = np.array([body.shape.bounding_radius for body in world.bodies])
-    span = (radius + sizes) ** 2 - (offset**2).sum(axis=1)
-    start = float((world.position[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) * (1.0 + 1e-9) - radius
-    speed = math.sqrt(max(2.0 * gravity * (fall - (start - level)), 0.0)) if touch_speed is None else touch_speed
-    inertia = 0.4 * mass * radius**2 * np.eye(3)
-    body = world.add_body(
-        ball, material, (*place, start + radius), velocity=(0.0, 0.0, -speed), mass=mass, inertia=inertia
-    )  # fmt: skip
-    # Ball and beads are of about the same modulus: the lightest pair of beads has the shortest contact.
-    fastest = max(speed, math.sqrt(gravity * radius))
-    world.time_step = world.shortest_contact(fastest) / steps_for(material, steps)
-    pace = max(round(pace / world.time_step), 1) * world.time_step
-    begun, path = world.time, []
-    stopped = 0.0
-    while stopped == 0.0 or world.time - begun < FOLLOWED * stopped:
-        before = float(world.velocity[body, 2])
-        if local > 0.0:
-            world.run_locally(pace, local)
-        else:
-            world.run(duration=pace)
-        now = float(world.velocity[body, 2])
-        height = float(world.position[body, 2]) - radius
-        path.append((world.time - begun, level - height, -now, (now - before) / pace))
-        if stopped == 0.0 and now >= 0.0:
-            stopped = world.time - begun
-    looks = np.array(path)
-    return {
-        "impact_speed": math.sqrt(2.0 * gravity * fall), "level": level, "touch_height": start - level,
-        "deepest": float(looks[:, 1].max()),
-        "depth": float(looks[-1, 1]), "stopping_time": stopped, "peak_deceleration": float(looks[:, 3].max()),
-    }, looks  # fmt: skip
-
-
-def read_rows(path: Path) -> list[Row]:
-    """Return the rows of a table, numbers as numbers; none where it is not there."""
-    return harness.read_rows(path, {}, number)
-
-
-def number(text: str) -> float | str:
-    """Return a number where the text is one."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-def work_folder(doc: str | None, **options: Any) -> argparse.ArgumentParser:
-    """Return a parser of options, and of that which names the folder of beds and paths."""
-    parser = harness.command_line(doc, **options)
-    parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
-    return parser
-
-
-def note(table: Path, row: Row, command: str) -> None:
-    """Add a row to a table on disk, tell it, and write beside the table when, where and by which command it was last
-    added to, and what all its rows cost.
-    """
-    harness.add_row(table, row, digits=7)
-    print(row, flush=True)
-    rows = read_rows(table)
-    cost = round(sum(float(row.get("cpu_s", 0.0)) for row in rows), 1)
-    script = f"validation/experiments/{command}"
-    document = {"table": table.name, **origin(script), "rows": len(rows), "cpu_s_of_rows": cost}
-    write_document(table.with_suffix(".json"), document)

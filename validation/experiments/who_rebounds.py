@@ -1,12 +1,12 @@
 """Who rebounds, slow or fast? A 2 cm ball on coarse grains, over the Froude number (Y1, Y2).
 
-    python validation/experiments/who_rebounds.py --work FOLDER [--drops 10] [--kinds sand ...]
+    python validation/experiments/who_rebounds.py --work FOLDER --out FOLDER [--drops 6] [--kinds NAME ...]
 
 Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. By similarity it alone tells drops on
 stiff grains without cohesion apart, so one drop stands for every gravity and the speed that goes with it; where grains
 pull on each other, gravity is a second number. Beds are poured under Earth's gravity, as those of the experiments were,
-and brought slowly to their own. Drops draw bed and place, the same in every cell. Rows that stand in who_rebounds.csv
-are not run again.
+and brought slowly to their own; they repeat after three balls. Drops draw bed and place, the same in every cell. Rows
+that stand in who_rebounds.csv are not run again.
 
 Sources: [Brisset-2018], [Colwell-2003] (a quartz ball on sand), [Brisset-2020] (a ball on irregular grains of mm, cm).
 """
@@ -19,18 +19,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from sphere_bed import Floats, Row, add_box, note, read_rows, work_folder
+from ball_drop import Ball, touch_height
+from result_rows import Row, note, options_of, read_rows
 
 from lithobrake.dem import Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.pouring import rain
 
-TABLE = Path(__file__).parent / "who_rebounds.csv"
+NAME = "who_rebounds.csv"
 EARTH, DIAMETER = 9.81, 0.02  # m/s2; m, of the ball
 FROUDE = (1.0, 3.0, 10.0, 30.0, 100.0)
 BEDS = 3
-AIM = 0.008  # m from the middle along x and y, at most
 # Contact parameters are ours: the sources have none. Rolling resistance stands for the edges of sand.
 QUARTZ = Material(
     young_modulus=1e7, poisson_ratio=0.25, restitution=0.6, friction=0.5, density=2650.0, rolling_friction=0.1
@@ -58,8 +58,8 @@ class Kind:
 
     grain: float = 0.004  # m, mean diameter; from .85 to 1.15 of it
     hulls: bool = False
-    width: float = 0.06  # m, of the square box
-    depth: float = 0.02  # m, if they fill .58 of it
+    width: float = 0.06  # m, after which the ground repeats
+    depth: float = 0.02  # m, if they fill 0.58 of it
     material: Material = QUARTZ
     ball_density: float = 2650.0  # kg/m3, quartz
     stiff: float = STIFF
@@ -81,36 +81,42 @@ class Kind:
 
 OF_THE_POUR = ("grain", "hulls", "width", "depth", "material")
 FEW = (3.0, 30.0)
-HULLS = (3.0, 10.0, 30.0, 100.0, 300.0)
-COARSE = 0.006  # m, of all spheres but the first: they cost a fifth
 LUNAR = 0.0029  # J/m2, of clean lunar soil [Perko-2001]
+TEFLON = 2200.0  # kg/m3
+COARSE = Kind(grain=0.006)
+PULLING = replace(COARSE, surface_energy=LUNAR, steps=40.0)
+PEBBLES = Kind(grain=0.01, hulls=True, width=0.09, depth=0.035, froude=(3.0, 30.0, 300.0))
+ROCK = 0.83  # restitution of rock on rock [Durda-2011]
 KINDS = {
-    "sand": Kind(),
-    "coarser": Kind(grain=COARSE),
-    "pebbles": Kind(grain=0.01, hulls=True, width=0.09, depth=0.035, froude=HULLS),
-    "gravel": Kind(grain=0.006, hulls=True, width=0.066, depth=0.025, froude=HULLS),
-    "lunar_0.0001": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-4, steps=40.0, froude=(3.0, 10.0, 30.0)),
-    "lunar_0.01": Kind(grain=COARSE, surface_energy=LUNAR, share=1e-2, steps=40.0, froude=FEW),
-    "restitution_0.9": Kind(grain=COARSE, material=replace(QUARTZ, restitution=0.9), froude=FEW),
-    "friction_0.2": Kind(grain=COARSE, material=replace(QUARTZ, friction=0.2, rolling_friction=0.0), froude=FEW),
-    "softer": Kind(grain=COARSE, stiff=0.1 * STIFF),
-    "stiffer": Kind(grain=COARSE, stiff=10.0 * STIFF, froude=FEW),
-    "wider": Kind(grain=COARSE, width=0.08, froude=FEW),
-    "deeper": Kind(grain=COARSE, depth=0.03, froude=FEW),
-    "teflon": Kind(grain=COARSE, ball_density=2200.0, froude=FEW),
+    "4 mm": Kind(),
+    "6 mm": COARSE,
+    "3 mm": Kind(grain=0.003, froude=(30.0,)),
+    "lunar, 1e-4 g": replace(PULLING, share=1e-4, froude=(3.0, 10.0, 30.0)),
+    "lunar, 1e-3 g": replace(PULLING, share=1e-3, froude=(30.0,)),
+    "lunar, 1e-3 g, teflon": replace(PULLING, share=1e-3, ball_density=TEFLON, froude=(1.0, 3.0, 10.0)),
+    "lunar, 1e-2 g": replace(PULLING, share=1e-2, froude=FEW),
+    "lunar, 4 mm, 1e-4 g": Kind(surface_energy=LUNAR, share=1e-4, steps=40.0, froude=(3.0, 10.0)),
+    "lunar, 4 mm, 1e-3 g": Kind(surface_energy=LUNAR, share=1e-3, steps=40.0, froude=(30.0,)),
+    "pebbles": PEBBLES,
+    "pebbles, restitution 0.83": replace(PEBBLES, material=replace(QUARTZ, restitution=ROCK)),
 }
 
 
+def empty_world(kind: Kind, gravity: float, stuff: Material) -> World:
+    """Return ground of a material that repeats, under a gravity [m/s2], without grains."""
+    world = World((0.0, 0.0, -gravity), None, period=(kind.width, kind.width))
+    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+    return world
+
+
 def poured(kind: Kind, seed: int) -> World:
-    """Return grains at rest under Earth's gravity in a box."""
+    """Return grains at rest under Earth's gravity."""
     generator = np.random.default_rng([seed, 29])
     count = round(0.58 * kind.width**2 * kind.depth / (math.pi / 6.0 * kind.grain**3))
     sizes = kind.grain * generator.uniform(0.85, 1.15, count)
     grains: list[Shape] = [make_grain(generator, 14, d) if kind.hulls else Sphere(0.5 * d) for d in map(float, sizes)]
-    world = World((0.0, 0.0, -EARTH), None)
-    for grain, place, turn in zip(grains, *rain(generator, grains, (kind.width, kind.width)), strict=True):
-        world.add_body(grain, kind.material, place, orientation=tuple(turn))
-    add_box(world, kind.width, 0.0, kind.material)
+    world, width = empty_world(kind, EARTH, kind.material), (kind.width, kind.width)
+    world.add_bodies(grains, kind.material, *rain(generator, grains, width, width))
     world.drag = math.sqrt(EARTH / kind.grain) / FALL_SPEED
     world.run_locally(3.0 * math.sqrt(2.0 * float(world.position[:, 2].max()) / EARTH), LOCAL)
     unit = math.sqrt(kind.grain / EARTH)
@@ -127,11 +133,10 @@ def bed(work: Path, name: str, froude: float, seed: int) -> World:
     kind = KINDS[name]
     path = work / f"rebounds_{name}_{froude:g}_{seed}.h5"
     if not path.exists():
-        poured_as = replace(KINDS["sand"], **{key: getattr(kind, key) for key in OF_THE_POUR})
-        own = next(key for key, other in KINDS.items() if like(other, poured_as))
+        own = next(key for key, other in KINDS.items() if like(other, kind))
         under_earth = work / f"rebounds_{own}_{seed}.h5"
         if not under_earth.exists():
-            poured(poured_as, seed).save(under_earth)
+            poured(kind, seed).save(under_earth)
         brought(World.load(under_earth), kind, froude).save(path)
     return World.load(path)
 
@@ -149,7 +154,7 @@ def brought(pressed: World, kind: Kind, froude: float) -> World:
     settling.ramp(pressed, np.array([0.0, 0.0, -gravity]), period)
     world, look = pressed, 0.25 * period
     if stuff != kind.material:
-        world = of_material(pressed, stuff, kind.width)
+        world = of_material(pressed, kind, stuff)
         # A pull of 4 pi R* surface energy, R* of two grains, is a heavier grain.
         pull = math.pi * kind.grain * stuff.surface_energy
         weight = gravity + pull / (math.pi / 6.0 * stuff.density * kind.grain**3)
@@ -164,23 +169,18 @@ def brought(pressed: World, kind: Kind, froude: float) -> World:
     raise ValueError(f"grains were not at rest at a Froude number of {froude:g}: raise PATIENCE")
 
 
-def of_material(world: World, stuff: Material, width: float) -> World:
-    """Return a box of the same grains at their places, of another material."""
-    other = World(tuple(world.gravity), None)
-    for body, place, turn in zip(world.bodies, world.position, world.orientation, strict=True):
-        other.add_body(body.shape, stuff, place, orientation=tuple(turn))
-    add_box(other, width, 0.0, stuff)
+def of_material(world: World, kind: Kind, stuff: Material) -> World:
+    """Return the same grains at their places, of another material."""
+    other = empty_world(kind, -float(world.gravity[2]), stuff)
+    other.add_bodies([body.shape for body in world.bodies], stuff, world.position, world.orientation)
     return other
 
 
-def aimed(world: World, kind: Kind, place: Floats, speed: float) -> int:
+def aimed(world: World, kind: Kind, place: tuple[float, float], speed: float) -> int:
     """Put the ball where it touches the first grain below it, or its bounding sphere; return its number."""
-    radius = 0.5 * DIAMETER
-    reach = radius + np.array([body.shape.bounding_radius for body in world.bodies])
-    span = reach**2 - ((world.position[:, :2] - place) ** 2).sum(axis=1)
-    height = float((world.position[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) * (1.0 + 1e-9)
+    height = touch_height(world, Ball(DIAMETER, kind.ball_density, place)) + 0.5 * DIAMETER
     stuff = replace(world.bodies[0].material, density=kind.ball_density)
-    return world.add_body(Sphere(radius), stuff, (*place, height), velocity=(0.0, 0.0, -speed))
+    return world.add_body(Sphere(0.5 * DIAMETER), stuff, (*place, height), velocity=(0.0, 0.0, -speed))
 
 
 def touching(world: World) -> np.ndarray:
@@ -253,9 +253,9 @@ def drop(work: Path, name: str, froude: float, number: int) -> Row:
     start = time.process_time()
     speed = kind.scaled(froude)[0]
     world = bed(work, name, froude, seed)
-    place = np.random.default_rng([7, number]).uniform(-AIM, AIM, 2)
+    x, y = (float(at) for at in np.random.default_rng([7, number]).uniform(0.0, kind.width, 2))
     ejecta = Ejecta(world)
-    ball = aimed(world, kind, place, speed)
+    ball = aimed(world, kind, (x, y), speed)
     row = followed(world, ball, speed, kind.steps)
     return {
         "kind": name, "froude": froude, "drop": number, "bed": seed, "grains": ball, **row,
@@ -263,9 +263,9 @@ def drop(work: Path, name: str, froude: float, number: int) -> Row:
     }  # fmt: skip
 
 
-def missing(names: list[str], drops: int) -> Iterator[tuple[str, float, int]]:
+def missing(names: list[str], drops: int, table: Path) -> Iterator[tuple[str, float, int]]:
     """Yield kind, Froude number and number of the drops that have no row; cells fill evenly."""
-    ran = {(row["kind"], row["froude"], row["drop"]) for row in read_rows(TABLE)}
+    ran = {(row["kind"], row["froude"], row["drop"]) for row in read_rows(table)}
     for number, name in itertools.product(range(drops), names):
         for froude in KINDS[name].froude:
             if (name, froude, number) not in ran:
@@ -274,13 +274,9 @@ def missing(names: list[str], drops: int) -> Iterator[tuple[str, float, int]]:
 
 def main() -> None:
     """Run what has no row yet."""
-    parser = work_folder(__doc__)
-    parser.add_argument("--drops", type=int, default=10, help="in each cell of speed and gravity")
-    parser.add_argument("--kinds", nargs="*", default=list(KINDS), choices=list(KINDS))
-    given = parser.parse_args()
-    given.work.mkdir(parents=True, exist_ok=True)
-    for cell in missing(given.kinds, given.drops):
-        note(TABLE, drop(given.work, *cell), "who_rebounds.py --work FOLDER")
+    given = options_of(__doc__, drops=6, kinds=tuple(KINDS))
+    for cell in missing(given.kinds, given.drops, given.out / NAME):
+        note(given.out / NAME, drop(given.work, *cell))
 
 
 if __name__ == "__main__":

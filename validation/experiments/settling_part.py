@@ -1,0 +1,39 @@
+"""What the rows of the sphere that settles say: rows of the page's table, and its section."""
+
+import math
+
+from draw import of_gravities
+from fits import column, gravity_exponents
+from result_rows import read_rows
+from settling_in_other_gravities import DIAMETER, EARTH, GRAINS
+from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
+
+BAR = 0.03
+
+
+def settling_part() -> tuple[Lines, str]:
+    """Return rows of the table, and the section's table."""
+    every = read_rows(HERE / "settling_in_other_gravities.csv")
+    rows = [row for row in every if row["young_modulus"] == GRAINS.young_modulus]
+    cause = "settling: stiffer" if len(rows) < len(every) else NOT_SHOWN
+    found = gravity_exponents(rows)
+    lines = [
+        line("settling: exponent of depth over gravity", 0.0, found["depth"], BAR, "0", cause),
+        line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], BAR, "-1/2"),
+        line("settling: exponent of the time to 0.9 of the depth", -0.5, found["time_to_90"], BAR, "-1/2", cause),
+    ]
+    of_gravities(rows, DIAMETER, FIGURES / "settling_in_other_gravities.png")
+    heads = ("modulus [Pa]", "gravity over Earth's", "rows", "depth over diameter", "time until it stops [sqrt(D/g)]",
+             "to 0.9 of the depth [sqrt(D/g)]", "solid fraction")  # fmt: skip
+    cells = []
+    for modulus, share in sorted({(row["young_modulus"], row["share"]) for row in every}, reverse=True):
+        own = [row for row in every if (row["young_modulus"], row["share"]) == (modulus, share)]
+        unit = math.sqrt(DIAMETER / (EARTH * share))
+        depth, stop, most = (column(own, name) for name in ("depth", "stopping_time", "time_to_90"))
+        cells.append((
+            f"{modulus:g}", f"{share:g}", str(len(own)),
+            f"{depth.mean() / DIAMETER:.3f} +- {depth.std() / DIAMETER:.3f}",
+            f"{stop.mean() / unit:.3f} +- {stop.std() / unit:.3f}", f"{most.mean() / unit:.3f}",
+            f"{column(own, 'bulk_density').mean() / 1000.0:.4f}",
+        ))  # fmt: skip
+    return lines, table(heads, cells)
