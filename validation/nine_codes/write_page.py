@@ -167,8 +167,10 @@ def what_rounding_does(found: dict[str, Curve]) -> list[str]:
         f"{at_100} mm at 100 ms: rounding alone moves the ball by more than the criterion at both times. The larger "
         "difference from MercuryDPM begins before it turns: in the 0.5 ms after "
         f"{1000.0 * BOTTOM:g} ms the ball loses {lost['published']:.2f} m/s here, {lost['nudged']:.2f} in the nudged "
-        f"run and {lost['mercury']:.2f} there, to grains that it meets.{others} An impact to the side loses "
-        f"{lost['east']:.2f} m/s here. So few runs do not tell a difference of the laws from chance."
+        f"run and {lost['mercury']:.2f} there, to grains that it meets.{others} At the same place the "
+        "runs with that dashpot, of both engines, are alike, and so are those without it, of both other codes: the law "
+        "across the normal makes the difference, as far as five runs can show it. An impact to the side loses "
+        f"{lost['east']:.2f} m/s here."
     )]  # fmt: skip
 
 
