@@ -64,7 +64,7 @@ class Case:
     @property
     def why_not(self) -> str | None:
         """Why one command does not recreate it; None where one does."""
-        given = self.command.replace(f"--work {PLACE}", "")
+        given = self.command.replace(f"--work {PLACE}", "").replace(f"--out {PLACE}", "")
         if PLACE in given or "..." in given or not given.startswith("python validation/"):
             return f"it takes a folder of its own: {self.command}"
         return None
@@ -157,10 +157,16 @@ def copied(folder: Path) -> Path:
 
 def run(case: Case, tree: Path, work: Path) -> tuple[float, float]:
     """Run the command of a case in a copy; returns its time on the clock and its CPU time [s]."""
-    words = [str(work) if word == PLACE else word for word in shlex.split(case.command)]
+    words = shlex.split(case.command)
+    for number, word in enumerate(words):
+        if word == PLACE:
+            # Rows that stay are beside the document, and so are those that are made.
+            words[number] = str(tree / case.path.parent if words[number - 1] == "--out" else work)
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     start, spent = time.monotonic(), children_cpu()
-    subprocess.run([sys.executable, *words[1:]], cwd=tree, env=environment, check=True)
+    done = subprocess.run([sys.executable, *words[1:]], cwd=tree, env=environment, check=False)
+    if done.returncode:
+        raise ValueError(f"{case.name}: its script ended with exit code {done.returncode}; see what it said above.")
     return time.monotonic() - start, children_cpu() - spent
 
 
@@ -282,7 +288,7 @@ def main() -> int:
             parser.error(f"no case is named {name}; there are {', '.join(known)}.")
     if given.rows is not None and len(given.names) != 1:
         parser.error("--rows counts the rows of one case; name one.")
-    work = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
+    work: Path = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
     try:
         largest = max(
             recreate(known[name], given.rows, work.resolve(), given.note, given.within) for name in given.names
