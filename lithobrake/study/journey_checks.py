@@ -10,7 +10,7 @@ from lithobrake.vocabulary.plain_text import show
 def journey_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong."""
     yield from delivery_problems(study)
-    if "mask_deg" in study.sky.model_fields_set and study.sky.earth_latitude_deg is None:
+    if study.sky.mask_deg > 0.0 and study.sky.earth_latitude_deg is None:
         yield "sky.mask_deg is the mask of Earth, and sky.earth_latitude_deg is absent; leave it out, or ask for Earth"
     if study.journey is None:
         if study.sky.bodies:
