@@ -4,7 +4,7 @@ import itertools
 import math
 from collections.abc import Callable
 
-from ball_into_beads import BALL, FALL, HEAVY, LIGHT, OURS
+from ball_into_beads import BALL, FALL, FINE, HEAVY, LIGHT
 from draw import of_drops
 from fits import (
     Estimate,
@@ -49,7 +49,7 @@ def beads_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table and verdict."""
     every = read_rows(HERE / "ball_into_beads.csv")
     slope = mean_of([math.tan(math.radians(row["angle_deg"])) for row in read_rows(HERE / "repose.csv")])
-    drops, sized = one_ball(of_bed(every, OURS)), of_diameters(of_bed(every, OURS))
+    drops, sized = one_ball(of_bed(every, FINE)), of_diameters(of_bed(every, FINE))
     lines = []
     for where, depth_of in SURFACES.items():
         lines += surface_lines(where, depth_of, drops, sized, 0.14 / slope.value)
@@ -79,7 +79,7 @@ def drop_table(every: list[Row]) -> str:
     """Return the table of the drops into our beads."""
     heads = ("density [kg/m3]", "diameter [mm]", "fall [m]", "depth below the mean surface [cm]",
              "below the first touch [cm]", "stopping time [d/v]")  # fmt: skip
-    rows = sorted(of_bed(every, OURS), key=lambda row: (row["diameter"], row["density"], row["fall"]))
+    rows = sorted(of_bed(every, FINE), key=lambda row: (row["diameter"], row["density"], row["fall"]))
     return table(heads, (
         (f"{row['density']:g}", f"{1e3 * row['diameter']:g}", f"{row['fall']:g}", f"{100 * row['deepest']:.2f}",
          f"{100 * (row['deepest'] + row['touch_height']):.2f}", f"{stopping([row])[0]:.1f}") for row in rows
@@ -127,5 +127,5 @@ def mean_prefactor(rows: list[Row]) -> float:
 
 def steps_of_diameter(every: list[Row], depth_of: Callable[[list[Row]], Floats]) -> list[float]:
     """Return the exponents of the diameter between one ball and the next larger, in our beads."""
-    sized = sorted(of_diameters(of_bed(every, OURS)), key=lambda row: row["diameter"])
+    sized = sorted(of_diameters(of_bed(every, FINE)), key=lambda row: row["diameter"])
     return [diameter_exponent(list(two), depth_of(list(two))).value for two in itertools.pairwise(sized)]

@@ -25,13 +25,14 @@ d ~ density^(1/2) D^(2/3) H^(1/3), H being fall and depth together, after 3 d/v.
 
 Set-up, as in DEM-Engine's demonstration `DEMdemo_BallDrop.cpp`: a ball of 25.4 mm, beads of eleven
 sizes from 5/6 to 7/6 of 3 mm, 2500 kg/m3, restitution 0.9, friction 0.3, no rolling resistance.
-Ours: a modulus of 1e7 Pa (theirs 7e7); a box of three balls, 85 mm deep (theirs 7.9 balls). The
-rows of the table at the top are the twelve drops, and four diameters, into that bed ("3 mm, walls,
-dense"). A light and a heavy ball from 0.1 m then meet other beds: on ground that repeats
-("periodic"), four balls wide unless the name says otherwise; of beads that fell at no more than 0.6
-in place of 3 sqrt(g d) ("loose"); 110 in place of 85 mm deep ("deeper"). Beds on periodic ground
-are poured on tiles and laid out. Depth is that of the ball's lowest point, below the mean height of
-the topmost points of the beads or below the point of first touch.
+Ours: a modulus of 1e7 Pa (theirs 7e7). The rows of the table at the top are the twelve drops, and
+four diameters, into loose beads ("3 mm, periodic, loose, deeper"): ground that repeats after three
+balls, 110 mm deep, of beads that fell at no more than 0.6 sqrt(g d). A light and a heavy ball from
+0.1 m then meet other beds: between walls three balls apart, 85 mm deep, of beads that fell at up to
+3 sqrt(g d) ("walls, dense"); on ground that repeats ("periodic"), four balls wide unless the name
+says otherwise. Beds on periodic ground are poured on tiles and laid out. Depth is that of the
+ball's lowest point, below the mean height of the topmost points of the beads or below the point of
+first touch.
 
 ![drops](experiments/ball_into_beads.png)
 
