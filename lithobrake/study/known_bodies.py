@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lithobrake.study.by_name import by_name
+
 
 @dataclass(frozen=True)
 class KnownBody:
@@ -40,8 +42,4 @@ BODIES = {body.name.lower(): body for body in _BODIES}
 
 def known_body(name: str) -> KnownBody:
     """The body of a name in any case. Raises ValueError for another name."""
-    found = BODIES.get(name.strip().lower())
-    if found is None:
-        known = ", ".join(body.name for body in _BODIES)
-        raise ValueError(f"body is {name!r}; known are {known}; for another body write its mass and spin into [site]")
-    return found
+    return by_name("body", BODIES, name, "for another body write its mass and spin into [site]")

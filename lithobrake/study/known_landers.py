@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lithobrake.study.by_name import by_name
+
 _CDS = "largest mass and envelope in [CDS-2022], without what unfolds"
 
 
@@ -30,8 +32,4 @@ LANDERS = {lander.name.lower(): lander for lander in _LANDERS}
 
 def known_lander(name: str) -> KnownLander:
     """The lander of a name in any case. Raises ValueError for another name."""
-    found = LANDERS.get(name.strip().lower())
-    if found is None:
-        known = ", ".join(lander.name for lander in _LANDERS)
-        raise ValueError(f"lander is {name!r}; known are {known}; for another one write its edges and mass")
-    return found
+    return by_name("lander", LANDERS, name, "for another one write its edges and mass")

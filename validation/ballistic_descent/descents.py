@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.smallbody import Body, Partner, didymos, dimorphos
+from lithobrake.smallbody import Body, Partner, Shape, didymos, dimorphos
 from lithobrake.smallbody.built_in_bodies import top_shape
 
 Floats = NDArray[np.float64]
@@ -33,7 +33,7 @@ def radius(body: Body) -> float:
     return float(np.cbrt(0.75 * body.shape.volume / math.pi))
 
 
-def _ball(body: Body):  # type: ignore[no-untyped-def]
+def _ball(body: Body) -> Shape:
     return top_shape((2.0 * radius(body),) * 3, ridge_height=0.0, name=f"ball of {body.name}")
 
 
