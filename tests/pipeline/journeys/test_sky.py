@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lithobrake.pipeline.sky.seen_from_rest import _rows
 from lithobrake.results import StudyResults
+from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import StudyError, check_tables
 from lithobrake.study.lander_sides import SIDES
 
@@ -43,6 +45,19 @@ def test_sides_see_a_part_of_what_the_lander_sees(journeys_folder: Path) -> None
 def test_a_mask_of_thirty_degrees_leaves_a_third_of_the_day(journeys_folder: Path) -> None:
     earth = np.array([float(row["day_fraction"]) for row in sky_rows(journeys_folder, "earth")])
     assert np.median(earth) == pytest.approx(1.0 / 3.0, abs=0.03)
+
+
+def test_the_side_that_looks_up_faces_a_body_over_the_equator() -> None:
+    """Axes of the lander along those of the body, at longitude 0: +x looks up, +y to the east, -x into the ground."""
+    ball = top_shape((200.0, 200.0, 200.0), ridge_height=0.0, name="ball")
+    lander = {"journey": 0.0, "position_x": 100.0, "position_y": 0.0, "position_z": 0.0}
+    lander |= {"attitude_w": 1.0, "attitude_x": 0.0, "attitude_y": 0.0, "attitude_z": 0.0}
+    (row,) = _rows(ball, [lander], "sun", np.zeros(1), 0.0)
+    found = dict(zip(SIDES, row[4:], strict=True))
+    assert row[3] == found["+x"] == pytest.approx(0.5, abs=0.01)
+    assert found["-x"] == 0.0
+    assert found["+y"] == found["-y"] == pytest.approx(0.25, abs=0.01)
+    assert found["+z"] == found["-z"] == 0.0
 
 
 def test_the_summary_and_the_page_have_it(journeys: StudyResults, journeys_folder: Path) -> None:
