@@ -175,16 +175,17 @@ def _body(study: Study) -> "Body":
     from lithobrake.smallbody import Body
 
     if study.site.body in BUILT_IN_BODIES:
-        return _built_in(study.site.body, study.site.partner)
+        return _built_in(study.site.body, study.site.partner, study.site.extents)
     shape = _read_shape(Path(study.site.body), study.site.unit, study.site.gravity_facets)
     return Body(shape, mass=1.0, spin_period=1.0)
 
 
 @lru_cache(maxsize=4)
-def _built_in(name: str, partner: bool) -> "Body":
+def _built_in(name: str, partner: bool, extents: tuple[float, float, float] | None) -> "Body":
     from lithobrake import smallbody
 
-    body: Body = getattr(smallbody, name)(partner=partner)
+    given = {} if extents is None else {"extents": extents}
+    body: Body = getattr(smallbody, name)(partner=partner, **given)
     return body
 
 

@@ -32,6 +32,7 @@ def body_problems(study: Study) -> Iterator[str]:
         return
     yield from _spin_problems(study)
     yield from _name_problems(study)
+    yield from _extents_problems(study)
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
         # Loading a built-in shape takes a second: only where the study changes what is known to be right.
@@ -57,6 +58,16 @@ def _unit_problems(study: Study) -> Iterator[str]:
             f"site.gravity_facets is {study.site.gravity_facets}, and site.body is built in, with few facets; a mesh "
             "may be thinned: leave it out"
         )
+
+
+def _extents_problems(study: Study) -> Iterator[str]:
+    site = study.site
+    if site.extents is None:
+        return
+    if site.body not in BUILT_IN_BODIES:
+        yield "site.extents goes with a built-in body, and site.body is a mesh, which has its own: leave it out"
+    elif site.mass is None:
+        yield "site.extents changes the volume of the body, and site.mass is missing: write the mass that goes with it"
 
 
 def _name_problems(study: Study) -> Iterator[str]:
@@ -96,7 +107,8 @@ def _volume(study: Study) -> float:
     if site.body in BUILT_IN_BODIES:
         from lithobrake import smallbody
 
-        return float(getattr(smallbody, site.body)(partner=False).shape.volume)
+        given = {} if site.extents is None else {"extents": site.extents}
+        return float(getattr(smallbody, site.body)(partner=False, **given).shape.volume)
     # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.geometry.mesh_files import read_mesh

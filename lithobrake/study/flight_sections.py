@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Scalar, Section, Whole
+from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")
 
@@ -15,6 +15,10 @@ class SiteSection(Section):
     body: str = "didymos"
     """"didymos" or "dimorphos" (built in, in any case), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel
     of SPICE) around the body's centre; the path counts from the study file."""
+    extents: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
+        default=None, examples=["[193.0, 148.0, 120.0]"]
+    )
+    """Extents of a built-in body along its axes x, y and z, in place of its own; write site.mass too."""
     name: str | None = None
     """Name of the body of a mesh, for report and exports; absent: it has none."""
     unit: LengthUnit | None = None

@@ -210,6 +210,10 @@ def test_built_in_bodies_have_the_published_extents():
     assert body.shape.surface_normal(0.0, 0.0) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
     assert np.ptp(dimorphos().shape.vertices, axis=0) == pytest.approx([177.0, 174.0, 116.0], rel=1e-12)
     assert np.array_equal(didymos().shape.vertices, body.shape.vertices)
+    after_dart = dimorphos(extents=(193.0, 148.0, 120.0)).shape
+    assert np.ptp(after_dart.vertices, axis=0) == pytest.approx([193.0, 148.0, 120.0], rel=1e-12)
+    # An ellipsoid, less what 1920 facets cut off.
+    assert after_dart.volume == pytest.approx(np.pi / 6.0 * 193.0 * 148.0 * 120.0, rel=0.01)
 
 
 def test_the_pole_is_that_of_the_frames_kernel():

@@ -52,10 +52,10 @@ def flight_dependencies(study: Study) -> dict[str, Any]:
     mesh = labelled_mesh(Path(study.site.body))
     body = study.site.body if built_in else content_hash(mesh)
     # A key that came later is left out where it says nothing, so that folders of before stay whole.
-    thinned = {} if study.site.gravity_facets is None else {"gravity_facets": study.site.gravity_facets}
+    later = {key: getattr(study.site, key) for key in ("gravity_facets", "extents")}
     return (
         study.flight.model_dump()
-        | thinned
+        | {key: value for key, value in later.items() if value is not None}
         | {
             "seed": study.seed,
             "body": body,

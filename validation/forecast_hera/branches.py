@@ -1,0 +1,111 @@
+"""The branches of the forecast: what is not known of Dimorphos and of the descent, and not a number of a study file.
+
+Each branch is the lander's study file (scenarios/juventas.toml, milani.toml) with some keys changed. Weights of a
+lander's branches add up to 1; they are judgement, not measurement, so every answer is also given by branch.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from descent import release
+
+from lithobrake.pipeline.site import Site
+from lithobrake.study import read_study
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+LANDERS = ("juventas", "milani")
+# Towards Didymos, and away from it: the ends of the long axis.
+AIMS = {"near end": 0.0, "far end": 180.0}
+# [Richardson-2024] and others: likely excited, perhaps tumbling; how likely is judgement.
+SMALL, LARGE, TUMBLING = 0.40, 0.25, 0.35
+# Angles from the synchronous attitude at the begin of a history [deg]; a lander arrives at any time of it.
+ROTATIONS: dict[str, dict[str, Any] | None] = {
+    "small libration": {"yaw_deg": 7.0},
+    "large libration": {"yaw_deg": 30.0},
+    "tumbling": {"yaw_deg": 30.0, "roll_deg": 60.0},
+}
+STUDY = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A lander on one Dimorphos by one descent.
+
+    weight: of the lander's branches; 0: beside the forecast, to see what it changes. changes: by dotted key; None
+    takes a key away.
+    """
+
+    lander: str
+    rotation: str
+    descent: str
+    aim: str
+    weight: float
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    variant: str = ""
+
+    @property
+    def name(self) -> str:
+        """As it stands in tables."""
+        return ", ".join(one for one in (self.rotation, self.descent, self.aim, self.variant) if one)
+
+    @property
+    def folder(self) -> str:
+        """As a name of a folder."""
+        return f"{self.lander}_{self.name}".replace(", ", "_").replace(" ", "-")
+
+    def tables(self, count: int | None = None) -> STUDY:
+        """The tables of its study, with so many journeys in place of those of the file."""
+        tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
+        changes = {**self.changes, "title": f"{tables['title']}: {self.name}"}
+        if count is not None:
+            changes["journey.count"] = count
+        return changed(tables, changes)
+
+
+def changed(tables: STUDY, changes: Mapping[str, Any]) -> STUDY:
+    """Tables of a study with keys changed, or taken away."""
+    tables = deepcopy(tables)
+    for key, value in changes.items():
+        *path, name = key.split(".")
+        section = tables
+        for one in path:
+            section = section.setdefault(one, {})
+        if value is None:
+            section.pop(name, None)
+        else:
+            section[name] = value
+    return tables
+
+
+def ballistic(lander: str, longitude_deg: float) -> STUDY:
+    """Keys of a ballistic descent to an aim, in place of those of an arrival at the surface."""
+    body = Site(read_study(SCENARIOS / f"{lander}.toml")).body
+    arrival = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
+    return {
+        **{f"delivery.{key}": None for key in arrival},
+        "delivery.frame": "body_fixed",
+        "delivery.release": release(body, longitude_deg),
+    }
+
+
+def branches(lander: str) -> list[Branch]:
+    """Those of a lander."""
+    found = []
+    for aim, longitude in AIMS.items():
+        to_aim = {"delivery.longitude_deg": longitude}
+        small, large = (to_aim | turning(f"{size} libration") for size in ("small", "large"))
+        found.append(Branch(lander, "small libration", "at the surface", aim, SMALL / 4.0, small))
+        found.append(Branch(lander, "small libration", "ballistic", aim, SMALL / 4.0, small | ballistic(lander, longitude)))
+        found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
+    anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
+    found.append(Branch(lander, "tumbling", "at the surface", "", TUMBLING, anywhere | turning("tumbling")))
+    return found
+
+
+def turning(rotation: str) -> STUDY:
+    """Keys of how Dimorphos turns."""
+    return {f"site.rotation.{key}": value for key, value in ROTATIONS[rotation].items()}
