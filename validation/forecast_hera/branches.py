@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,7 @@ ROTATIONS: dict[str, dict[str, Any] | None] = {
     "large libration": {"yaw_deg": 30.0},
     "tumbling": {"yaw_deg": 30.0, "roll_deg": 60.0},
 }
+FEWEST_BEDS, LANDERS_A_BED = 12, 3
 STUDY = dict[str, Any]
 
 
@@ -57,12 +59,15 @@ class Branch:
         """As a name of a folder."""
         return f"{self.lander}_{self.name}".replace(", ", "_").replace(" ", "-")
 
-    def tables(self, count: int | None = None) -> STUDY:
-        """The tables of its study, with so many journeys in place of those of the file."""
+    def tables(self, landers: int) -> STUDY:
+        """The tables of its study, with its part of so many landers of all branches, three on each bed."""
         tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
-        changes = {**self.changes, "title": f"{tables['title']}: {self.name}"}
-        if count is not None:
-            changes["journey.count"] = count
+        changes = {
+            **self.changes, "title": f"{tables['title']}: {self.name}",
+            # Every answer is of simulated landings.
+            "journey.emulated_count": 0, "journey.count": round(self.weight * landers),
+            "bed.bed_count": max(FEWEST_BEDS, round(self.weight * landers / LANDERS_A_BED)),
+        }  # fmt: skip
         return changed(tables, changes)
 
 
@@ -92,7 +97,8 @@ def ballistic(lander: str, longitude_deg: float) -> STUDY:
     }
 
 
-def branches(lander: str) -> list[Branch]:
+@cache
+def branches(lander: str) -> tuple[Branch, ...]:
     """Those of a lander."""
     found = []
     for aim, longitude in AIMS.items():
@@ -103,7 +109,7 @@ def branches(lander: str) -> list[Branch]:
         found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
     anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
     found.append(Branch(lander, "tumbling", "at the surface", "", TUMBLING, anywhere | turning("tumbling")))
-    return found
+    return tuple(found)
 
 
 def turning(rotation: str) -> STUDY:

@@ -1,6 +1,6 @@
 """The forecast of the landings of Juventas and Milani on Dimorphos, from nothing: studies of all branches, and answers.
 
-    python validation/forecast_hera/forecast.py --work FOLDER [--landers NAME ...] [--branches NAME ...] [--count N]
+    python validation/forecast_hera/forecast.py --work FOLDER [--landers NAME ...] [--grounds NAME ...] [--workers N]
 
 Runs the study of every branch (branches.py) on soil, and on hard ground with a restitution drawn from 0 to 1, each in a
 folder of its own in FOLDER; what is there is not run again. Writes landers.csv, a line for each lander, as each study
@@ -9,6 +9,7 @@ ends, and runs.json. Then answers.py gives forecast.json, and write_page.py docs
 
 import sys
 import time
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ HERE = Path(__file__).parent
 TABLE = "landers.csv"
 WORDS = ("lander", "branch", "ground", "end", "face")
 KINDS = dict.fromkeys(WORDS, str)
-HARD_COUNT = 400  # journeys a branch on hard ground, which take no soil
+COUNTS = {"soil": 320, "hard": 1600}  # landers of all branches
 # Columns of the first touchdown, by what the table calls them.
 FIRST = {
     "mass_kg": "site.mass", "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
@@ -36,18 +37,12 @@ FIRST = {
 }  # fmt: skip
 
 
-def run_soil(branch: Branch, work: Path, count: int | None, workers: int | None) -> StudyResults:
-    """The study of a branch on soil."""
-    return lithobrake.run(branch.tables(count), work / f"{branch.folder}_soil", workers=workers, report=False)
-
-
-def run_hard(branch: Branch, work: Path, workers: int | None) -> StudyResults:
-    """The same deliveries on hard ground."""
-    tables = branch.tables(HARD_COUNT)
-    tables["lander"]["restitution"] = RESTITUTION
-    return lithobrake.run(
-        tables, work / f"{branch.folder}_hard", workers=workers, model=hard_touchdown, report=False
-    )
+def run_branch(branch: Branch, ground: str, work: Path, workers: int | None) -> StudyResults:
+    """The study of a branch on soil or on hard ground."""
+    tables, model = branch.tables(COUNTS[ground]), None
+    if ground == "hard":
+        tables["lander"]["restitution"], model = RESTITUTION, hard_touchdown
+    return lithobrake.run(tables, work / f"{branch.folder}_{ground}", workers=workers, model=model, report=False)
 
 
 def rows_of(branch: Branch, ground: str, study: StudyResults) -> list[Row]:
@@ -61,7 +56,7 @@ def rows_of(branch: Branch, ground: str, study: StudyResults) -> list[Row]:
             "lander": branch.lander, "branch": branch.name, "ground": ground, "journey": number,
             "bed": own["bed"], "end": own["end"], "time_s": own["time_s"], "latitude_deg": own["latitude_deg"],
             "longitude_deg": own["longitude_deg"], "distance_m": own["distance"], "contacts": own["contacts"],
-            "touchdowns": own["touchdowns"], "face": own["face"], "tilt_deg": own["tilt_deg"],
+            **{f"position_{axis}": own[f"position_{axis}"] for axis in "xyz"}, "touchdowns": own["touchdowns"], "face": own["face"], "tilt_deg": own["tilt_deg"],
         }  # fmt: skip
         place = first.get(number)
         for title, name in FIRST.items():
@@ -83,33 +78,22 @@ def speed_ratio(touchdowns: lithobrake.results.Table, place: int | None) -> floa
 def main() -> None:
     """Run what is missing and note every lander."""
     options = command_line(
-        __doc__, work=Path, out=HERE, landers=LANDERS, branches=("",), count=0, workers=0, hard_only=False
+        __doc__, work=Path, out=HERE, landers=LANDERS, grounds=tuple(COUNTS), workers=0
     ).parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
-    table = options.out / TABLE
+    table, started = options.out / TABLE, time.perf_counter()
     done = {(row["lander"], row["branch"], row["ground"]) for row in read_rows(table, KINDS)}
-    started = time.perf_counter()
-    for lander in options.landers:
+    for lander, ground in product(options.landers, options.grounds):
         for branch in branches(lander):
-            if not any(part in branch.name for part in options.branches):
+            if (lander, branch.name, ground) in done:
                 continue
-            for ground in ("hard", "soil")[: 1 if options.hard_only else 2]:
-                if (lander, branch.name, ground) in done:
-                    continue
-                workers = options.workers or None
-                if ground == "soil":
-                    study = run_soil(branch, options.work, options.count or None, workers)
-                else:
-                    study = run_hard(branch, options.work, workers)
-                for row in rows_of(branch, ground, study):
-                    add_row(table, row, 6)
-                print(f"{lander}, {branch.name}, {ground}: {study.summary['results']['ends']}", flush=True)
-    write_document(
-        options.out / "runs.json",
-        origin(" ".join(["validation/forecast_hera/forecast.py", "--work", "FOLDER"])) | {
-            "cpu_s": round(time.process_time()), "wall_s": round(time.perf_counter() - started)
-        },
-    )
+            study = run_branch(branch, ground, options.work, options.workers or None)
+            for row in rows_of(branch, ground, study):
+                add_row(table, row, 6)
+            ends = ", ".join(f"{end} {one['count']}" for end, one in study.summary["results"]["ends"].items())
+            print(f"{lander}, {branch.name}, {ground}: {ends}", flush=True)
+    command = "validation/forecast_hera/forecast.py --work FOLDER"
+    write_document(options.out / "runs.json", origin(command) | {"wall_s": round(time.perf_counter() - started)})
 
 
 if __name__ == "__main__":

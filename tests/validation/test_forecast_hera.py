@@ -1,0 +1,104 @@
+"""The forecast for Hera's CubeSats: its descents, its chances, and how it is scored."""
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lithobrake.smallbody import dimorphos, fly
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def scripts():
+    """The scripts of the forecast import each other by name, as they do from the command line."""
+    before = list(sys.path)
+    sys.path[:0] = [str(ROOT / "validation" / "forecast_hera"), str(ROOT / "validation"), str(ROOT / "benchmarks")]
+    yield
+    sys.path[:] = before
+
+
+def rows(counts: dict[str, dict[str, int]], lander: str = "juventas") -> list[dict]:
+    """Landers by branch and end, each on a bed of its own."""
+    found = []
+    for branch, ends in counts.items():
+        for end, count in ends.items():
+            found += [
+                {"lander": lander, "branch": branch, "ground": "soil", "end": end, "bed": len(found) + k, "time_s": 60.0,
+                 "latitude_deg": 0.0, "longitude_deg": 1.0, "contacts": 2, "first_speed_ratio": 0.25, "face": "-z"}
+                for k in range(count)
+            ]  # fmt: skip
+    return found
+
+
+def test_a_descent_comes_down_straight_on_its_aim_with_the_speed_of_its_mirror_image():
+    from descent import DISTANCE, FASTER, least_speed, release
+
+    body = replace(dimorphos(extents=(193.0, 148.0, 120.0)), mass=2.93e9)
+    for longitude in (0.0, 180.0):
+        tip = body.shape.surface_point(0.0, longitude)
+        up = np.array([math.cos(math.radians(longitude)), 0.0, 0.0])
+        state = release(body, longitude)
+        assert np.linalg.norm(state["position"]) == pytest.approx(DISTANCE, rel=1e-3)
+        end = fly(body, state["position"], state["velocity"], 3.0e4, gravity="table")
+        assert end.status[0] == "impact"
+        assert end.impact_speed[0] == pytest.approx(FASTER * least_speed(body, tip, up), rel=1e-3)
+        assert math.degrees(end.incidence[0]) < 0.2
+        assert end.position[0] == pytest.approx(tip, abs=0.2)
+
+
+def test_chances_weigh_branches_and_nothing_is_impossible():
+    from answers import ENDS, branch_weights, sample, shares
+    from branches import branches
+
+    names = [one.name for one in branches("juventas")]
+    found = sample(rows({name: {"at_rest": 8} if "tumbling" not in name else {"escaped": 8} for name in names}), "juventas", "soil")
+    weights = branch_weights(found, "juventas", at_rest=False)
+    assert weights.sum() == pytest.approx(1.0)
+    mean, draws = shares(found, "end", weights)
+    # Perks' prior: a quarter of a lander at each end.
+    tumbling = next(one.weight for one in branches("juventas") if "tumbling" in one.name)
+    assert mean[ENDS.index("at_rest")] == pytest.approx((1.0 - tumbling) * 8.25 / 9.0 + tumbling * 0.25 / 9.0)
+    assert mean.sum() == pytest.approx(1.0)
+    assert (mean > 0.0).all()
+    assert draws.mean(axis=0) == pytest.approx(mean, abs=0.01)
+
+
+def test_landers_of_one_bed_count_less():
+    from answers import CORRELATION, design_effect, sample
+
+    landers = rows({"tumbling, at the surface": {"at_rest": 6}})
+    assert design_effect(sample(landers, "juventas", "soil"), np.ones(6, dtype=bool)) == 1.0
+    for row in landers:
+        row["bed"] = row["bed"] % 2
+    assert design_effect(sample(landers, "juventas", "soil"), np.ones(6, dtype=bool)) == 1.0 + 2.0 * CORRELATION
+
+
+def test_cells_have_equal_area_and_go_east_from_the_date_line():
+    from answers import BANDS, SECTORS, cells
+
+    random = np.random.default_rng(1)
+    directions = random.standard_normal((24_000, 3))
+    latitude = np.degrees(np.arcsin(directions[:, 2] / np.linalg.norm(directions, axis=1)))
+    longitude = np.degrees(np.arctan2(directions[:, 1], directions[:, 0]))
+    counts = np.bincount(cells(latitude, longitude), minlength=SECTORS * BANDS)
+    assert counts == pytest.approx(1000.0, abs=5.0 * math.sqrt(1000.0))
+    south_west, north_east = cells(np.array([-89.0, 89.0]), np.array([-179.0, 179.0]))
+    assert (south_west, north_east) == (0, SECTORS * BANDS - 1)
+
+
+def test_an_observation_costs_the_bits_of_its_probability():
+    from score import scores
+
+    assert scores({"end": [0.5, 0.25, 0.125, 0.125]}, {"end": 2, "face": 1}) == {"end": 3.0}
+
+
+def test_quantiles_weigh_landers():
+    from answers import LEVELS, quantiles
+
+    values, weight = np.array([3.0, 1.0, 2.0]), np.array([1.0, 1.0, 8.0])
+    assert quantiles(values, weight)[LEVELS.index(0.5)] == pytest.approx(2.0)

@@ -1,0 +1,64 @@
+"""Score the forecast against what happened: the logarithmic score, in bits.
+
+    python validation/forecast_hera/score.py LANDER --end at_rest [--time-min 35] [--contacts 4] ...
+
+For each thing that was observed: -log2 of the probability that a forecast gave to the bin in which it lies; smaller is
+better. Beside the forecast stand that of hard ground and, as one who knows nothing, equal probabilities of all bins.
+The bins are those of forecast.json; what is not known is left out. Scores of one lander add up as if its bins were
+independent, which they are not: compare forecasts, do not test them.
+"""
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+from answers import BINS, ENDS, FACES, cells
+
+HERE = Path(__file__).parent
+
+
+def observed_bins(options: argparse.Namespace) -> dict[str, int]:
+    """The bin of each thing that was observed."""
+    found = {"end": ENDS.index(options.end)}
+    for name, edges in BINS.items():
+        value = getattr(options, name)
+        if value is not None:
+            if value < edges[0]:
+                raise SystemExit(f"--{name.replace('_', '-')} is {value:g}; allowed: at least {edges[0]:g}")
+            found[name] = int(np.searchsorted(edges, value, side="right") - 1)
+    if options.latitude_deg is not None and options.longitude_deg is not None:
+        place = np.array([options.latitude_deg]), np.array([options.longitude_deg])
+        found["cell"] = int(cells(*place)[0])
+    if options.face is not None:
+        found["face"] = FACES.index(options.face)
+    return found
+
+
+def scores(forecast: dict[str, list[float]], bins: dict[str, int]) -> dict[str, float]:
+    """Bits that each observation costs a forecast, of those that it answers."""
+    return {name: -math.log2(forecast[name][number]) for name, number in bins.items() if name in forecast}
+
+
+def main() -> None:
+    """Print the scores."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    document = json.loads((HERE / "forecast.json").read_text(encoding="utf-8"))
+    parser.add_argument("lander", choices=list(document["landers"]))
+    parser.add_argument("--end", choices=ENDS, required=True)
+    for name in (*BINS, "latitude_deg", "longitude_deg"):
+        parser.add_argument(f"--{name.replace('_', '-')}", type=float, default=None)
+    parser.add_argument("--face", choices=FACES)
+    options = parser.parse_args()
+    bins, of = observed_bins(options), document["landers"][options.lander]
+    soil, hard = (scores(of[ground]["scored"], bins) for ground in ("soil", "hard"))
+    print(f"{'bits':20}{'forecast':>10}{'hard ground':>13}{'even':>8}")
+    for name in bins:
+        even = math.log2(len(of["soil"]["scored"][name]))
+        beside = f"{hard[name]:13.2f}" if name in hard else f"{'-':>13}"
+        print(f"{name:20}{soil[name]:10.2f}{beside}{even:8.2f}")
+
+
+if __name__ == "__main__":
+    main()
