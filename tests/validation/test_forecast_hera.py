@@ -28,10 +28,9 @@ def rows(counts: dict[str, dict[str, int]], lander: str = "juventas") -> list[di
     for branch, ends in counts.items():
         for end, count in ends.items():
             found += [
-                {"lander": lander, "branch": branch, "ground": "soil", "end": end, "bed": len(found) + k, "time_s": 60.0,
-                 "latitude_deg": 0.0, "longitude_deg": 1.0, "contacts": 2, "first_speed_ratio": 0.25, "face": "-z"}
+                {"lander": lander, "branch": branch, "ground": "soil", "end": end, "bed": len(found) + k}
                 for k in range(count)
-            ]  # fmt: skip
+            ]
     return found
 
 
@@ -56,7 +55,9 @@ def test_chances_weigh_branches_and_nothing_is_impossible():
     from branches import branches
 
     names = [one.name for one in branches("juventas")]
-    found = sample(rows({name: {"at_rest": 8} if "tumbling" not in name else {"escaped": 8} for name in names}), "juventas", "soil")
+    found = sample(
+        rows({name: {"at_rest": 8} if "tumbling" not in name else {"escaped": 8} for name in names}), "juventas", "soil"
+    )
     weights = branch_weights(found, "juventas", at_rest=False)
     assert weights.sum() == pytest.approx(1.0)
     mean, draws = shares(found, "end", weights)

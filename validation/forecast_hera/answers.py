@@ -28,6 +28,7 @@ from harness import Row, command_line, origin, read_rows, write_document
 
 ENDS = ("at_rest", "escaped", "partner", "under_way")
 GROUNDS = ("soil", "hard")
+INPUTS = ("mass_kg", *FIRST)
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 DRAWS, SEED = 4000, 1
 # Of landers on one bed, as `lithobrake plan` assumes it.
@@ -40,6 +41,7 @@ BINS: dict[str, tuple[float, ...]] = {
 }
 FACES = ("+x", "-x", "+y", "-y", "+z", "-z")
 SECTORS, BANDS = 8, 3  # of longitude, and of the sine of latitude: cells of equal area on a ball
+CELLS = f"{BANDS} bands of sin(latitude) from the south, in each {SECTORS} sectors of longitude from -180 deg eastward"
 
 
 class Sample(NamedTuple):
@@ -119,7 +121,10 @@ def branch_weights(of: Sample, lander: str, at_rest: bool) -> np.ndarray:
     if at_rest:
         rests = of.column("end") == "at_rest"
         prior = prior * np.array(
-            [(rests[of.branch == number].sum() + 0.25) / ((of.branch == number).sum() + 1.0) for number in range(len(prior))]
+            [
+                (rests[of.branch == number].sum() + 0.25) / ((of.branch == number).sum() + 1.0)
+                for number in range(len(prior))
+            ]
         )
     prior[[not (of.branch == number).any() for number in range(len(prior))]] = 0.0
     return prior / prior.sum()
@@ -157,7 +162,10 @@ def number(of: Sample, name: str) -> dict[str, Any]:
         rows = np.concatenate([members[one] for one in chosen])
         medians.append(quantiles(values[rows], of.weight[rows])[2])
     lower, upper = np.quantile(medians, (0.05, 0.95))
-    levels = {f"q{round(100 * level):02d}": float(one) for level, one in zip(LEVELS, quantiles(values, of.weight), strict=True)}
+    levels = {
+        f"q{round(100 * level):02d}": float(one)
+        for level, one in zip(LEVELS, quantiles(values, of.weight), strict=True)
+    }
     return levels | {"median_lower": float(lower), "median_upper": float(upper)}
 
 
@@ -182,7 +190,7 @@ def what_decides(of: Sample) -> list[dict[str, Any]]:
     """
     rests = of.column("end") == "at_rest"
     found = []
-    for name in FIRST:
+    for name in INPUTS:
         values, thirds = of.column(name), np.full(len(of.rows), 1)
         for branch in np.unique(of.branch):
             here = of.branch == branch
@@ -244,7 +252,7 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
     return {
         "landers": len(of.rows),
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
-        "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance_m", "first_speed_ratio")},
+        "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
         "regions": regions(resting),
         "by_branch": by_branch(of, lander),
         "what_decides": what_decides(of) if ground == "soil" else [],
@@ -274,7 +282,7 @@ def main() -> None:
         },
         "touchdown_version": touchdown_version(),
         "bins": {name: list(edges) for name, edges in BINS.items()} | {
-            "end": list(ENDS), "face": list(FACES), "cell": f"{BANDS} bands of sin(latitude) from the south, in each {SECTORS} sectors of longitude from -180 deg",
+            "end": list(ENDS), "face": list(FACES), "cell": CELLS,
         },
         "landers": {name: {ground: answer(rows, name, ground) for ground in GROUNDS} for name in LANDERS},
         **origin("validation/forecast_hera/answers.py"),

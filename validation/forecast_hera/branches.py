@@ -105,7 +105,9 @@ def branches(lander: str) -> tuple[Branch, ...]:
         to_aim = {"delivery.longitude_deg": longitude}
         small, large = (to_aim | turning(f"{size} libration") for size in ("small", "large"))
         found.append(Branch(lander, "small libration", "at the surface", aim, SMALL / 4.0, small))
-        found.append(Branch(lander, "small libration", "ballistic", aim, SMALL / 4.0, small | ballistic(lander, longitude)))
+        found.append(
+            Branch(lander, "small libration", "ballistic", aim, SMALL / 4.0, small | ballistic(lander, longitude))
+        )
         found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
     anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
     found.append(Branch(lander, "tumbling", "at the surface", "", TUMBLING, anywhere | turning("tumbling")))

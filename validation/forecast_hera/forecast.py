@@ -7,6 +7,8 @@ folder of its own in FOLDER; what is there is not run again. Writes landers.csv,
 ends, and runs.json. Then answers.py gives forecast.json, and write_page.py docs/forecast_hera.md.
 """
 
+import csv
+import io
 import sys
 import time
 from itertools import product
@@ -17,10 +19,12 @@ from branches import LANDERS, Branch, branches
 from grounds import RESTITUTION, hard_touchdown
 
 import lithobrake
-from lithobrake.results import StudyResults
+from lithobrake.pipeline.site import Site
+from lithobrake.results import StudyResults, Table
+from lithobrake.study import StudySource
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from harness import Row, add_row, command_line, origin, read_rows, write_document
+from harness import Row, command_line, origin, read_rows, write_document
 
 HERE = Path(__file__).parent
 TABLE = "landers.csv"
@@ -29,12 +33,19 @@ KINDS = dict.fromkeys(WORDS, str)
 COUNTS = {"soil": 320, "hard": 1600}  # landers of all branches
 # Columns of the first touchdown, by what the table calls them.
 FIRST = {
-    "mass_kg": "site.mass", "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
+    "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
     "grain_friction": "grain.friction", "grain_restitution": "grain.restitution",
     "grain_cohesion_n": "grain.cohesion_force", "young_modulus": "grain.young_modulus",
     "hull_restitution": "lander.restitution", "hull_friction": "lander.friction",
     "hull_cohesion_n": "lander.cohesion_force", "lander_mass": "lander.mass",
 }  # fmt: skip
+
+
+# Columns of the table of journeys.
+OWN = (
+    "bed", "end", "time_s", "latitude_deg", "longitude_deg", "position_x", "position_y", "position_z", "distance",
+    "contacts", "touchdowns", "face", "tilt_deg",
+)  # fmt: skip
 
 
 def run_branch(branch: Branch, ground: str, work: Path, workers: int | None) -> StudyResults:
@@ -48,15 +59,13 @@ def run_branch(branch: Branch, ground: str, work: Path, workers: int | None) -> 
 def rows_of(branch: Branch, ground: str, study: StudyResults) -> list[Row]:
     """A row for each lander of a study."""
     journeys, touchdowns = study.journeys, study.touchdowns
+    mass = Site(StudySource.of_tables(branch.tables(COUNTS[ground])).study).sampled(journeys.row_count)["mass"]
     first = {int(number): row for row, number in enumerate(touchdowns["journey"]) if touchdowns["touchdown"][row] == 0}
     rows = []
     for number in range(journeys.row_count):
-        own = {name: journeys[name][number] for name in journeys}
         row: Row = {
             "lander": branch.lander, "branch": branch.name, "ground": ground, "journey": number,
-            "bed": own["bed"], "end": own["end"], "time_s": own["time_s"], "latitude_deg": own["latitude_deg"],
-            "longitude_deg": own["longitude_deg"], "distance_m": own["distance"], "contacts": own["contacts"],
-            **{f"position_{axis}": own[f"position_{axis}"] for axis in "xyz"}, "touchdowns": own["touchdowns"], "face": own["face"], "tilt_deg": own["tilt_deg"],
+            "mass_kg": float(mass[number]), **{name: journeys[name][number] for name in OWN},
         }  # fmt: skip
         place = first.get(number)
         for title, name in FIRST.items():
@@ -66,7 +75,7 @@ def rows_of(branch: Branch, ground: str, study: StudyResults) -> list[Row]:
     return rows
 
 
-def speed_ratio(touchdowns: lithobrake.results.Table, place: int | None) -> float:
+def speed_ratio(touchdowns: Table, place: int | None) -> float:
     """Speed out over speed in at the first touchdown, 0 where the lander stays."""
     if place is None:
         return float("nan")
@@ -75,11 +84,21 @@ def speed_ratio(touchdowns: lithobrake.results.Table, place: int | None) -> floa
     return float(touchdowns["speed_out"][place] / touchdowns["impact.speed"][place])
 
 
+def add_rows(path: Path, rows: list[Row]) -> None:
+    """Add the rows of a study to a CSV table on disk, all or none."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
+    if not path.exists():
+        writer.writeheader()
+    for row in rows:
+        writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
+    with path.open("a", encoding="utf-8") as file:
+        file.write(text.getvalue())
+
+
 def main() -> None:
     """Run what is missing and note every lander."""
-    options = command_line(
-        __doc__, work=Path, out=HERE, landers=LANDERS, grounds=tuple(COUNTS), workers=0
-    ).parse_args()
+    options = command_line(__doc__, work=Path, out=HERE, landers=LANDERS, grounds=tuple(COUNTS), workers=0).parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     table, started = options.out / TABLE, time.perf_counter()
     done = {(row["lander"], row["branch"], row["ground"]) for row in read_rows(table, KINDS)}
@@ -88,8 +107,7 @@ def main() -> None:
             if (lander, branch.name, ground) in done:
                 continue
             study = run_branch(branch, ground, options.work, options.workers or None)
-            for row in rows_of(branch, ground, study):
-                add_row(table, row, 6)
+            add_rows(table, rows_of(branch, ground, study))
             ends = ", ".join(f"{end} {one['count']}" for end, one in study.summary["results"]["ends"].items())
             print(f"{lander}, {branch.name}, {ground}: {ends}", flush=True)
     command = "validation/forecast_hera/forecast.py --work FOLDER"
