@@ -58,7 +58,7 @@ class Orbit(NamedTuple, Generic[Entry]):
 
 
 class Motion(NamedTuple):
-    """How a ground moves over a step in the turning frame of the body: the partner's, or its own, which may turn too."""
+    """How a ground moves over a step in the turning frame of the body: the partner's, or its own."""
 
     distance: float  # of the centres [m]; 0 for the body itself
     angle: float  # longitude of its centre at the start [rad]

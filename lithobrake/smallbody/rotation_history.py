@@ -17,7 +17,9 @@ Rates = tuple[float, ...]
 # some 1e-9 rad.
 STEP_ANGLE = 0.02
 # Of the integration, relative; its own error stays below that of the cubics over years.
-TOLERANCE = 1e-12
+TOLERANCE = 1e-10
+# Of a step of the integration [rad]; longer ones would make rounding grow where the body hardly moves.
+LONGEST_ANGLE = 0.5
 
 
 def rotation_history(
@@ -61,7 +63,8 @@ def rotation_history(
         np.concatenate([_quaternion(start), whole / pace]),
         method="DOP853",
         rtol=TOLERANCE,
-        atol=1e-2 * TOLERANCE,
+        atol=TOLERANCE,
+        max_step=LONGEST_ANGLE,
         dense_output=True,
     )
     fastest = max(pace, float(np.linalg.norm(found.y[4:], axis=0).max()) * pace + body.spin_rate)
