@@ -15,7 +15,7 @@ from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.answer.summary_parts import study_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.fly.flights import COLUMNS, partner_time, starts
+from lithobrake.pipeline.fly.flights import COLUMNS, starts
 from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
 from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
 from lithobrake.pipeline.rest import journeys as rest
@@ -304,7 +304,7 @@ def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
     site = starts(Site(study), made_samples("clear")).site
     body = Site(study).body
-    time = partner_time(body, site)
+    time = Site(study).clock(site)
     angle = body.orbit.angle + body.orbit.rate * time[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
     open_ended = starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]

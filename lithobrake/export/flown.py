@@ -190,7 +190,11 @@ def _noted(arcs: Table, duration: float) -> dict[str, Any]:
 
 
 def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
-    """The body of a study from body.obj, with the partner that the study gave it."""
+    """The body of a study from body.obj, with the partner that the study gave it.
+
+    Raises ValueError for a body with a rotation of its own.
+    """
+    refuse_rotation(results)
     site, name = results.study["site"], body_name(results)
     partner = None
     if site["body"] in BUILT_IN_BODIES:
@@ -198,6 +202,16 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
     # A study of before this key has none.
     shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
     return Body(shape, mass, spin_period, name, partner)
+
+
+def refuse_rotation(results: StudyResults) -> None:
+    """Raise ValueError where the body of a study does not turn uniformly, which no other program is told of."""
+    # A study of before this key has none.
+    if results.study["site"].get("rotation") is not None:
+        raise ValueError(
+            f"{results.folder}: the body has [site.rotation], and what is passed on has no place for an attitude over "
+            "time; allowed: studies without it"
+        )
 
 
 def body_name(results: StudyResults) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lithobrake.export.flown import refuse_rotation
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.hashing import content_hash, hashed_seed
 from lithobrake.results import StudyResults
@@ -85,8 +86,10 @@ def _north(up: np.ndarray) -> np.ndarray:
 def write_push(results: StudyResults, path: Path, push: Push) -> int:
     """Write a state for each lander at rest, just after a push, as `delivery.states` takes it; returns their number.
 
-    Body-fixed, at time 0, in the order of the journeys. Raises ValueError where no lander with an attitude is at rest.
+    Body-fixed, at time 0, in the order of the journeys. Raises ValueError where no lander with an attitude is at rest,
+    or the body does not turn uniformly.
     """
+    refuse_rotation(results)
     table = results.journeys
     chosen = np.flatnonzero((table["end"] == JourneyEnd.AT_REST) & np.isfinite(table["attitude_w"]))
     if not len(chosen):

@@ -1,4 +1,4 @@
-"""Attitudes, as unit quaternions w, x, y, z that turn a body into place: by chance, and as matrices."""
+"""Attitudes, as unit quaternions w, x, y, z that turn a body into place: by chance, multiplied, and as matrices."""
 
 import math
 
@@ -42,3 +42,10 @@ def rotation_matrices(quaternions: np.ndarray) -> np.ndarray:
         ],
         axis=1,
     )
+
+
+def quaternion_products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Hamilton's products of quaternions w, x, y, z, [count, 4]: the second turn, then the first."""
+    w, v, s, u = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
+    scalar = w * s - np.sum(v * u, axis=1, keepdims=True)
+    return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=1)

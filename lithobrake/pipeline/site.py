@@ -13,17 +13,19 @@ from lithobrake.files.hashing import hashed_seed
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
 from lithobrake.study.correlated_keys import drawn_together
+from lithobrake.study.flight_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
-    from lithobrake.smallbody import Body, Shape
+    from lithobrake.smallbody import AttitudeHistory, Body, Shape
 
 # The numbers of a place, in the order of their columns in flights.csv.
 SITE_KEYS = (
     "latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error", "mass", "spin_period",
-    "partner_longitude_deg",
+    "partner_longitude_deg", "rotation_time",
 )  # fmt: skip
+DAY = 86_400.0  # s
 # Below this share of gravity the acceleration at a place counts as nearly none.
 NEARLY_NONE = 0.05
 # Accelerations that differ by this factor, or in direction, are told to the user.
@@ -40,13 +42,18 @@ class Site:
     def values(self) -> dict[str, Scalar]:
         """All numbers of SITE_KEYS, fixed or uncertain; what the study leaves open is the built-in body's.
 
-        Where the partner stands when the lander leaves is not known unless the study says so: drawn evenly.
+        Where the partner stands when the lander leaves is not known unless the study says so: drawn evenly. So is when
+        it arrives in the history of the body's rotation.
         """
         given = {name.removeprefix("site."): value for name, value in self.study.site_values().items()}
         body = _body(self.study)
         values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
         if body.partner is not None and body.orbit.rate != 0.0:
             values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
+        values["rotation_time"] = 0.0
+        if self.study.site.rotation is not None:
+            last = DAY * self.study.site.rotation.days
+            values["rotation_time"] = Uncertain("uniform", {"lower": 0.0, "upper": last})
         values |= given
         return {key: values[key] for key in SITE_KEYS}
 
@@ -74,8 +81,21 @@ class Site:
 
     @cached_property
     def body(self) -> "Body":
-        """The body of the study with its shape and partner, at the medians of its mass and spin period."""
-        return replace(_body(self.study), mass=self.medians["mass"], spin_period=self.medians["spin_period"])
+        """The body of the study with its shape, partner and rotation, at the medians of its mass and spin period."""
+        body = replace(_body(self.study), mass=self.medians["mass"], spin_period=self.medians["spin_period"])
+        if self.study.site.rotation is None:
+            return body
+        return replace(body, rotation=_rotation(body, self.study.site.rotation, _longest_stay(self.study)))
+
+    def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Times at which landers arrive [s], [count], of the partner's motion and of the body's rotation.
+
+        columns: of SITE_KEYS. They say where the partner stands, or how far the rotation has gone; 0 where neither
+        matters.
+        """
+        place = self.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
+        clock: np.ndarray = place + columns["rotation_time"]
+        return clock
 
     def frames(self, columns: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Origins on the surface [m], shape [count, 3], and axes in rows, [count, 3, 3], for columns of SITE_KEYS.
@@ -187,6 +207,25 @@ def _built_in(name: str, partner: bool, extents: tuple[float, float, float] | No
     given = {} if extents is None else {"extents": extents}
     body: Body = getattr(smallbody, name)(partner=partner, **given)
     return body
+
+
+# Moments of the body are those of its shape, and the orbit hardly depends on its mass: that of the median is taken.
+@lru_cache(maxsize=4)
+def _rotation(body: "Body", start: RotationSection, longest: float) -> "AttitudeHistory":
+    from lithobrake.smallbody import rotation_history
+
+    angles = {name: getattr(start, name) for name in ("yaw_deg", "pitch_deg", "roll_deg")}
+    return rotation_history(body, DAY * start.days + longest, **angles, spin=start.spin)
+
+
+def _longest_stay(study: Study) -> float:
+    """Longest time that a lander of a study flies and rests about its body from its arrival on [s]."""
+    own = 0.0
+    if study.journey is not None:
+        # A lander that is flown to the ground may take as long for that.
+        is_flown = study.delivery is not None and study.delivery.is_flown
+        own = study.journey.duration * (2.0 if is_flown else 1.0)
+    return max(own, study.flight.duration, study.rest.duration)
 
 
 @lru_cache(maxsize=1)

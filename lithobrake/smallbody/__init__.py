@@ -1,6 +1,7 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
 from lithobrake.smallbody.arcs import Arcs
+from lithobrake.smallbody.attitude_history import AttitudeHistory
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
@@ -8,6 +9,7 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
+from lithobrake.smallbody.rotation_history import rotation_history
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.sky import day_directions, seen_over_a_day
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
@@ -16,6 +18,7 @@ from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 __all__ = [
     "Arcs",
+    "AttitudeHistory",
     "Body",
     "Bounce",
     "FlightStatus",
@@ -38,6 +41,7 @@ __all__ = [
     "hop",
     "read_partner",
     "read_spin",
+    "rotation_history",
     "seen_over_a_day",
     "tumble",
 ]  # fmt: skip

@@ -10,6 +10,7 @@ from lithobrake.smallbody.attraction import Gravity, Workspace, attract
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.polyhedron_gravity import PULL_X
 from lithobrake.smallbody.simd import LANES
+from lithobrake.smallbody.turning import Turning, block_into_body, pull_out_of_body
 
 
 class Dynamics(NamedTuple):
@@ -37,6 +38,7 @@ class Forces(NamedTuple):
     gravity: Gravity
     partner_gravity: Gravity
     dynamics: Dynamics
+    turning: Turning  # of the body against the frame
 
 
 @large_kernel
@@ -59,7 +61,12 @@ def accelerate(
     for i in range(3):
         for j in range(count):
             lane[i * LANES + j] = state[i, j]
+    turns = len(forces.turning.states) > 0
+    if turns:
+        block_into_body(lane, count, forces.turning, when, scratch.turn)
     attract(lane, count, scratch, forces.gravity)
+    if turns:
+        pull_out_of_body(lane, count, scratch.turn)
     for j in range(count):
         strength, spin = dynamics.strength[flight[j]], dynamics.spin_rate[flight[j]]
         for i in range(3):

@@ -31,7 +31,7 @@ class Workspace(NamedTuple):
     series: Floats  # [SCRATCH]
     weight: Floats  # [3, 4], of the splines
     total: Floats  # [12], sums of the splines
-    turn: Floats  # [4, LANES], cosines and sines of the partner's place and attitude
+    turn: Floats  # [9, LANES], the body's axes; then cosines and sines of the partner's place and attitude
 
 
 @compiled
@@ -45,7 +45,7 @@ def workspace(vertex_count: int) -> Workspace:
         np.zeros(SCRATCH),
         np.empty((3, 4)),
         np.empty(12),
-        np.empty((4, LANES)),
+        np.empty((9, LANES)),
     )
 
 

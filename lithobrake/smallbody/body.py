@@ -1,4 +1,4 @@
-"""A small body: a shape with a mass that turns about its z axis, alone or with a partner."""
+"""A small body: a shape with a mass that turns, alone or with a partner."""
 
 import math
 from dataclasses import dataclass
@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
+from lithobrake.smallbody.attitude_history import AttitudeHistory
+from lithobrake.smallbody.delivered_place import delivered_directions
 from lithobrake.smallbody.gravity_gradient import gradient
 from lithobrake.smallbody.orbit import Entry, Orbit
 from lithobrake.smallbody.shape import Shape
@@ -24,6 +26,7 @@ class Body:
     mass          [kg]
     spin_period   sidereal, counter-clockwise seen from +z [s]; infinite for a body that does not turn
     partner       the other body of a binary, which flights feel and may hit; None: the body is alone
+    rotation      its attitudes against axes that turn so, for a body that does not; None: it turns as said
 
     Acceleration and potential are those of the body itself, without its partner. For the partner, its centre of mass
     counts as the origin.
@@ -34,6 +37,7 @@ class Body:
     spin_period: float
     name: str = "body"
     partner: "Partner | None" = None
+    rotation: AttitudeHistory | None = None
 
     def __post_init__(self) -> None:
         finite_number(f"{self.name}: mass", self.mass, above=0.0)
@@ -117,11 +121,18 @@ class Body:
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
     def effective_acceleration(
-        self, points: ArrayLike, *, mass: ArrayLike | None = None, spin_period: ArrayLike | None = None
+        self,
+        points: ArrayLike,
+        *,
+        mass: ArrayLike | None = None,
+        spin_period: ArrayLike | None = None,
+        time: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """Gravity and centrifugal acceleration [m/s2] of points at rest in the body-fixed frame, both [..., 3].
+        """Gravity and the push of rotation [m/s2] of points at rest in the body-fixed frame, both [..., 3].
 
-        mass [kg] and spin_period [s], of shape [...], stand in place of the body's own.
+        mass [kg] and spin_period [s], of shape [...], stand in place of the body's own. time [s], of shape [...]: the
+        push is that of the body's history of rotation then, centrifugal and of the change of its spin; without one, or
+        where time is None, that of the uniform spin.
         """
         p = self._checked(points)
         ratio = numbers("mass", self.mass if mass is None else mass)[..., None] / self.mass
@@ -129,6 +140,10 @@ class Body:
         if not ((ratio > 0.0).all() and (periods > 0.0).all()):
             raise ValueError(f"mass is {mass!r} kg and spin_period {spin_period!r} s; both must be above 0.")
         spin_rate = 2.0 * math.pi / periods[..., None]
+        if self.rotation is not None and time is not None:
+            rates, times = (np.broadcast_to(one, p.shape[:-1]).ravel() for one in (spin_rate[..., 0], time))
+            spin, change = (one.reshape(p.shape) for one in self.rotation.at(times).whole_spin(rates))
+            return self.acceleration(p) * ratio - np.cross(spin, np.cross(spin, p)) - np.cross(change, p)
         return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
@@ -202,7 +217,7 @@ class Body:
         latitude, longitude, heading, north, east = unique.T
         moved = (north != 0.0) | (east != 0.0)
         if moved.any():
-            there = _delivered(self.shape, latitude[moved], longitude[moved], north[moved], east[moved])
+            there = delivered_directions(self.shape, latitude[moved], longitude[moved], north[moved], east[moved])
             latitude[moved], longitude[moved] = self.shape.latitude_longitude(there)
         origin, axes = self.local_frame(latitude, longitude, heading)
         return origin[index.reshape(-1)], axes[index.reshape(-1)]
@@ -269,23 +284,3 @@ class Partner:
             drift=mass_fraction * mean_motion * distance,
             mass_fraction=mass_fraction,
         )
-
-
-def _delivered(
-    shape: Shape,
-    latitude_deg: NDArray[np.float64],
-    longitude_deg: NDArray[np.float64],
-    north: NDArray[np.float64],
-    east: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east."""
-    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
-    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
-    up = np.stack([cosine * along, cosine * across, sine], axis=1)
-    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
-    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
-    way = np.hypot(north, east)
-    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
-    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
-    there: NDArray[np.float64] = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
-    return there

@@ -18,6 +18,7 @@ from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, int
 from lithobrake.smallbody.orbit import Orbit
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.signed_distance import near_heights
+from lithobrake.smallbody.turning_ground import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time
@@ -57,6 +58,9 @@ def fly(
     threads              defaults to the number of cores; the result does not depend on it
     progress             called with the finished fraction of the flights, from this thread
 
+    A body that does not turn uniformly (Body.rotation) turns as its history has it from start_time on; inertial axes
+    are then those at time 0 of the frame that its attitudes are against, and every flight has its own spin period.
+
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
     at time 0. The body's partner, if it has one, attracts and may be hit. Results are body-fixed whatever the frame of
@@ -74,20 +78,24 @@ def fly(
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
     dynamics = _dynamics(body, masses, periods, tolerance)
+    refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
     if frame == "inertial":
         starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
-    phase, grounds = _phases(body, starts, dynamics.orbit, begin)
-    sources, ends = _sources(body, gravity), FlightEnds.of_count(count)
+        fixed = np.concatenate(out_of_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
+    else:
+        fixed, starts = starts, np.concatenate(into_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
+    phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
+    sources, ends, turning = _sources(body, gravity), FlightEnds.of_count(count), turning_of(body.rotation)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
-        forces, out = Forces(*sources, dynamics.of_flights(piece)), ends.of_flights(piece)
+        forces, out = Forces(*sources, dynamics.of_flights(piece), turning), ends.of_flights(piece)
         integrate_flights(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
 
     _run(part, count, threads, progress)
     _refuse_failed(starts, ends, tolerance)
-    begins = StartStates(begin, starts[:, :3].copy(), starts[:, 3:].copy(), masses, periods)
-    place, rate = ends.state[:, :3], ends.state[:, 3:]
+    begins = StartStates(begin, fixed[:, :3].copy(), fixed[:, 3:].copy(), masses, periods)
+    place, rate = out_of_frame(body.rotation, ends.state[:, :3], ends.state[:, 3:], begin + ends.time)
     return Flights(body, begins, STATUSES[ends.status], ends.time, place, rate, ends.facet, ends.step_count)
 
 
@@ -216,15 +224,19 @@ def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
 
 
 def _phases(
-    body: Body, starts: NDArray[np.float64], orbit: Orbit[Floats], begin: NDArray[np.float64]
+    body: Body,
+    fixed: NDArray[np.float64],
+    starts: NDArray[np.float64],
+    orbit: Orbit[Floats],
+    begin: NDArray[np.float64],
 ) -> tuple[NDArray[np.int64], tuple[Ground, Ground]]:
     """ON_SURFACE or ALOFT of each start for the body and its partner, [count, 2], and the grounds of both.
 
-    Raises ValueError for starts below a surface.
+    fixed: the starts body-fixed; starts: in the turning frame. Raises ValueError for starts below a surface.
     """
     slack = min(1e-6 * body.shape.radius, 1e-3)
     phase = np.full((len(starts), 2), ALOFT)
-    phase[:, 0] = _phase(body.shape, starts[:, :3], slack, body.name)
+    phase[:, 0] = _phase(body.shape, fixed[:, :3], slack, body.name)
     ground = _ground(body.shape, slack)
     if body.partner is None:
         return phase, (ground, ground)

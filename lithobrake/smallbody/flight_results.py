@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
+from lithobrake.smallbody.turning_ground import into_frame
 from lithobrake.vocabulary.html_table import html_table
 from lithobrake.vocabulary.outcomes import FlightStatus
 
@@ -82,7 +83,8 @@ class Flights:
             parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
             orbit = self.body.orbit_with(parameter[hit], spin_rate[hit])
             time = (self.start.time + self.time)[hit]
-            position[hit], velocity[hit] = orbit.seen_from_partner(position[hit], velocity[hit], time)
+            in_frame = into_frame(self.body.rotation, position[hit], velocity[hit], time)
+            position[hit], velocity[hit] = orbit.seen_from_partner(*in_frame, time)
         return position, velocity
 
     @cached_property
@@ -117,9 +119,9 @@ class Flights:
     def jacobi_drift(self) -> NDArray[np.float64]:
         """Change of the Jacobi constant from start to end [m2/s2]: the error of integration and gravity together.
 
-        With a partner there is no such constant: nan.
+        With a partner, or where the body does not turn uniformly, there is no such constant: nan.
         """
-        if self.body.partner is not None:
+        if self.body.partner is not None or self.body.rotation is not None:
             return np.full(len(self), np.nan)
         return self._jacobi(self.position, self.velocity) - self._jacobi(self.start.position, self.start.velocity)
 

@@ -14,6 +14,7 @@ from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.signed_distance import near_heights
 from lithobrake.smallbody.sliding import OnGround, slide
+from lithobrake.smallbody.turning_ground import ground_spin, kept_among_stars
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
@@ -205,12 +206,17 @@ class _State:
         lies = np.broadcast_to(np.asarray(captured, dtype=bool), self.time.shape)
         return np.sort(np.concatenate([np.flatnonzero(~lies), self.slide(np.flatnonzero(lies))]))
 
+    def clock(self, which: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Time of some landers as of `fly` [s]."""
+        clock: NDArray[np.float64] = self.begin[which] + self.time[which]
+        return clock
+
     def fly(self, going: NDArray[np.int64], gravity: str, threads: int | None) -> Flights:
         """Fly the landers `going` to the ends of their flights, which are given back."""
         flights = fly(
             *(self.body, self.position[going], self.velocity[going], self.duration - self.time[going]),
             gravity=gravity,
-            start_time=self.begin[going] + self.time[going],
+            start_time=self.clock(going),
             mass=self.mass[going],
             spin_period=self.spin_period[going],
             threads=threads,
@@ -222,10 +228,8 @@ class _State:
         hit = flights.facet >= 0
         self.impact_speed[going[hit]], self.incidence[going[hit]] = flights.impact_speed[hit], flights.incidence[hit]
         # The body turns on while a spin stays among the stars.
-        turn = 2.0 * np.pi / self.spin_period[going] * flights.time
-        c, s = np.cos(turn), np.sin(turn)
-        x, y = self.spin[going, 0], self.spin[going, 1]
-        self.spin[going, 0], self.spin[going, 1] = c * x + s * y, c * y - s * x
+        start, period = flights.start.time, self.spin_period[going]
+        self.spin[going] = kept_among_stars(self.body.rotation, self.spin[going], start, flights.time, period)
         return flights
 
     def rebound(
@@ -239,7 +243,10 @@ class _State:
         axes = impact_frame(velocity, up)
         speed, incidence = self.impact_speed[going], self.incidence[going]
         felt = self.body.effective_acceleration(
-            self.position[going], mass=self.mass[going], spin_period=self.spin_period[going]
+            self.position[going],
+            mass=self.mass[going],
+            spin_period=self.spin_period[going],
+            time=self.clock(going),
         )
         outward = np.einsum("ni,ni->n", felt, up)
         local_spin = np.einsum("nij,nj->ni", axes, self.spin[going])
@@ -264,14 +271,14 @@ class _State:
         near_heights(shape.grid, shape.corners, shape.pseudonormals, self.position[which], height, facet)
         if (facet < 0).any():
             raise ValueError("launch: a captured lander is above the ground; give it a position on the surface.")
-        own = (self.friction[which], self.mass[which], self.spin_period[which])
+        own = (self.friction[which], self.mass[which], self.spin_period[which], self.clock(which))
         ground, left = OnGround(self.body, facet, *own, self.rolls), self.duration - self.time[which]
         ends = slide(ground, self.position[which], self.velocity[which], left)
         self.position[which], self.velocity[which] = ends.position, ends.velocity
         for total, part in ((self.time, ends.time), (self.slid_time, ends.time), (self.slid_length, ends.length)):
             total[which] += part
         # What moves along the ground turns with it, or rolls, which counts for little against the stars.
-        self.spin[which] = np.outer(2.0 * np.pi / self.spin_period[which], [0.0, 0.0, 1.0])
+        self.spin[which] = ground_spin(self.body.rotation, self.clock(which), self.spin_period[which])
         # Nothing says how a lander leaves that is pushed off the ground at rest.
         lofted = ends.leaves & ~ends.velocity.any(axis=1)
         ended = (ends.rests, lofted, ends.leaves)

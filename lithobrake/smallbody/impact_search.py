@@ -4,8 +4,8 @@ The curve of a step is cut into chords that leave it by no more than five times 
 are as long as the distance allows; near it each is tried against the facets around it, for entries from outside only. A
 flight that starts on the surface is watched by its height instead, until it has risen by more than `slack`.
 
-The ground may be that of a partner: the curve is then looked at from the partner's frame (motion, see orbit; its
-distance is zero for the body itself).
+The ground may be that of a partner, or turn against the frame of the flight: the curve is then looked at from the
+frame of the ground (motion, see orbit; its distance is zero for the body itself).
 """
 
 from typing import NamedTuple
@@ -16,9 +16,10 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.dormand_prince import dense_output
 from lithobrake.smallbody.grid import Grid, clearance
-from lithobrake.smallbody.orbit import Motion, into_partner
+from lithobrake.smallbody.orbit import Motion, into_ground
 from lithobrake.smallbody.ray_facet import first_entry
 from lithobrake.smallbody.signed_distance import height_near
+from lithobrake.smallbody.turning import Turning
 
 ON_SURFACE, ALOFT = 0, 1
 BISECTIONS = 48
@@ -40,7 +41,7 @@ def _position_at(curve: Floats, fraction: float, motion: Motion, point: Floats) 
     """Write the position [m] at a fraction of the step, in the frame of the ground."""
     for i in range(3):
         point[i] = dense_output(curve, fraction, i)
-    into_partner(point, motion, fraction)
+    into_ground(point, motion, fraction)
 
 
 @kernel
@@ -67,12 +68,31 @@ def _motion_bounds(curve: Floats, derivative: Floats, step: float, j: int, motio
         pace = max(pace, u * u + v * v + dense_output(curve, fraction, 5) ** 2)
         reach = max(reach, x * x + y * y)
     pace = np.sqrt(pace)
+    if distance == 0.0 and motion.turning.rate > 0.0:
+        return _turning_bounds(curve, acceleration, step, pace, motion.turning)
     if distance > 0.0:
         # Between the ends place and speed are those there and what the acceleration may add.
         reach = np.sqrt(reach) + 0.125 * acceleration * step * step
         acceleration += distance * rate * rate + abs(swing) * (2.0 * pace + abs(swing) * reach)
         acceleration *= 1.0 + abs(swing) * step
     return pace, acceleration
+
+
+@kernel
+def _turning_bounds(
+    curve: Floats, acceleration: float, step: float, pace: float, turning: Turning
+) -> tuple[float, float]:
+    """The same two numbers as seen from a body that turns against the frame, from those in the frame."""
+    reach = 0.0
+    for fraction in (0.0, 1.0):
+        square = 0.0
+        for i in range(3):
+            square += dense_output(curve, fraction, i) ** 2
+        reach = max(reach, square)
+    reach = np.sqrt(reach) + 0.125 * acceleration * step * step
+    fastest = pace + 0.5 * acceleration * step
+    acceleration += turning.change * reach + turning.rate * (2.0 * fastest + turning.rate * reach)
+    return pace + turning.rate * reach, acceleration
 
 
 @kernel

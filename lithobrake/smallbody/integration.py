@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.acceleration import Dynamics, Forces, accelerate, has_escaped
+from lithobrake.smallbody.acceleration import Forces, accelerate, has_escaped
 from lithobrake.smallbody.arrays import Floats, Integers
 from lithobrake.smallbody.attraction import Workspace, workspace
 from lithobrake.smallbody.dormand_prince import (
@@ -22,7 +22,7 @@ from lithobrake.smallbody.dormand_prince import (
     step_error,
 )
 from lithobrake.smallbody.impact_search import Ground, find_impact
-from lithobrake.smallbody.orbit import Motion, motion_over
+from lithobrake.smallbody.orbit import Motion, motion_over, own_motion
 from lithobrake.smallbody.polyhedron_gravity import ROWS
 from lithobrake.smallbody.simd import LANES
 
@@ -108,17 +108,16 @@ def _first_impact(
     j: int,
     phase: Integers,
     grounds: tuple[Ground, Ground],
-    motion: Motion,
+    motions: tuple[Motion, Motion],
     room: Floats,
 ) -> tuple[float, int, int]:
     """Fraction of lane j's step [s] at which it ends on the ground, the facet, and the status.
 
-    phase [2] of this flight, for the body and its partner, is read and written (see impact_search); motion: of the
-    partner.
+    phase [2] of this flight, for the body and its partner, is read and written (see impact_search); motions: of both.
     """
     ground, partner_ground = grounds
-    still = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
-    fraction, facet, phase[0] = find_impact(curve, derivative, step, j, phase[0], ground, still, room)
+    own, motion = motions
+    fraction, facet, phase[0] = find_impact(curve, derivative, step, j, phase[0], ground, own, room)
     status = IMPACT if facet >= 0 else FLYING
     if motion.distance > 0.0:
         partner_fraction, partner_facet, phase[1] = find_impact(
@@ -173,14 +172,14 @@ def _finish_step(
     begin: Floats,
     duration: Floats,
     phase: Integers,
-    dynamics: Dynamics,
+    forces: Forces,
     grounds: tuple[Ground, Ground],
     room: StepRoom,
     ends: FlightEnds,
 ) -> bool:
     """Take lane j's step, or make it shorter; whether its flight is over, which is then written to ends."""
     state, derivative, step, clock, flight = lanes
-    f = flight[j]
+    f, dynamics, turning = flight[j], forces.dynamics, forces.turning
     if step[j] == 0.0:
         _reuse_last_derivative(derivative, j)
         step[j] = min(dynamics.first_step[f], duration[f])
@@ -196,9 +195,10 @@ def _finish_step(
         _write_end(lanes, j, room.curve, 0.0, taken, ends)
         return True
     dense_coefficients(state, room.end, derivative, taken, j, room.curve)
-    motion = motion_over(dynamics.orbit, f, begin[f] + clock[j], taken)
+    time = begin[f] + clock[j]
+    motions = own_motion(turning, time, taken), motion_over(dynamics.orbit, f, turning, time, taken)
     fraction, ends.facet[f], ends.status[f] = _first_impact(
-        room.curve, derivative, taken, j, phase[f], grounds, motion, room.frame
+        room.curve, derivative, taken, j, phase[f], grounds, motions, room.frame
     )
     if ends.status[f] == FLYING and has_escaped(room.end, j, dynamics, f, room.when[j]):
         ends.status[f] = ESCAPED
@@ -243,7 +243,7 @@ def integrate_flights(
     while active > 0:
         _pass_stages(lanes, active, begin, forces, room, lane, scratch)
         for j in range(active - 1, -1, -1):
-            if not _finish_step(lanes, j, begin, duration, phase, forces.dynamics, grounds, room, ends):
+            if not _finish_step(lanes, j, begin, duration, phase, forces, grounds, room, ends):
                 continue
             if queued < len(starts):
                 _fill_lane(lanes, j, starts, queued)

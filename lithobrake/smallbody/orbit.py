@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.turning import Turning, into_body
 
 Entry = TypeVar("Entry", float, Floats)
 
@@ -57,18 +58,27 @@ class Orbit(NamedTuple, Generic[Entry]):
 
 
 class Motion(NamedTuple):
-    """How the partner moves over a step in the turning frame of the body."""
+    """How a ground moves over a step in the turning frame of the body: the partner's, or its own."""
 
-    distance: float  # of the centres [m]
+    distance: float  # of the centres [m]; 0 for the body itself
     angle: float  # longitude of its centre at the start [rad]
     turn: float  # change of that over the step [rad]
     attitude: float  # longitude at which its own x axis points at the start [rad]
     swing: float  # change of that over the step [rad]
+    turning: Turning  # of the body itself
+    begin: float  # of the step [s]
+    step: float  # [s]
 
 
 @kernel
-def motion_over(orbit: Orbit[Floats], flight: int, time: float, step: float) -> Motion:
-    """Motion of a flight's partner over a step [s] that begins at a time [s]."""
+def own_motion(turning: Turning, time: float, step: float) -> Motion:
+    """Motion of the body's own ground over a step [s] that begins at a time [s]."""
+    return Motion(0.0, 0.0, 0.0, 0.0, 0.0, turning, time, step)
+
+
+@kernel
+def motion_over(orbit: Orbit[Floats], flight: int, turning: Turning, time: float, step: float) -> Motion:
+    """Motion of a flight's partner over a step [s] that begins at a time [s]; turning: of the body, not of it."""
     rate, swing = orbit.rate[flight], orbit.swing[flight]
     return Motion(
         orbit.distance[flight],
@@ -76,14 +86,18 @@ def motion_over(orbit: Orbit[Floats], flight: int, time: float, step: float) -> 
         rate * step,
         orbit.attitude[flight] + swing * time,
         swing * step,
+        turning,
+        time,
+        step,
     )
 
 
 @kernel
-def into_partner(point: Floats, motion: Motion, fraction: float) -> None:
-    """Turn a point [3] of the body's frame, at a fraction of the step, into the partner's frame."""
+def into_ground(point: Floats, motion: Motion, fraction: float) -> None:
+    """Turn a point [3] of the body's turning frame, at a fraction of the step, into the frame of the ground."""
     distance = motion.distance
     if distance == 0.0:
+        into_body(point, motion.turning, motion.begin + fraction * motion.step)
         return
     place = motion.angle + fraction * motion.turn
     x, y = point[0] - distance * np.cos(place), point[1] - distance * np.sin(place)

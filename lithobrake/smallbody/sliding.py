@@ -1,7 +1,8 @@
 """Landers that move along the ground, from facet to facet, until they rest or leave it.
 
 The law is Coulomb's: friction times the force that gravity, rotation and the lander's own motion press it on the ground
-with, against the velocity.
+with, against the velocity. Where the body does not turn uniformly, its rotation is that at the begin of the slide: a
+slide lasts for minutes, and the body turns over hours.
 """
 
 from dataclasses import dataclass, replace
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.facet_edges import first_edge, over_edges, unit
+from lithobrake.smallbody.turning_ground import ground_spin
 from lithobrake.vocabulary.arrays import Array
 
 TURN = 0.05  # rad by which the velocity may turn in a step
@@ -44,7 +46,8 @@ class Slides:
 class OnGround:
     """Landers on the ground: facet that each lies on, friction, mass [kg] and spin_period [s] of the body, [count].
 
-    rolls: the friction is a resistance to rolling, as a ball rolls.
+    time: at which the body turns as it does all the while [s], [count]. rolls: the friction is a resistance to rolling,
+    as a ball rolls.
     """
 
     body: Body
@@ -52,11 +55,12 @@ class OnGround:
     friction: Array
     mass: Array
     spin_period: Array
+    time: Array
     rolls: bool = False
 
     def of(self, some: NDArray[np.int64]) -> "OnGround":
         """Some of them."""
-        names = ("facet", "friction", "mass", "spin_period")
+        names = ("facet", "friction", "mass", "spin_period", "time")
         return replace(self, **{name: getattr(self, name)[some] for name in names})
 
     @property
@@ -81,10 +85,9 @@ class OnGround:
 
     def forces(self, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Force over mass [m/s2] that presses on the facet, [count], and the one along it without friction."""
-        felt = self.body.effective_acceleration(position, mass=self.mass, spin_period=self.spin_period)
-        turn = 4.0 * np.pi / self.spin_period
-        felt[:, 0] += turn * velocity[:, 1]
-        felt[:, 1] -= turn * velocity[:, 0]
+        here = {"mass": self.mass, "spin_period": self.spin_period, "time": self.time}
+        felt = self.body.effective_acceleration(position, **here)
+        felt -= 2.0 * np.cross(ground_spin(self.body.rotation, self.time, self.spin_period), velocity)
         press = -np.einsum("ni,ni->n", felt, self.up)
         return press, felt + press[:, None] * self.up
 

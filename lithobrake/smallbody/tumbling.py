@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lithobrake.geometry.attitude import quaternion_products
 from lithobrake.smallbody.arrays import Floats
 from lithobrake.vocabulary.given_numbers import numbers
 
@@ -67,7 +68,9 @@ def tumble(inertia: ArrayLike, attitude: ArrayLike, spin: ArrayLike, duration: A
         rate = np.linalg.norm(omega / scale, axis=1, keepdims=True)
         axis = omega / scale / np.where(rate > 0.0, rate, 1.0)
         half = 0.5 * (rate * scale)[:, 0] * time
-        return _unit(_product(np.column_stack([np.cos(half), np.sin(half)[:, None] * axis]), start)), omega.copy()
+        return _unit(
+            quaternion_products(np.column_stack([np.cos(half), np.sin(half)[:, None] * axis]), start)
+        ), omega.copy()
     momentum = moments * _combined(_turned(start * BACK, omega / scale), axes[None])
     size = np.linalg.norm(momentum, axis=1, keepdims=True)
     momentum /= np.where(size > 0.0, size, 1.0)
@@ -76,7 +79,7 @@ def tumble(inertia: ArrayLike, attitude: ArrayLike, spin: ArrayLike, duration: A
     there = moments[order]
     turn, after = _moved(_cycle(there, np.take_along_axis(momentum, order, 1) * signs), (size * scale)[:, 0] * time)
     turn[:, 1:] = _combined(turn[:, 1:], frame)
-    moved = _unit(_product(start, turn))
+    moved = _unit(quaternion_products(start, turn))
     return moved, _turned(moved, _combined(after / there * size * scale, frame))
 
 
@@ -159,7 +162,7 @@ def _moved(cycle: _Cycle, time: Floats) -> tuple[Floats, Floats]:
     (node, tilt), (node_after, tilt_after) = ends
     precession = time / cycle.b + shift
     turns = (_about(2, -node), _about(0, -tilt), _about(2, precession), _about(0, tilt_after), _about(2, node_after))
-    return reduce(_product, turns), np.stack([x, y, z], axis=1)
+    return reduce(quaternion_products, turns), np.stack([x, y, z], axis=1)
 
 
 def _elliptic(cycle: _Cycle, advance: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -234,13 +237,6 @@ def _about(axis: int, angle: Floats) -> Floats:
     turn = np.zeros((len(angle), 4))
     turn[:, 0], turn[:, 1 + axis] = np.cos(0.5 * angle), np.sin(0.5 * angle)
     return turn
-
-
-def _product(first: Floats, second: Floats) -> Floats:
-    """Hamilton's products of quaternions [count, 4]: the second turn, then the first."""
-    w, v, s, u = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
-    scalar = w * s - np.sum(v * u, axis=1, keepdims=True)
-    return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=1)
 
 
 def _turned(quaternions: Floats, vectors: Floats) -> Floats:

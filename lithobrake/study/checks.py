@@ -17,6 +17,7 @@ from lithobrake.study.design_checks import design_problems
 from lithobrake.study.journey_checks import journey_problems
 from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
 from lithobrake.study.quantity import reach
+from lithobrake.study.rotation_checks import rotation_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -41,6 +42,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from aim_problems(study)
     yield from journey_problems(study)
     yield from _touchdown_problems(study)
+    yield from rotation_problems(study)
     yield from body_problems(study)
 
 

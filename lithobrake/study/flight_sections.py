@@ -4,9 +4,34 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
+from lithobrake.study.quantity import (
+    Angle,
+    LengthUnit,
+    MaybeUncertain,
+    Number,
+    Numbers,
+    Scalar,
+    Section,
+    Whole,
+)
 
 BUILT_IN_BODIES = ("didymos", "dimorphos")
+
+
+class RotationSection(Section):
+    """How a body turns that does not keep one face towards its partner, as Dimorphos since the impact of DART: where it
+    starts, and Euler's equations of a rigid body under the partner's torque say the rest."""
+
+    yaw_deg: Annotated[float, Number("deg", at_least=-180, at_most=180)] = Field(0.0, examples=["30.0"])
+    """Turn about z, the axis of the orbit, at the start, away from the attitude that keeps one face to the partner."""
+    pitch_deg: Annotated[float, Number("deg", at_least=-90, at_most=90)] = 0.0
+    """Turn about the new y after it."""
+    roll_deg: Annotated[float, Number("deg", at_least=-180, at_most=180)] = 0.0
+    """Turn about the newest x, the long axis, after these."""
+    spin: Annotated[tuple[float, ...], Numbers("rad/s", at_least=-2e-3, at_most=2e-3)] = (0.0, 0.0, 0.0)
+    """Angular velocity at the start along the body's x, y and z, beside the one that keeps pace with the orbit."""
+    days: Annotated[float, Number("d", above=0, at_most=1000)] = 30.0
+    """Time from the start over which landers arrive."""
 
 
 class SiteSection(Section):
@@ -34,6 +59,9 @@ class SiteSection(Section):
     """Mass of the body; absent: that of the built-in body."""
     spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
     """Spin period of the body; absent: that of the kernels, or of the built-in body."""
+    rotation: RotationSection | None = None
+    rotation_time: Annotated[Scalar, MaybeUncertain("s", at_least=0)] | None = None
+    """Time since the start of site.rotation at which the lander arrives; absent: drawn evenly over its days."""
     kernels: list[str] = Field(default=[])
     """Kernels of SPICE, counted from the study file, from which the spin is read: text constants (PCK); with an epoch
     also leap seconds (LSK) and an ephemeris of body and partner (SPK)."""

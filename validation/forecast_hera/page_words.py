@@ -42,7 +42,7 @@ time to rest there. A difference whose interval holds 0 is not shown to be one.
 What is not a number is a branch: how Dimorphos turns since the impact of DART, how the lander comes
 down, and to which end of the long axis. Weights are judgement. Small and large libration start 7 and
 30 degrees of yaw off the attitude in which the long axis points to Didymos; tumbling starts with 30
-degrees of yaw and 60 of roll. A lander arrives at any time of 60 days of that motion. At the surface:
+degrees of yaw and 60 of roll. A lander arrives at any time of 30 days of that motion. At the surface:
 speed, angle and place at the first contact are drawn, as after a controlled descent. Ballistic:
 released 200 m from the centre on the way to a vertical touchdown, 1.25 times as fast as the least,
 with errors of 90 m and 2 cm/s (3 sigma) in each direction [Celik-2019]. A lander that misses

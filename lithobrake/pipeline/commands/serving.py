@@ -15,7 +15,6 @@ from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.emulated.touchdown_emulator import FILE as OF_TOUCHDOWNS
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
-from lithobrake.pipeline.fly.flights import partner_time
 from lithobrake.pipeline.folder.notes import REMEDY
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
@@ -167,7 +166,7 @@ class ServedStudy:
         flown = fly(
             *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
             gravity=self.study.flight.gravity,
-            start_time=partner_time(body, site),
+            start_time=self.site.clock(site),
             mass=site["mass"],
             spin_period=site["spin_period"],
             threads=1,

@@ -32,7 +32,7 @@ SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 class Descents:
     """Flights of the landers of a study to the ground, one row a journey from `first` on.
 
-    flights         in axes fixed to the body; their start time is that of the partner's motion
+    flights         in axes fixed to the body; their start time is that of the partner's motion and the body's rotation
     axes            of the first touchdown, in rows, [count, 3, 3], x along the incoming horizontal velocity; of those
                     that touch down
     attitude, spin  at the start, fixed to the body, of a lander whose states have them: [count, 4] as w, x, y, z, and
@@ -63,8 +63,15 @@ class Descents:
         position, velocity = turned(into_body, states.position), turned(into_body, states.velocity)
         if _is_icrf(study):
             velocity = against_ground(position, velocity, columns["spin_period"])
+        clock = site.clock(columns)
+        if (ground := site.body.rotation) is None:
+            clock = clock + states.time
+        else:
+            # The partner stands still: when a lander is released counts for nothing but in the rotation.
+            here = ground.at(clock)
+            position, velocity = here.states_out_of_frame(position, velocity)
+            into_body = here.axes.transpose(0, 2, 1) @ into_body
         _refuse_below(study, site, position, states.source)
-        clock = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"]) + states.time
         flights = fly(
             *(site.body, position, velocity, study.journey.duration),
             gravity=study.flight.gravity,
@@ -125,7 +132,10 @@ class Descents:
             return {}
         period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
         inertia = lander_inertia(self.study, row)
-        attitude, spin = turned_in_flight(inertia, self.attitude[lander], self.spin[lander], period, time)
+        ground, start = self.flights.body.rotation, float(self.flights.start.time[lander])
+        attitude, spin = turned_in_flight(
+            *(inertia, self.attitude[lander], self.spin[lander], period, time), ground=ground, start=start
+        )
         return attitude_inputs(self.axes[lander], row[AZIMUTH], attitude, spin)
 
 

@@ -26,9 +26,10 @@ def felt(
 ) -> np.ndarray:  # fmt: skip
     """Acceleration [m/s2] of what rests on the ground, [count, 3], all body-fixed, at points [count, 3] and times [s].
 
-    The partner acts by its tide: as a point, less what it does to the body as a whole.
+    The partner acts by its tide: as a point, less what it does to the body as a whole. Rotation and tide are those at
+    the times, where the body does not turn uniformly, too.
     """
-    own: np.ndarray = body.effective_acceleration(points, mass=mass, spin_period=spin_period)
+    own: np.ndarray = body.effective_acceleration(points, mass=mass, spin_period=spin_period, time=time)
     if body.partner is None:
         return own
     from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
@@ -39,6 +40,8 @@ def felt(
     angle = orbit.angle + orbit.rate * time
     centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
     centre *= np.reshape(orbit.distance, (-1, 1))
+    if body.rotation is not None:
+        centre = body.rotation.at(time).out_of_frame(centre)
     way = centre - points
     strength = body.partner.body.gravitational_parameter
     near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))
@@ -64,8 +67,7 @@ def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
     site = Site(study)
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
-    time = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    return on_ground(site.body, rows, origin, axes, time, columns["mass"], columns["spin_period"])
+    return on_ground(site.body, rows, origin, axes, site.clock(columns), columns["mass"], columns["spin_period"])
 
 
 def on_ground(

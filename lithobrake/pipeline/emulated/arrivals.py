@@ -36,8 +36,7 @@ class Arrivals:
     ) -> "Arrivals":
         """Those of these rows at these places, by columns of SITE_KEYS [count]."""
         origin, axes = place.frames(site)
-        clock = place.body.partner_time(site["partner_longitude_deg"], site["spin_period"])
-        return cls(number, rows, site, origin, axes, np.broadcast_to(clock, number.shape), refit)
+        return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
 
     @classmethod
     def drawn(cls, design: DrawnDesign, place: Site, first: int, count: int) -> "Arrivals":

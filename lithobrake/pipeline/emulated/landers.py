@@ -165,19 +165,20 @@ class EmulatedLanders:
         self.axes[down] = impact_frame(flown.velocity[hit], normal)
         self.speed[down] = flown.impact_speed[hit]
         self.incidence[down] = np.minimum(np.degrees(flown.incidence[hit]), FLATTEST_DEG)
-        self.spin[down] = self._arriving_spin(down, spin[hit], flown.time[hit], period[hit])
+        self.spin[down] = self._arriving_spin(down, spin[hit], flown.start.time[hit], flown.time[hit], period[hit])
 
-    def _arriving_spin(self, down: np.ndarray, spin: np.ndarray, time: np.ndarray, period: np.ndarray) -> np.ndarray:
+    def _arriving_spin(
+        self, down: np.ndarray, spin: np.ndarray, start: np.ndarray, time: np.ndarray, period: np.ndarray
+    ) -> np.ndarray:
         """Spins against the ground [rad/s] in the frames of the next impacts, as those of balls.
 
         What depends on how a lander tumbles is in the scatter of the emulator, which does not read the spin.
         """
-        turning = np.outer(2.0 * np.pi / period, [0.0, 0.0, 1.0])
-        among_stars, angle = spin + turning, turning[:, 2] * time
-        cosine, sine = np.cos(angle), np.sin(angle)
-        x, y, z = among_stars.T
-        fixed = np.column_stack([cosine * x + sine * y, cosine * y - sine * x, z])
-        found: np.ndarray = np.einsum("nij,nj->ni", self.axes[down], fixed - turning)
+        from lithobrake.smallbody.turning_ground import ground_spin, kept_among_stars
+
+        ground = self.job.site.body.rotation
+        fixed = kept_among_stars(ground, spin + ground_spin(ground, start, period), start, time, period)
+        found: np.ndarray = np.einsum("nij,nj->ni", self.axes[down], fixed - ground_spin(ground, start + time, period))
         return found
 
     @property

@@ -52,7 +52,12 @@ def flight_dependencies(study: Study) -> dict[str, Any]:
     mesh = labelled_mesh(Path(study.site.body))
     body = study.site.body if built_in else content_hash(mesh)
     # A key that came later is left out where it says nothing, so that folders of before stay whole.
-    later = {key: getattr(study.site, key) for key in ("gravity_facets", "extents")}
+    turning = study.site.rotation
+    later = {
+        "gravity_facets": study.site.gravity_facets,
+        "extents": study.site.extents,
+        "rotation": None if turning is None else turning.model_dump(mode="json"),
+    }
     return (
         study.flight.model_dump()
         | {key: value for key, value in later.items() if value is not None}
@@ -129,7 +134,7 @@ def fly_starts(job: Job, start: Starts, what: str, body: "Body | None" = None) -
         np.einsum("nij,ni->nj", axes, start.velocity),
         study.flight.duration,
         gravity=study.flight.gravity,
-        start_time=partner_time(body, start.site),
+        start_time=job.site.clock(start.site),
         mass=start.site["mass"],
         spin_period=start.site["spin_period"],
         threads=getattr(job.executor, "worker_count", None),
@@ -140,11 +145,12 @@ def fly_starts(job: Job, start: Starts, what: str, body: "Body | None" = None) -
 def _checks(job: Job, start: Starts) -> dict[str, Any]:
     """How exact the flights are: the table's error, and the drift of the Jacobi constant of the first flights.
 
-    With a partner there is no such constant, so these flights are made once more without it.
+    With a partner there is no such constant, nor where the body does not turn uniformly, so these flights are made once
+    more without either.
     """
     part = Starts(start.sample[:CHECKED], start.velocity[:CHECKED], {k: v[:CHECKED] for k, v in start.site.items()})
     body, gravity = job.site.body, job.study.flight.gravity
-    drift = np.abs(fly_starts(job, part, "checks of flights", replace(body, partner=None)).jacobi_drift)
+    drift = np.abs(fly_starts(job, part, "checks of flights", replace(body, partner=None, rotation=None)).jacobi_drift)
     return {
         "gravity": gravity,
         "gravity_table_error": dict(body.shape.table_error._asdict()) if gravity == "table" else None,
@@ -152,11 +158,6 @@ def _checks(job: Job, start: Starts) -> dict[str, Any]:
         "jacobi_drift_median_m2_s2": float(np.median(drift)) if len(drift) else None,
         "jacobi_drift_largest_m2_s2": float(drift.max()) if len(drift) else None,
     }
-
-
-def partner_time(body: "Body", site: dict[str, np.ndarray]) -> np.ndarray:
-    """Times [s] at which the partner stands over the longitudes of the samples; 0 where it does not move or is none."""
-    return body.partner_time(site["partner_longitude_deg"], site["spin_period"])
 
 
 def write_shape(body: "Body", folder: StudyFolder) -> None:

@@ -111,7 +111,8 @@ def _held(site: Site, sites: dict[str, np.ndarray]) -> np.ndarray:
     """Whether the ground holds what lies at these sites [count, flight_count]."""
     shape, flat = sites["mass"].shape, {key: values.ravel() for key, values in sites.items()}
     origin, axes = site.frames(flat)
-    felt = site.body.effective_acceleration(origin, mass=flat["mass"], spin_period=flat["spin_period"])
+    here = {"mass": flat["mass"], "spin_period": flat["spin_period"], "time": site.clock(flat)}
+    felt = site.body.effective_acceleration(origin, **here)
     held: np.ndarray = (np.einsum("ni,ni->n", felt, axes[:, 2]) < 0.0).reshape(shape)
     return held
 

@@ -131,10 +131,14 @@ class Journey:
 
     def _tumbled(self, outputs: Mapping[str, float], time: float) -> "tuple[Rotation, np.ndarray]":
         """Attitude and spin [rad/s], against the ground, at the end of a flight, both fixed to the body."""
-        turning = np.array([0.0, 0.0, 2.0 * math.pi / self.spin_period])
+        from lithobrake.smallbody.turning_ground import ground_spin
+
+        ground, start = self.model.body.rotation, self.clock + self.time
+        (turning,) = ground_spin(ground, np.array([start]), np.array([self.spin_period]))
         attitude = from_frame(self.axes) * attitude_of(outputs)
         spin = spin_of(outputs) @ self.axes + turning
-        return turned_in_flight(self.model.inertia(self.row), attitude, spin, self.spin_period, time)
+        inertia = self.model.inertia(self.row)
+        return turned_in_flight(inertia, attitude, spin, self.spin_period, time, ground=ground, start=start)
 
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""

@@ -55,8 +55,9 @@ def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> 
     site = model.site
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
-    clock = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    numbers = zip(*(one.tolist() for one in (clock, columns["mass"], columns["spin_period"])), strict=True)
+    numbers = zip(
+        *(one.tolist() for one in (site.clock(columns), columns["mass"], columns["spin_period"])), strict=True
+    )
     starts = zip(rows, origin, axes, numbers, strict=True)
     return [Journey(model, first + number, *start, *own) for number, (*start, own) in enumerate(starts)]
 

@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.emulate.samples import CAPTURED, Samples, sampling_seed, touchdown_values
-from lithobrake.pipeline.fly.flights import partner_time, write_table
+from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.rest import sliding_law
 from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
@@ -173,10 +173,10 @@ def _first_impacts(study: Study, sites: "Sites") -> "Impacts":
 
 @dataclass(frozen=True)
 class Sites:
-    """Where each of some samples touches down, all arrays [sample_count, ...].
+    """Where and when each of some samples touches down, all arrays [sample_count, ...].
 
-    origin [m] and axes, in rows, of the local frames, body-fixed; effective_acceleration: along the outward
-    normal [m/s2]; site: the numbers of SITE_KEYS.
+    origin [m] and axes, in rows, of the local frames, body-fixed; clock: time there [s], as of `fly`;
+    effective_acceleration: along the outward normal [m/s2]; site: the numbers of SITE_KEYS.
     """
 
     body: "Body"
@@ -184,6 +184,7 @@ class Sites:
     site: dict[str, np.ndarray]
     origin: np.ndarray
     axes: np.ndarray
+    clock: np.ndarray
     effective_acceleration: np.ndarray
 
     @classmethod
@@ -191,8 +192,9 @@ class Sites:
         """Those of samples of a study at these places, by the keys of SITE_KEYS [sample_count]."""
         body = centre.body
         origin, axes = centre.frames(site)
-        felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"])
-        return cls(body, samples, site, origin, axes, np.einsum("ni,ni->n", felt, axes[:, 2]))
+        clock = centre.clock(site)
+        felt = body.effective_acceleration(origin, mass=site["mass"], spin_period=site["spin_period"], time=clock)
+        return cls(body, samples, site, origin, axes, clock, np.einsum("ni,ni->n", felt, axes[:, 2]))
 
     def follow(self, job: Job, ground: str, first: "Rebounds", bounce: "Bounce") -> list[list[Any]]:
         """A row of rest.csv for each sample, in their order: from how it leaves the first impact to where it ends."""
@@ -208,7 +210,7 @@ class Sites:
         going = np.flatnonzero(~first.outside)
         site = {key: values[going] for key, values in self.site.items()}
         velocity, spin = (np.einsum("nij,ni->nj", self.axes[going], v[going]) for v in (first.velocity, first.spin))
-        time, captured = partner_time(self.body, site), first.captured[going]
+        time, captured = self.clock[going], first.captured[going]
         launch = Launch(self.origin[going], velocity, spin, time, captured, site["mass"], site["spin_period"])
         return hop(
             *(self.body, launch, bounce, job.study.rest.duration),

@@ -1,0 +1,182 @@
+"""Journeys on a body that librates or tumbles: when they begin, where they go, and what goes with it."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.spatial.transform import Rotation
+
+import lithobrake
+from lithobrake.pipeline.design.descents import Descents
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.free_rotation import turned_in_flight
+from lithobrake.pipeline.design.local_ground import felt
+from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.smallbody import Launch, fly, hop, rotation_history, tumble
+from lithobrake.study import StudyError
+from lithobrake.study.source import StudySource
+
+from .bouncing_lander import bounce, journey_tables
+from .test_journeys import HARD, TABLES, hard_ground, hard_velocity, rows
+from .test_local_ground import two_balls
+
+COUNT = 24
+ROTATION = {"yaw_deg": 30.0, "roll_deg": 60.0, "days": 2.0}
+
+
+def turning(**changes: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a study on hard ground whose body tumbles."""
+    given = TABLES | {"site": {"body": "dimorphos", "rotation": ROTATION}}
+    return given | {name: given.get(name, {}) | keys for name, keys in changes.items()}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("turning") / "out"
+    lithobrake.run(turning(), folder, workers=1, model=hard_ground, report=False)
+    return folder
+
+
+def test_landers_arrive_evenly_over_the_days_and_go_where_bounces_go(made: Path) -> None:
+    study = with_site_gravity(StudySource.of_tables(turning()).study)
+    site, design = Site(study), DrawnDesign(study)
+    assert site.body.rotation is not None
+    assert site.body.rotation.duration >= 2.0 * 86400.0 + 86400.0
+    columns = site.sampled(COUNT)
+    clock = site.clock(columns)
+    assert stats.kstest(clock / (2.0 * 86400.0), "uniform").pvalue > 0.01
+    origin, axes = site.frames(columns)
+    first = np.array([hard_velocity(row) for row in design.rows])
+    launch = Launch(origin, np.einsum("nij,ni->nj", axes, first), time=clock, mass=columns["mass"])
+    ends, uniform = (hop(body, launch, HARD, 40000.0) for body in (site.body, replace(site.body, rotation=None)))
+    found = rows(made, "journeys.csv")
+    words = {"settled": "at_rest", "flying": "under_way"}
+    assert [words.get(word, word) for word in ends.status.tolist()] == found["end"].tolist()
+    rests = ends.status == "settled"
+    assert rests.sum() > 0.5 * COUNT
+    place = np.column_stack([found[f"position_{axis}"] for axis in "xyz"])
+    assert np.linalg.norm(place - ends.position, axis=1)[rests].max() < 0.01
+    assert np.median(np.linalg.norm(uniform.position - ends.position, axis=1)) > 1.0
+
+
+def test_flights_are_noted_with_the_time_at_which_they_may_be_flown_again(made: Path) -> None:
+    arcs = lithobrake.open_study(made).arcs
+    body = Site(StudySource.of_tables(turning()).study).body
+    position, velocity = (np.column_stack([arcs[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity"))
+    lasting = arcs["end_s"] - arcs["begin_s"]
+    again = fly(body, position, velocity, 40000.0 - arcs["begin_s"], gravity="table", start_time=arcs["clock_s"])
+    assert again.time == pytest.approx(lasting, abs=1e-9)
+    following = np.flatnonzero(arcs["sample"][1:] == arcs["sample"][:-1])
+    assert len(following) > COUNT
+    # A touchdown on hard ground takes no time.
+    between = arcs["clock_s"][following + 1] - arcs["clock_s"][following]
+    assert between == pytest.approx(lasting[following], abs=1e-6)
+
+
+def test_the_same_seed_gives_the_same_journeys_and_another_start_others(made: Path, tmp_path: Path) -> None:
+    lithobrake.run(turning(), tmp_path / "again", workers=1, model=hard_ground, report=False)
+    assert (tmp_path / "again" / "journeys.csv").read_bytes() == (made / "journeys.csv").read_bytes()
+    other = turning(site={"rotation": ROTATION | {"yaw_deg": -30.0}})
+    lithobrake.run(other, made.parent / "other", workers=1, model=hard_ground, report=False)
+    assert (made.parent / "other" / "journeys.csv").read_bytes() != (made / "journeys.csv").read_bytes()
+
+
+def test_a_time_of_arrival_may_be_given() -> None:
+    given = turning(site={"rotation_time": 5000.0})
+    site = Site(StudySource.of_tables(given).study)
+    assert (site.clock(site.sampled(5)) == 5000.0).all()
+
+
+def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:
+    release = {"position": [5.0, 150.0, 10.0], "velocity": [0.0, -0.03, 0.0]}
+    delivery = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed", "release": release}
+    given = journey_tables(journey={"count": 6}) | {"delivery": delivery}
+    given["site"] = given.get("site", {}) | {"body": "dimorphos", "rotation": ROTATION}
+    study = with_site_gravity(StudySource.of_tables(given).study)
+    flights = Descents.flown(study, 0, np.full((6, 6), 0.5)).flights
+    here = flights.body.rotation.at(flights.start.time)
+    place, rate = here.states_into_frame(flights.start.position, flights.start.velocity)
+    assert place == pytest.approx(np.tile(release["position"], (6, 1)))
+    assert rate == pytest.approx(np.tile(release["velocity"], (6, 1)), abs=1e-12)
+    assert len(set(flights.start.time.tolist())) == 6
+    assert np.ptp(flights.time[flights.facet >= 0]) > 60.0
+
+
+def test_a_whole_study_with_released_and_emulated_landers_ends(tmp_path: Path) -> None:
+    given = journey_tables(journey={"count": 24, "emulated_count": 50})
+    given["site"] = given.get("site", {}) | {"body": "dimorphos", "rotation": ROTATION}
+    lithobrake.run(given, tmp_path / "out", workers=1, model=bounce)
+    results = lithobrake.open_study(tmp_path / "out")
+    assert results.journeys.row_count == 24
+    assert (tmp_path / "out" / "report.html").is_file()
+    with pytest.raises(ValueError, match="no place for an attitude over time"):
+        lithobrake.export.export_study(results, tmp_path / "export", ["oem"])
+
+
+def test_what_is_felt_on_a_body_that_tumbles_is_how_a_slow_flight_begins() -> None:
+    body = two_balls()
+    body = replace(body, rotation=rotation_history(body, 20_000.0, yaw_deg=70.0, spin=(3e-4, -4e-4, 2e-4)))
+    point = body.shape.surface_point(20.0, -40.0)[None]
+    up = body.shape.normals[body.shape.locate(20.0, -40.0)[1]]
+    speed, time = 2e-4, np.array([7000.0])
+    own = np.array([body.mass]), np.array([body.spin_period])
+    here, still = (felt(one, point, time, *own)[0] for one in (body, replace(body, rotation=None)))
+    flight = fly(body, point, speed * up[None], 100.0, start_time=time)
+    change = (flight.velocity[0] - speed * up) / flight.time[0]
+    tide = np.linalg.norm(felt(body, point, time, *own)[0] - body.effective_acceleration(point, time=time)[0])
+    bound = 2.0 * speed * np.linalg.norm(body.rotation.at(time).whole_spin(body.spin_rate)[0]) + 0.01 * tide
+    assert np.linalg.norm(change - here) < bound
+    assert np.linalg.norm(change - still) > 10.0 * bound
+
+
+def test_a_lander_turns_among_the_stars_while_the_ground_turns_under_it() -> None:
+    body = two_balls()
+    ground = rotation_history(body, 20_000.0, yaw_deg=70.0, spin=(3e-4, -4e-4, 2e-4))
+    inertia, spin = np.diag([0.01, 0.02, 0.03]), np.array([1e-3, -3e-3, 2e-3])
+    start, time, period = 4000.0, 2500.0, body.spin_period
+    attitude = Rotation.from_rotvec([0.3, 0.2, -0.5])
+    found, against = turned_in_flight(inertia, attitude, spin, period, time, ground=ground, start=start)
+
+    def among_stars(at: float) -> Rotation:
+        return Rotation.from_rotvec([0.0, 0.0, body.spin_rate * at]) * Rotation.from_matrix(ground.at(at).axes[0])
+
+    begin, end = among_stars(start), among_stars(start + time)
+    quaternion = np.roll((begin * attitude).as_quat(), 1)[None]
+    turned, spins = tumble(inertia, quaternion, begin.apply(spin)[None], np.array([time]))
+    expected = end.inv() * Rotation.from_quat(np.roll(turned, -1, axis=1)[0])
+    assert (found * expected.inv()).magnitude() < 1e-9
+    own = ground.at(start + time).whole_spin(body.spin_rate)[0][0]
+    assert against == pytest.approx(end.inv().apply(spins[0]) - own, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("site", "words"),
+    [
+        ({"body": "didymos"}, 'allowed with [site.rotation]: "dimorphos" with its partner'),
+        ({"partner": False}, "site.partner is false"),
+        ({"spin_period": 40000.0}, "site.spin_period is given; with [site.rotation]"),
+        ({"rotation_time": 2e5}, "site.rotation_time reaches 200000 s; allowed: at most 172800 s"),
+        (
+            {"rotation": None, "rotation_time": 5.0},
+            "site.rotation_time is a time in [site.rotation], and there is none",
+        ),
+        ({"rotation": {"pitch_deg": 91.0}}, "allowed: at least -90 and at most 90"),
+        ({"rotation": {"spin": [0.1, 0.0, 0.0]}}, "allowed: 3 numbers, each at least -0.002"),
+        ({"rotation": {"yaw": 3.0}}, "yaw"),
+    ],
+)
+def test_what_does_not_go_with_a_rotation_is_refused(site: dict[str, Any], words: str) -> None:
+    given = turning(site=site)
+    given["site"] = {key: value for key, value in given["site"].items() if value is not None}
+    with pytest.raises(StudyError) as refused:
+        StudySource.of_tables(given)
+    assert len(refused.value.problems) == 1
+    assert words in refused.value.problems[0]
+
+
+def test_the_sky_of_a_day_is_refused() -> None:
+    with pytest.raises(StudyError, match="no day is like another"):
+        StudySource.of_tables(turning(sky={"sun_latitude_deg": 0.0}))

@@ -1,0 +1,344 @@
+"""Bodies that librate, roll or tumble: their rotation against closed forms, flights about them against the stars."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from lithobrake.smallbody import (
+    AttitudeHistory,
+    Body,
+    FlightStatus,
+    HardSurface,
+    Launch,
+    Partner,
+    Shape,
+    dimorphos,
+    fly,
+    hop,
+    rotation_history,
+)
+
+from .meshes import sphere_mesh
+
+DAY = 86400.0
+PERIOD = 11.3674 * 3600.0
+EXTENTS = np.array([193.0, 148.0, 120.0])
+
+
+def ellipsoid(extents: np.ndarray = EXTENTS, frequency: int = 6) -> Shape:
+    directions, faces = sphere_mesh(frequency)
+    return Shape(0.5 * extents * directions, faces)
+
+
+def alone(spin_period: float = PERIOD) -> Body:
+    return Body(ellipsoid(), 2.8e9, spin_period)
+
+
+def paired(longitude_deg: float = 0.0) -> Body:
+    """With a partner of the mass of Didymos, which always stands over one longitude."""
+    other = Body(Shape(380.0 * sphere_mesh(6)[0], sphere_mesh(6)[1]), 5.4e11, 2.26 * 3600.0, "partner")
+    return Body(ellipsoid(), 2.8e9, PERIOD, partner=Partner(other, PERIOD, longitude_deg))
+
+
+def moments(body: Body) -> np.ndarray:
+    return np.diag(body.shape.inertia_per_density)
+
+
+def turns(history: AttitudeHistory) -> Rotation:
+    return Rotation.from_quat(np.roll(history.attitude, -1, axis=1))
+
+
+def times(history: AttitudeHistory) -> np.ndarray:
+    return history.step * np.arange(len(history.attitude))
+
+
+def among_stars(body: Body, time: np.ndarray) -> np.ndarray:
+    """Rotation matrices of the body's axes at times, [count, 3, 3]."""
+    frame = Rotation.from_rotvec(np.outer(body.spin_rate * time, [0.0, 0.0, 1.0])).as_matrix()
+    return frame @ body.rotation.at(time).axes
+
+
+def tidal_rate(body: Body) -> float:
+    """G mass of the partner over the cube of the distance [1/s2]."""
+    return body.partner.body.gravitational_parameter / body.orbit.distance**3
+
+
+# The rotation itself.
+
+
+def test_a_body_that_starts_at_rest_under_its_partner_stays_so():
+    history = rotation_history(dimorphos(), 2.0 * DAY)
+    assert np.abs(history.attitude - [1.0, 0.0, 0.0, 0.0]).max() < 1e-12
+    assert np.abs(history.spin).max() < 1e-12 * dimorphos().spin_rate
+
+
+@pytest.mark.parametrize("longitude_deg", [0.0, 180.0])
+def test_a_small_yaw_swings_at_the_rate_of_three_times_b_less_a_over_c(longitude_deg):
+    body = paired(longitude_deg)
+    history = rotation_history(body, 4.0 * DAY, yaw_deg=0.05)
+    a, b, c = moments(body)
+    rate = math.sqrt(3.0 * tidal_rate(body) * (b - a) / c)
+    yaw = turns(history).as_euler("ZYX", degrees=True)[:, 0]
+    assert yaw == pytest.approx(0.05 * np.cos(rate * times(history)), abs=0.05 * 1e-4)
+
+
+def test_small_pitch_and_roll_are_the_two_modes_of_the_linear_problem():
+    """A phi'' - n D theta' + (C - B) n^2 phi = 0 and B theta'' + n D phi' + (C - A)(n^2 + 3 k) theta = 0, with
+    D = A + B - C and k = G M / d^3: turns phi about x, theta about y, of a body that keeps pace."""
+    body = paired()
+    (a, b, c), n, k = moments(body), body.spin_rate, tidal_rate(body)
+    stiff, soft = (c - a) * (n**2 + 3.0 * k), (c - b) * n**2
+    middle = a * stiff + b * soft + (n * (a + b - c)) ** 2
+    root = math.sqrt(middle**2 - 4.0 * a * b * stiff * soft)
+    modes = [math.sqrt((middle + sign * root) / (2.0 * a * b)) for sign in (1.0, -1.0)]
+    history = rotation_history(body, 6.0 * DAY, pitch_deg=0.01, roll_deg=0.02)
+    _, pitch, roll = turns(history).as_euler("ZYX", degrees=True).T
+
+    def left_over(rates: list[float]) -> float:
+        waves = np.column_stack([f(rate * times(history)) for rate in rates for f in (np.cos, np.sin)])
+        both = np.column_stack([pitch, roll])
+        return float(np.abs(both - waves @ np.linalg.lstsq(waves, both, rcond=None)[0]).max())
+
+    assert left_over(modes) < 1e-5
+    assert left_over([1.01 * modes[0], modes[1]]) > 3e-4
+    assert left_over([modes[0], 1.01 * modes[1]]) > 3e-4
+
+
+def test_a_body_without_a_partner_keeps_energy_and_angular_momentum():
+    body = alone()
+    body = replace(body, rotation=rotation_history(body, 5.0 * DAY, roll_deg=40.0, spin=(1e-4, 2e-4, -3e-4)))
+    time = np.linspace(0.0, 5.0 * DAY, 1001)
+    spin, _ = body.rotation.at(time).whole_spin(body.spin_rate)
+    momentum = spin @ body.shape.inertia_per_density
+    inertial = np.einsum("nij,nj->ni", among_stars(body, time), momentum)
+    energy = np.sum(spin * momentum, axis=1)
+    assert np.ptp(energy) < 1e-7 * energy[0]
+    assert np.abs(inertial - inertial[0]).max() < 1e-7 * np.linalg.norm(inertial[0])
+    # It does tumble: the axis of the angular momentum wanders far through the body.
+    assert np.ptp(momentum[:, 1]) > 0.5 * np.linalg.norm(momentum[0])
+
+
+def test_a_body_under_its_partner_keeps_the_jacobi_integral_of_rotation():
+    """w I w / 2 - n L_z + 3 k (u I u) / 2, with u the partner's direction: of a partner that stands still."""
+    body = paired()
+    body = replace(body, rotation=rotation_history(body, 10.0 * DAY, yaw_deg=30.0, roll_deg=60.0))
+    here = body.rotation.at(np.linspace(0.0, 10.0 * DAY, 1001))
+    spin, _ = here.whole_spin(body.spin_rate)
+    inertia, toward, pole = body.shape.inertia_per_density, here.axes[:, 0], here.axes[:, 2]
+    momentum = spin @ inertia
+    turning = 0.5 * np.sum(spin * momentum, axis=1) - body.spin_rate * np.sum(pole * momentum, axis=1)
+    whole = turning + 1.5 * tidal_rate(body) * np.sum(toward * (toward @ inertia), axis=1)
+    assert np.ptp(whole) < 1e-6 * np.ptp(turning)
+
+
+def test_between_its_times_a_history_is_as_good_as_at_them():
+    body = alone()
+    coarse, fine = (rotation_history(body, days * DAY, spin=(2e-4, 1e-4, 0.0)) for days in (1.0, 1.37))
+    time = np.linspace(0.0, DAY, 777)
+    one, other = coarse.at(time), fine.at(time)
+    assert np.abs(one.axes - other.axes).max() < 1e-8
+    assert np.abs(one.spin - other.spin).max() < 1e-7 * 2e-4
+    assert np.abs(one.change - other.change).max() < 1e-3 * np.abs(one.change).max()
+
+
+# What flies about it.
+
+
+def any_history(spin_rate: float, duration: float) -> AttitudeHistory:
+    """Turns about three axes by chosen functions of time; the spin by differences."""
+    step = 10.0
+    time = np.arange(0.0, duration + step, step)
+
+    def turn(at: np.ndarray) -> Rotation:
+        angles = [0.7 * np.sin(2.0 * spin_rate * at), 1.3 * spin_rate * at, 0.4 + 0.3 * np.cos(3.0 * spin_rate * at)]
+        return Rotation.from_euler("ZYX", np.column_stack(angles))
+
+    spin = (turn(time - 0.01).inv() * turn(time + 0.01)).as_rotvec() / 0.02
+    return AttitudeHistory(step, np.roll(turn(time).as_quat(), 1, axis=1), spin)
+
+
+def test_about_a_ball_no_flight_depends_on_how_it_turns():
+    directions, faces = sphere_mesh(12)
+    ball = Body(Shape(100.0 * directions, faces), 1e10, 5.0 * 3600.0)
+    turning = replace(ball, rotation=any_history(ball.spin_rate, 4.0 * 3600.0))
+    begin, limit = 1234.0, 2.0 * 3600.0
+    position = np.array([[100.5, 3.0, 2.0], [5.0, -120.0, 30.0], [0.0, 1.0, 140.0]])
+    velocity = np.array([[0.03, 0.01, 0.02], [-0.06, 0.01, 0.01], [0.03, -0.05, -0.01]])
+    flown = [fly(one, position, velocity, limit, frame="inertial", start_time=begin) for one in (ball, turning)]
+    assert (flown[0].status == FlightStatus.IMPACT).all()
+    # Facets of a ball lie up to 0.3 m below it, and a flight meets others as it turns.
+    assert flown[1].time == pytest.approx(flown[0].time, abs=8.0)
+    end = begin + flown[1].time
+    frame = np.einsum("nij,nj->ni", turning.rotation.at(end).axes, flown[1].position)
+    assert frame == pytest.approx(flown[0].position, abs=1.0)
+    aloft = [fly(one, position, velocity, 300.0, frame="inertial", start_time=begin) for one in (ball, turning)]
+    there = turning.rotation.at(np.full(3, begin + 300.0))
+    place, rate = there.states_into_frame(aloft[1].position, aloft[1].velocity)
+    assert place == pytest.approx(aloft[0].position, abs=1e-2)
+    assert rate == pytest.approx(aloft[0].velocity, abs=1e-4)
+
+
+def test_a_body_that_stands_still_in_its_frame_has_the_flights_of_one_without_a_history():
+    body = paired()
+    still = replace(body, rotation=rotation_history(body, 2.0 * DAY))
+    origin, axes = body.local_frame([0.0, 10.0, -40.0, 70.0], [0.0, 90.0, 200.0, 300.0])
+    velocity = np.einsum(
+        "nij,nj->ni", axes, [[0.01, 0.0, 0.02], [0.0, 0.01, 0.03], [0.02, 0.01, 0.01], [0.0, 0.05, 0.1]]
+    )
+    one, other = (fly(each, origin, velocity, DAY, start_time=3600.0) for each in (body, still))
+    assert (one.status == other.status).all()
+    assert (one.facet == other.facet).all()
+    assert len(set(one.status.tolist())) > 1
+    assert other.time == pytest.approx(one.time, rel=1e-9)
+    assert other.position == pytest.approx(one.position, rel=1e-9, abs=1e-6)
+    assert other.impact_speed == pytest.approx(one.impact_speed, rel=1e-9, nan_ok=True)
+
+
+class Stars:
+    """The body turning by Euler's equations and a lander about it, in axes that do not turn; its centre falls."""
+
+    def __init__(self, body: Body, turn: Rotation, spin: np.ndarray) -> None:
+        self.body, self.inertia = body, body.shape.inertia_per_density
+        self.start, self.spin = turn.as_matrix(), spin + body.spin_rate * turn.as_matrix()[2]
+
+    def toward(self, time: float) -> np.ndarray:
+        """From the body's centre to its partner's."""
+        motion = 2.0 * math.pi / self.body.partner.period
+        place = math.radians(self.body.partner.longitude_deg) + motion * time
+        return self.body.orbit.distance * np.array([math.cos(place), math.sin(place), 0.0])
+
+    def slope(self, time: float, state: np.ndarray) -> np.ndarray:
+        place, rate, turn, spin = state[:3], state[3:6], state[6:15].reshape(3, 3), state[15:]
+        push = turn @ self.body.acceleration(turn.T @ place)
+        torque = -np.cross(spin, self.inertia @ spin)
+        if self.body.partner is not None:
+            other, way = self.body.partner.body, self.toward(time)
+            facing = Rotation.from_rotvec([0.0, 0.0, other.spin_rate * time + math.pi]).as_matrix()
+            push = push + facing @ other.acceleration(facing.T @ (place - way))
+            push = push - self.body.orbit.pull * way / self.body.orbit.distance
+            unit = turn.T @ way / np.linalg.norm(way)
+            torque = torque + 3.0 * tidal_rate(self.body) * np.cross(unit, self.inertia @ unit)
+        cross = np.array([[0.0, -spin[2], spin[1]], [spin[2], 0.0, -spin[0]], [-spin[1], spin[0], 0.0]])
+        return np.concatenate([rate, push, (turn @ cross).ravel(), np.linalg.solve(self.inertia, torque)])
+
+    def fly(self, position: np.ndarray, velocity: np.ndarray, begin: float, duration: float):
+        """Time of the impact and the state there, or at the end, body-fixed; the lander starts body-fixed."""
+        exact = {"method": "DOP853", "rtol": 1e-9, "atol": 1e-10}
+        state = np.concatenate([np.zeros(6), self.start.ravel(), self.spin])
+        state[0] = 1e5
+        if begin:
+            state = solve_ivp(self.slope, (0.0, begin), state, **exact).y[:, -1]
+        turn, spin = state[6:15].reshape(3, 3), state[15:]
+        state[:6] = *(turn @ position), *(turn @ (velocity + np.cross(spin, position)))
+
+        def ground(_time: float, y: np.ndarray) -> float:
+            return float(self.body.shape.height(y[6:15].reshape(3, 3).T @ y[:3]))
+
+        ground.terminal, ground.direction = True, -1
+        found = solve_ivp(self.slope, (begin, begin + duration), state, events=ground, max_step=120.0, **exact)
+        last = found.y[:, -1]
+        turn, spin = last[6:15].reshape(3, 3), last[15:]
+        place = turn.T @ last[:3]
+        return found.t[-1] - begin, place, turn.T @ last[3:6] - np.cross(spin, place), found.status == 1
+
+
+@pytest.mark.parametrize(("body", "begin"), [(alone(), 0.0), (paired(), 3000.0)], ids=["alone", "paired"])
+def test_flights_about_a_tumbling_body_are_those_among_the_stars(body, begin):
+    spin = np.array([2e-4, -1e-4, 1e-4])
+    angles = {"yaw_deg": 30.0, "pitch_deg": -20.0, "roll_deg": 60.0}
+    tumbling = replace(body, rotation=rotation_history(body, DAY, **angles, spin=spin))
+    stars = Stars(body, Rotation.from_euler("ZYX", list(angles.values()), degrees=True), spin)
+    origin, axes = body.local_frame([3.0, 40.0, -20.0], [5.0, 100.0, 190.0])
+    origin = origin + 0.5 * axes[:, 2]
+    velocity = np.einsum(
+        "nij,nj->ni", axes.transpose(0, 2, 1), [[0.01, 0.0, 0.012], [0.0, 0.012, 0.01], [-0.01, 0.0, 0.02]]
+    )
+    flown = fly(tumbling, origin, velocity, 9000.0, start_time=begin, tolerance=1e-9)
+    assert (flown.facet >= 0).sum() >= 2
+    for row in range(3):
+        time, place, rate, hit = stars.fly(origin[row], velocity[row], begin, 9000.0)
+        assert hit == (flown.facet[row] >= 0)
+        assert flown.time[row] == pytest.approx(time, abs=0.02)
+        assert flown.position[row] == pytest.approx(place, abs=1e-3)
+        assert flown.velocity[row] == pytest.approx(rate, abs=1e-6)
+        if hit:
+            assert flown.facet[row] == body.shape.nearest(place)[1]
+            assert flown.impact_speed[row] == pytest.approx(np.linalg.norm(rate), rel=1e-4)
+    uniform = fly(body, origin, velocity, 9000.0, start_time=begin)
+    assert np.linalg.norm(uniform.position - flown.position, axis=1).min() > 0.5
+
+
+def test_what_falls_on_the_partner_has_the_place_and_speed_there_whatever_the_body_does():
+    body = paired()
+    tumbling = replace(body, rotation=rotation_history(body, DAY, yaw_deg=50.0, roll_deg=70.0))
+    start = [[120.0, 0.0, 0.0], [130.0, 20.0, 30.0]]
+    velocity = [[0.4, 0.05, 0.0], [0.5, 0.0, 0.02]]
+    one, other = (fly(each, start, velocity, DAY, frame="inertial", tolerance=1e-9) for each in (body, tumbling))
+    assert (one.status == FlightStatus.PARTNER).all()
+    assert (other.status == FlightStatus.PARTNER).all()
+    # The body's own pull differs as it turns, by little so far away.
+    assert other.latitude == pytest.approx(one.latitude, abs=0.5)
+    assert other.longitude == pytest.approx(one.longitude, abs=0.5)
+    assert other.impact_speed == pytest.approx(one.impact_speed, rel=3e-3)
+
+
+def test_the_push_on_the_ground_is_gravity_less_the_acceleration_of_the_ground():
+    body = paired()
+    body = replace(body, rotation=rotation_history(body, DAY, yaw_deg=40.0, roll_deg=60.0, spin=(2e-4, 0.0, -1e-4)))
+    points, _ = body.shape.locate([0.0, 10.0, -80.0], [0.0, 90.0, 200.0])
+    time, apart = np.array([20000.0, 31000.0, 40000.0]), 20.0
+
+    def places(at: np.ndarray) -> np.ndarray:
+        return np.einsum("nij,nj->ni", among_stars(body, at), points)
+
+    moved = (places(time + apart) - 2.0 * places(time) + places(time - apart)) / apart**2
+    moved = np.einsum("nji,nj->ni", among_stars(body, time), moved)
+    found = body.effective_acceleration(points, time=time) - body.acceleration(points)
+    assert found == pytest.approx(-moved, abs=1e-5 * np.abs(moved).max())
+    uniform = body.effective_acceleration(points) - body.acceleration(points)
+    assert np.abs(found - uniform).max() > 0.5 * np.abs(uniform).max()
+
+
+def test_a_lander_keeps_its_spin_among_the_stars_and_turns_with_the_ground_where_it_rests():
+    body = alone()
+    body = replace(body, rotation=rotation_history(body, DAY, roll_deg=50.0, spin=(2e-4, 0.0, 1e-4)))
+    origin, axes = body.local_frame(5.0, 40.0)
+    spin, begin = np.array([1e-3, -2e-3, 5e-4]), 1000.0
+    launch = Launch(origin + 0.1 * axes[2], 0.01 * axes[2], spin, begin)
+    flight = hop(body, launch, HardSurface(0.5), 400.0, gravity="exact")
+    assert flight.status == "flying"
+    before, after = (among_stars(body, np.array([begin + at]))[0] for at in (0.0, 400.0))
+    assert after @ flight.spin[0] == pytest.approx(before @ spin, abs=1e-10)
+    rest = hop(body, launch, HardSurface(0.0), 20_000.0, gravity="exact")
+    assert rest.status == "settled"
+    ground = body.rotation.at(begin + rest.time).whole_spin(body.spin_rate)[0]
+    assert rest.spin == pytest.approx(ground, abs=1e-12)
+
+
+# What is refused.
+
+
+def test_flights_longer_than_the_history_are_refused():
+    body = alone()
+    body = replace(body, rotation=rotation_history(body, 3600.0))
+    with pytest.raises(ValueError, match="known from 0 to 3600 s, and flights or slides may last from 0 to 4000 s"):
+        fly(body, [100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 3000.0, start_time=1000.0)
+    with pytest.raises(ValueError, match=r"spin_period is not 40922\.6 s"):
+        fly(body, [100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0, spin_period=3e4)
+
+
+@pytest.mark.parametrize(
+    ("attitude", "spin", "words"),
+    [
+        (np.ones((1, 4)), np.zeros((1, 3)), "at least two"),
+        (np.zeros((2, 4)), np.zeros((2, 3)), "no quaternion 0"),
+        (np.ones((2, 4)), np.full((2, 3), 1.0), "more attitudes"),
+    ],
+)
+def test_attitudes_that_are_no_history_are_refused(attitude, spin, words):
+    with pytest.raises(ValueError, match=words):
+        AttitudeHistory(10.0, attitude, spin)
