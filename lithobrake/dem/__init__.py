@@ -5,7 +5,7 @@ Other parts use this one by the names that stand here.
 
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.period import folded, period_of
-from lithobrake.dem.bodies.rigid_body import Part, RigidBody, checked_inertia, new_body, sum_of_parts
+from lithobrake.dem.bodies.rigid_body import Part, RigidBody, checked_inertia, new_body
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.law.material_pair import pair_law
 from lithobrake.dem.observables import BodyMotion
@@ -16,5 +16,5 @@ from lithobrake.dem.world import StepTooLargeError, World
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Part", "RigidBody", "Shape", "Sphere", "StepTooLargeError", "World",
     "checked_inertia", "contact_duration", "equivalent_radius", "folded", "new_body", "pair_law", "period_of",
-    "rotation_matrices", "sum_of_parts",
+    "rotation_matrices",
 ]  # fmt: skip

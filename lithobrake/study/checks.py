@@ -158,11 +158,13 @@ def _shape_problems(study: Study) -> Iterator[str]:
     if found:
         return
     try:
-        radius = lander_radius(study.lander)
-        yield from mass_problems(study.lander)
+        radius, found = lander_radius(study.lander), list(mass_problems(study.lander))
     except (ValueError, OSError) as error:
         meshes = [name for name, part in study.lander.part.items() if part.file is not None]
         yield f"lander.file{f', or that of lander.part.{meshes[0]}' if meshes else ''}: {error}"
+        return
+    yield from found
+    if found:
         return
     yield from size_problems(study, radius)
     yield from boulder_problems(study, largest_diameter(study), radius)

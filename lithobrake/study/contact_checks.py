@@ -10,8 +10,8 @@ from lithobrake.study.study import Study
 # A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
 # same part of the smallest grain bounces off as from a rock. Neither says anything about a soil.
 GRAINS_PER_LANDER = 1e6
-# Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of motion
-# can be solved for it. Booms and panels that the shape leaves out may reach far.
+# Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of
+# motion can be solved for it. Booms and panels that the shape leaves out may reach far.
 INERTIAS = (1e-6, 1e2)
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
@@ -83,12 +83,10 @@ def _first_overlap(study: Study, mass: float, radius: float, speed: float) -> fl
     grain, lander, give = study.grain, study.lander, 0.0
     own = grain.young_modulus if lander.young_modulus is None else lander.young_modulus
     of_parts = [part.young_modulus for part in lander.part.values() if part.young_modulus is not None]
+    ratio_of_lander = grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio
     for softest, ratio in (
         (usual_reach(grain.young_modulus)[0], grain.poisson_ratio),
-        (
-            min([usual_reach(own)[0], *of_parts]),
-            grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio,
-        ),
+        (min([usual_reach(own)[0], *of_parts]), ratio_of_lander),
     ):
         give += (1.0 - usual_reach(ratio)[0] ** 2) / softest
     return float((15.0 * mass * speed**2 * give / (16.0 * math.sqrt(radius))) ** 0.4)

@@ -71,10 +71,8 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
     elif name.startswith("place."):
         table |= {"place": {**(_table(table["place"]) or {}), name.removeprefix("place."): value}, "region": None}
     elif name.startswith("centre_of_mass."):
-        table["centre_of_mass"] = {
-            **(_table(table["centre_of_mass"]) or {}),
-            name.removeprefix("centre_of_mass."): value,
-        }
+        centre = _table(table["centre_of_mass"]) or {}
+        table["centre_of_mass"] = {**centre, name.removeprefix("centre_of_mass."): value}
     elif name.startswith("part."):
         _, part, inner = name.split(".")
         if part not in table["part"]:

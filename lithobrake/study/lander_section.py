@@ -95,8 +95,8 @@ class LanderSection(Section):
     """Centre of mass in the axes of the lander; absent: that of homogeneous shape and parts."""
     inertia: Annotated[tuple[float, ...], Tensor("kg m2")] | None = None
     """Inertia about the centre of mass, in the axes of the lander: three moments, each at most the sum of the other
-    two, or six elements of the tensor, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, with Ixy minus the sum of mass x y; absent: that of
-    homogeneous shape and parts."""
+    two, or six elements of the tensor, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, with Ixy minus the sum of mass x y; absent: that
+    of homogeneous shape and parts."""
     young_modulus: YoungModulus | None = None
     """Young's modulus of the lander; absent: that of the grains."""
     poisson_ratio: PoissonRatio | None = None
@@ -115,7 +115,7 @@ class LanderSection(Section):
     """Cohesion of the lander's hull; absent: that of the grains."""
     surface_energy: SurfaceEnergy | None = None
     """Surface energy of the lander's hull; absent: that of the grains."""
-    part: dict[str, PartSection] = {}
+    part: dict[str, PartSection] = Field(default={})
     """Parts that are fixed to the lander."""
 
     @property
