@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import Box, ConvexHull, Material, Part, RigidBody, Sphere, checked_inertia, new_body
+from lithobrake.dem import Box, ConvexHull, Material, Part, RigidBody, Shape, Sphere, checked_inertia, new_body
 from lithobrake.geometry.mesh import refuse_malformed
 from lithobrake.geometry.mesh_files import read_mesh
 
@@ -82,26 +82,23 @@ class Lander:
         """Return the height [m] of the lowest point of the body at a position and rotation matrix, body to world."""
         return float(position[2]) + min(self._lowest_of(part.shape, rotation) for part in self.body.parts)
 
-    def _lowest_of(self, shape: Sphere | Box | ConvexHull, rotation: Floats) -> float:
+    def _lowest_of(self, shape: Shape, rotation: Floats) -> float:
         """Return the height of the lowest point of a shape over the centre of mass [m]."""
         centre = self.body.centre_of_mass
-        if isinstance(shape, Sphere):
-            return float((shape.centroid - centre) @ rotation[2]) - shape.radius
-        return float(((shape.vertices - centre) @ rotation[2]).min())
+        if isinstance(shape, ConvexHull):
+            return float(((shape.vertices - centre) @ rotation[2]).min())
+        return float((shape.centroid - centre) @ rotation[2]) - shape.bounding_radius
 
     def footprint(self, rotation: Floats) -> Floats:
         """Return points spread over the parts beside the main shape, seen from above [m], [point_count, 2], from the
         centre of mass.
         """
-        points = [np.zeros((0, 3))]
-        steps = np.arange(FOOTPRINT_STEPS + 1)[:, None, None] / FOOTPRINT_STEPS
-        for part in self.parts:
-            reach = (
-                part.shape.radius * np.vstack([np.eye(3), -np.eye(3)])
-                if isinstance(part.shape, Sphere)
-                else (part.shape.vertices - part.shape.centroid)
-            )
-            points.append((part.shape.centroid - self.body.centre_of_mass + steps * reach).reshape(-1, 3))
+        points, steps = [np.zeros((0, 3))], np.linspace(0.0, 1.0, FOOTPRINT_STEPS + 1)[:, None, None]
+        for shape in (part.shape for part in self.parts):
+            corners = shape.bounding_radius * np.vstack([np.eye(3), -np.eye(3)])
+            if isinstance(shape, ConvexHull):
+                corners = shape.vertices - shape.centroid
+            points.append((shape.centroid - self.body.centre_of_mass + steps * corners).reshape(-1, 3))
         across: Floats = (np.concatenate(points) @ rotation.T)[:, :2]
         return across
 

@@ -146,6 +146,7 @@ def test_a_foot_on_the_ground_carries_by_the_law_of_the_lever() -> None:
     foot = Part(moved((0.1, 0.1, 0.04), (0.8, 0.0, -0.14)), ROUGH)
     body = world.add_body(Box((0.2, 0.2, 0.2)), ROUGH, (0.0, 0.0, 0.17), parts=(foot,))
     world.add_plane(*FLOOR, ROUGH)
+    world.drag = 2.0
     world.run_locally(10.0, 25.0)
     assert np.linalg.norm(world.velocity[body]) < 1e-4
     contacts = world.contacts()

@@ -107,7 +107,8 @@ def paint(
     order = seen[np.argsort(-np.linalg.norm(to_eye[seen], axis=1), kind="stable")]
     triangles, owners, normals = triangles[order], owners[order], normals[order]
 
-    radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
+    # Of a lander with booms most corners are near its middle: the median leaves the tips out of its shadow.
+    radius = np.array([0.85 * np.median(np.linalg.norm(body.vertices, axis=1)) for body in bodies])
     light = light_on_faces(
         triangles.mean(axis=1), normals, owners, position, radius, camera.azimuth_deg, surface_height
     )
