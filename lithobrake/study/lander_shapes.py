@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def lander_parts(
     for name, part in section.part.items():
         shape = part_shape(part)
         density = part.density if part.mass is None else part.mass / shape.volume
-        own = {key: values.get(f"lander.part.{name}.{key}", value) for key, value in properties.items()}
+        own: dict[str, Any] = {key: values.get(f"lander.part.{name}.{key}", value) for key, value in properties.items()}
         parts.append(Part(shape, Material(density=float(density or 0.0), **own)))
     return tuple(parts)
 
