@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.dem import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.bodies.arrays import Cores
+from lithobrake.dem.bodies.rigid_body import AT_CENTRE
 from lithobrake.dem.stepping.assembly import cores_of, rotation_matrices
 
 Floats = NDArray[np.float64]
@@ -72,7 +73,13 @@ def library(generator: np.random.Generator, count: int) -> Library:
     corner_max = max(len(shape.core) for shape in shapes)
     corner = np.array([shape.core[np.arange(corner_max) % len(shape.core)] for shape in shapes])
     size = np.array([shape.bounding_radius for shape in shapes])
-    return Library(shapes, {k: np.array(v) for k, v in kinds.items()}, cores_of(shapes), corner, size)
+    return Library(
+        shapes,
+        {k: np.array(v) for k, v in kinds.items()},
+        cores_of([(shape, AT_CENTRE) for shape in shapes]),
+        corner,
+        size,
+    )
 
 
 # --- rotations ----------------------------------------------------------------------------------------------------

@@ -22,8 +22,8 @@ from lithobrake.dem.narrow_phase.feature_list import list_bodies, list_margin, l
 from lithobrake.dem.narrow_phase.gjk import PENETRATING, weighted
 from lithobrake.dem.narrow_phase.penetration import penetration_vector
 from lithobrake.dem.narrow_phase.scratch import Scratch, scratch_for
-from lithobrake.dem.stepping.assembly import bodies_of
-from lithobrake.dem.stepping.neighbours import new_pairs
+from lithobrake.dem.stepping.assembly import bodies_of, parts_of, shapes_of
+from lithobrake.dem.stepping.neighbours import Neighbours, new_pairs
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 # Names that the list of a pair has room for.
@@ -45,7 +45,8 @@ def cached(function: Callable[..., Any]) -> Callable[..., Any]:
 
 def one_pair(second: int) -> Pairs:
     """Return a pair with room for many names."""
-    pair = new_pairs(np.zeros(1, dtype=np.int64), np.full(1, second))
+    first, other = np.zeros(1, dtype=np.int64), np.full(1, second)
+    pair = new_pairs(Neighbours(first, other, first.copy(), other.copy()))
     return pair._replace(overflow_row=np.zeros(1, dtype=np.int64), overflow=np.zeros((1, NAMES), dtype=np.int64))
 
 
@@ -131,7 +132,8 @@ def bodies_for(shapes: Library) -> Bodies:
     bodies = [RigidBody(shape, ROCK, 1.0, np.eye(3)) for shape in shapes.shapes * 2]
     state = {name: np.zeros((len(bodies), 3)) for name in ("position", "velocity", "angular_momentum")}
     state["quaternion"] = np.tile([1.0, 0.0, 0.0, 0.0], (len(bodies), 1))
-    return bodies_of(bodies, shapes.shapes, [ROCK], state, NO_PERIOD)
+    parts = parts_of(bodies)
+    return bodies_of(bodies, parts, shapes_of(parts), [ROCK], state, NO_PERIOD)
 
 
 @cached
@@ -169,11 +171,11 @@ def ask_kept(
     """List features with the first body moved, move it back, and measure them."""
     for k in range(len(first)):
         one, two = first[k], second[k] + len(cores.rounding)
-        pair.first[0], pair.second[0] = one, two
+        pair.first[0], pair.second[0], pair.first_part[0], pair.second_part[0] = one, two, one, two
         for body, side in ((one, 0), (two, 1)):
             bodies.position[body], bodies.rotation[body] = position[k, side], rotation[k, side]
         reach[k] = cores.rounding[first[k]] + cores.rounding[second[k]]
-        margin = list_margin(bodies, cores, one, two, 0.0)
+        margin = list_margin(0, bodies, cores, pair, 0.0)
         travel, part = margin * moves[k, 6], moves[k, 7]
         bodies.position[one] += part * travel * moves[k, 0:3]
         turn(bodies.rotation[one], moves[k, 3:6], (1.0 - part) * travel / bodies.bounding_radius[one])
@@ -190,8 +192,10 @@ def nearest_listed(cores: Cores, bodies: Bodies, one: int, two: int, pair: Pairs
     if pair.feature_count[0] > 0 and feature_kind(listed_feature(0, pair, 0)) == SPHERES:
         return min(reach, dot(apart, apart) ** 0.5)
     smallest = reach
+    shapes = (bodies.shape[one], bodies.shape[two])
     for k in range(pair.feature_count[0]):
-        smallest = min(smallest, measure_feature(bodies, cores, listed_feature(0, pair, k), one, two, apart, reach)[2])
+        feature = listed_feature(0, pair, k)
+        smallest = min(smallest, measure_feature(bodies, cores, feature, (one, two), shapes, apart, reach)[2])
     return smallest
 
 

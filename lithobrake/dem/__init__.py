@@ -5,7 +5,7 @@ Other parts use this one by the names that stand here.
 
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.period import folded, period_of
-from lithobrake.dem.bodies.rigid_body import checked_inertia
+from lithobrake.dem.bodies.rigid_body import Part, RigidBody, checked_inertia, new_body
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.law.material_pair import pair_law
 from lithobrake.dem.observables import BodyMotion
@@ -14,6 +14,7 @@ from lithobrake.dem.stepping.time_step import contact_duration
 from lithobrake.dem.world import StepTooLargeError, World
 
 __all__ = [
-    "BodyMotion", "Box", "ConvexHull", "Material", "Shape", "Sphere", "StepTooLargeError", "World", "checked_inertia",
-    "contact_duration", "equivalent_radius", "folded", "pair_law", "period_of", "rotation_matrices",
+    "BodyMotion", "Box", "ConvexHull", "Material", "Part", "RigidBody", "Shape", "Sphere", "StepTooLargeError", "World",
+    "checked_inertia", "contact_duration", "equivalent_radius", "folded", "new_body", "pair_law", "period_of",
+    "rotation_matrices",
 ]  # fmt: skip

@@ -3,26 +3,27 @@
 import json
 import os
 from dataclasses import asdict
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import Period, Step
 from lithobrake.dem.bodies.material import Material
-from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
+from lithobrake.dem.bodies.rigid_body import Part, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
-from lithobrake.dem.stepping.assembly import material_numbers, materials_of, shape_numbers, shapes_of
+from lithobrake.dem.stepping.assembly import material_numbers, materials_of, part_starts, parts_of
 from lithobrake.dem.stepping.engine import MOVING, Engine
 from lithobrake.dem.world_state import WorldState
 from lithobrake.files.atomic import atomic_path
 
-FORMAT_VERSION = 6
+FORMAT_VERSION = 7
 
 
 def _shape_text(shape: Shape) -> str:
     """Describe a shape by what it was made from; floats written by repr come back bit for bit."""
     if isinstance(shape, Sphere):
-        return json.dumps({"sphere": shape.radius})
+        return json.dumps({"sphere": [shape.radius, shape.centroid.tolist()]})
     if isinstance(shape, Box):
         return json.dumps({"box": shape.lengths})
     assert isinstance(shape, ConvexHull)
@@ -31,7 +32,7 @@ def _shape_text(shape: Shape) -> str:
 
 def _shape(text: str) -> Shape:
     kind, value = next(iter(json.loads(text).items()))
-    return {"sphere": Sphere, "box": Box, "hull": ConvexHull}[kind](value)
+    return Sphere(*value) if kind == "sphere" else {"box": Box, "hull": ConvexHull}[kind](value)
 
 
 def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step, clock: dict[str, Any]) -> None:
@@ -39,7 +40,9 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
     import h5py
 
     engine = state.stepping_together(step)
-    shapes, materials = shapes_of(state.bodies), materials_of(state.bodies, state.planes)
+    parts = parts_of(state.bodies)
+    shapes, materials = list({id(part.shape): part.shape for part in parts}.values()), materials_of(parts, state.planes)
+    number = {id(shape): k for k, shape in enumerate(shapes)}
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
         file.attrs["format"], file.attrs["format_version"] = "lithobrake world", FORMAT_VERSION
         file.attrs["shapes"] = json.dumps([_shape_text(shape) for shape in shapes])
@@ -48,8 +51,11 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
         file.attrs["drag"], file.attrs["watched"], file.attrs["skin"] = step.drag, state.watched, engine.skin
         file.attrs["period"] = state.period
         file["gravity"], file["lost"], file["watch_record"] = step.gravity, state.lost, state.watch_record
-        file["body/shape"] = shape_numbers(state.bodies, shapes)
-        file["body/material"] = material_numbers(state.bodies, materials)
+        file["part/shape"] = np.array([number[id(part.shape)] for part in parts], dtype=np.int64)
+        file["part/material"] = material_numbers(parts, materials)
+        file["body/part_start"] = part_starts(state.bodies)
+        file["body/is_plain"] = np.array([body.is_plain for body in state.bodies])
+        file["body/centre"] = np.array([body.centre_of_mass for body in state.bodies])
         file["body/mass"] = np.array([body.mass for body in state.bodies])
         file["body/inertia"] = np.array([body.inertia for body in state.bodies])
         for name in MOVING:
@@ -90,11 +96,16 @@ def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, 
     """Add the bodies and planes to an empty state."""
     shapes = [_shape(text) for text in json.loads(attributes["shapes"])]
     materials = [Material(**values) for values in json.loads(attributes["materials"])]
-    for shape, material, mass, inertia in zip(
-        data["body/shape"], data["body/material"], data["body/mass"], data["body/inertia"], strict=True
-    ):
-        uniform = np.array_equal(inertia, shapes[shape].inertia_per_density * (float(mass) / shapes[shape].volume))
-        state.bodies.append(RigidBody(shapes[shape], materials[material], float(mass), inertia, uniform))
+    parts = [
+        Part(shapes[shape], materials[material])
+        for shape, material in zip(data["part/shape"], data["part/material"], strict=True)
+    ]
+    for k, (begin, end) in enumerate(pairwise(data["body/part_start"].tolist())):
+        (own, *others), mass, inertia = parts[begin:end], float(data["body/mass"][k]), data["body/inertia"][k]
+        is_plain = bool(data["body/is_plain"][k])
+        uniform = is_plain and np.array_equal(inertia, own.shape.inertia_per_density * (mass / own.shape.volume))
+        centre = None if is_plain else data["body/centre"][k]
+        state.bodies.append(RigidBody(own.shape, own.material, mass, inertia, uniform, tuple(others), centre))
     for k, everything in enumerate(json.loads(attributes["meets_all"])):
         meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
         material = materials[data["plane/material"][k]]

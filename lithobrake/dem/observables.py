@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.dem import energy
-from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs, Step
 from lithobrake.dem.bodies.period import NO_PERIOD
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody, vector
 from lithobrake.dem.stepping.engine import Engine
@@ -17,7 +17,8 @@ from lithobrake.dem.world_state import WorldState
 
 CONTACT = np.dtype(
     [
-        ("body_a", np.int64), ("body_b", np.int64), ("point", np.float64, 3), ("normal", np.float64, 3),
+        ("body_a", np.int64), ("body_b", np.int64), ("part_a", np.int64), ("part_b", np.int64),
+        ("point", np.float64, 3), ("normal", np.float64, 3),
         ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
     ]
 )  # fmt: skip
@@ -26,10 +27,10 @@ CONTACT = np.dtype(
 class BodyMotion(NamedTuple):
     """How one body moves, world frame."""
 
-    position: Floats  # m, of the centroid, [3]
+    position: Floats  # m, of the centre of mass, [3]
     velocity: Floats  # m/s, [3]
     orientation: Floats  # unit quaternion w, x, y, z, body to world
-    angular_momentum: Floats  # kg m2/s, about the centroid, [3]
+    angular_momentum: Floats  # kg m2/s, about the centre of mass, [3]
     spin: Floats  # rad/s, [3]
     mass: float  # kg
 
@@ -39,11 +40,14 @@ class BodyMotion(NamedTuple):
         return float(energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum))
 
 
-def contacts_of(pairs: Pairs) -> NDArray[Any]:
+def contacts_of(bodies: Bodies, pairs: Pairs) -> NDArray[Any]:
     """Return the pairs that touch as a structured array, see `World.contacts`."""
     touching = np.flatnonzero(pairs.overlap > 0.0)
     result = np.zeros(len(touching), dtype=CONTACT)
     result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
+    for name, members in (("a", "first"), ("b", "second")):
+        number, part = result[f"body_{name}"], getattr(pairs, f"{members}_part")[touching]
+        result[f"part_{name}"] = np.where(number < 0, 0, part - bodies.part_start[np.maximum(number, 0)])
     for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
         result[name] = getattr(pairs, name)[touching]
     return result
@@ -106,12 +110,12 @@ class Observables:
 
     @property
     def position(self) -> Floats:
-        """Centroids [m], shape [body_count, 3]."""
+        """Centres of mass [m], shape [body_count, 3]; of a plain body the centroid."""
         return self._state.motion["position"].copy()
 
     @property
     def velocity(self) -> Floats:
-        """Velocities of the centroids [m/s], shape [body_count, 3]."""
+        """Velocities of the centres of mass [m/s], shape [body_count, 3]."""
         return self._state.motion["velocity"].copy()
 
     @property
@@ -121,7 +125,7 @@ class Observables:
 
     @property
     def angular_momentum(self) -> Floats:
-        """Angular momenta about the centroids [kg m2/s], shape [body_count, 3], world frame."""
+        """Angular momenta about the centres of mass [kg m2/s], shape [body_count, 3], world frame."""
         return self._state.motion["angular_momentum"].copy()
 
     @property
@@ -147,17 +151,18 @@ class Observables:
 
     @property
     def contact_torque(self) -> Floats:
-        """Sum of the torques of the contacts on each body about its centroid [N m], world frame, [body_count, 3]."""
+        """Sum of the torques of the contacts on each body about its centre of mass [N m], [body_count, 3], world."""
         return self._read().bodies.torque.copy()
 
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.
 
-        body_a, body_b (plane k is -1 - k), point [m] (where a is; in a world with a period b may be there by an image
-        of it), normal from a to b, overlap [m], normal_force [N],
-        tangential_force on b [N, 3].
+        body_a, body_b (plane k is -1 - k), part_a, part_b (of these bodies, 0: the shape of its own), point [m] (where
+        a is; in a world with a period b may be there by an image of it), normal from a to b, overlap [m],
+        normal_force [N], tangential_force on b [N, 3].
         """
-        return contacts_of(self._read().pairs)
+        engine = self._read()
+        return contacts_of(engine.bodies, engine.pairs)
 
     @property
     def largest_step(self) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from lithobrake.dem.bodies.arrays import Floats
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.period import period_of, refuse_tilted_plane
-from lithobrake.dem.bodies.rigid_body import Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.rigid_body import Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
 from lithobrake.dem.law.material_pair import contact_options
@@ -69,15 +69,19 @@ class World(Observables):
         *,
         mass: float | None = None,
         inertia: ArrayLike | None = None,
+        parts: Sequence[Part] = (),
+        centre_of_mass: ArrayLike | None = None,
     ) -> int:
         """Add a body and return its number.
 
-        position of the centroid [m], velocity [m/s], orientation (w, x, y, z) that turns the shape's vertices, as
-        given, about their centroid, spin [rad/s] in the world frame. mass [kg] and inertia [kg m2, 3 x 3, about the
-        centroid, frame of the shape] follow from the material's density unless given. Raises ValueError for values
-        that are not finite, a mass that is not positive or an inertia that no body has.
+        position of the centre of mass [m], velocity [m/s], orientation (w, x, y, z) that turns the shape's vertices, as
+        given, about that, spin [rad/s] in the world frame. mass [kg], centre_of_mass [m, 3, frame of the shape] and
+        inertia [kg m2, 3 x 3, about the centre of mass, same frame] follow from the densities of the materials unless
+        given: the centroid for one homogeneous shape. parts: further convex parts that move with it, in the frame of
+        the shape; they may overlap, and do not touch each other. Raises ValueError for values that are not finite, a
+        mass that is not positive or an inertia that no body has.
         """
-        body = new_body(shape, material, mass, inertia)
+        body = new_body(shape, material, mass, inertia, parts, centre_of_mass)
         quaternion = unit(orientation, "add_body orientation")
         rotation = rotation_matrices(quaternion[None])[0]
         motion = {

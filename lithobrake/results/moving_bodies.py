@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MovingBodies:
-    """Convex hulls and their frames; in a landing the last is the lander.
+    """Convex hulls and their frames; in a landing the last is the lander, with all its parts.
 
     vertices: of each hull [m], shape [vertex_count, 3]; faces: of each, shape [face_count, 3], counted from its first
     vertex; time [s], shape [frame_count]; position [m], shape [frame_count, body_count, 3]; orientation (w, x, y, z),

@@ -6,15 +6,16 @@ import re
 import shlex
 import shutil
 from collections.abc import Iterator
-from pathlib import Path
 
 from lithobrake.study.aim_checks import aim_problems
 from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.boulder_checks import boulder_problems, boulder_width
-from lithobrake.study.contact_checks import contact_problems, inertia_problems, size_problems
+from lithobrake.study.contact_checks import contact_problems, size_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.journey_checks import journey_problems
+from lithobrake.study.lander_checks import NAME, inertia_problems, mass_problems, part_problems, shape_problems
+from lithobrake.study.lander_solids import lander_radius, main_radius
 from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
 from lithobrake.study.quantity import reach
 from lithobrake.study.rotation_checks import rotation_problems
@@ -25,8 +26,6 @@ from lithobrake.vocabulary.plain_text import show
 BED_WIDTH_PER_LANDER = 2.0
 # An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
 LONGEST_QUATERNION = 1e3
-# Of what a user names.
-NAME = r"[\w-]+"
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
 # The largest grain of a bed over its smallest.
@@ -54,7 +53,7 @@ def landing_problems(study: Study) -> Iterator[str]:
 
 def _arrival_problems(study: Study) -> Iterator[str]:
     yield from _shape_problems(study)
-    yield from inertia_problems(study)
+    yield from inertia_problems(study.lander)
     yield from _grain_problems(study)
     yield from _place_problems(study)
 
@@ -155,58 +154,50 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
 
 
 def _shape_problems(study: Study) -> Iterator[str]:
-    lander, takes = study.lander, {"box": "edges", "sphere": "diameter", "hull": "file"}
-    needed = takes[lander.shape]
-    for key in takes.values():
-        if (getattr(lander, key) is None) == (key == needed):
-            verb = "is missing" if key == needed else "does not go with this shape"
-            yield f'lander.{key} {verb}; allowed: shape = "{lander.shape}" takes {needed} and no other of these'
-    if lander.shape == "hull" and lander.file is not None and not os.path.isfile(lander.file):
-        yield f"lander.file is {show(lander.file)}; no such file; give the path of an OBJ or STL mesh"
-        return
-    if lander.unit != "m" and lander.file is None:
-        yield f'lander.unit is "{lander.unit}", and there is no lander.file; a unit goes with a mesh: leave it out'
-    if getattr(lander, needed) is None:
+    """A lander without a shape or with parts that are none, too large for the bed, or that no body can be."""
+    found = [*shape_problems("lander", study.lander), *part_problems(study.lander)]
+    yield from found
+    if found:
         return
     try:
-        radius = lander_radius(study)
+        radius, found = lander_radius(study.lander), list(mass_problems(study.lander))
     except (ValueError, OSError) as error:
-        yield f"lander.file: {error}"
+        meshes = [name for name, part in study.lander.part.items() if part.file is not None]
+        yield f"lander.file{f', or that of lander.part.{meshes[0]}' if meshes else ''}: {error}"
+        return
+    yield from found
+    if found:
         return
     yield from size_problems(study, radius)
     yield from boulder_problems(study, largest_diameter(study), radius)
-    width, unit = min(study.bed.width), f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
-    least, why = BED_WIDTH_PER_LANDER * 2 * radius, f"twice the largest diameter of the lander ({2 * radius:.3g} m)"
-    beside = widths_in_grains(study)[1]
+    yield from _width_problems(study, radius)
+
+
+def _width_problems(study: Study, radius: float) -> Iterator[str]:
+    """A bed too narrow for a lander that reaches a radius [m] from its centre of mass."""
+    lander, width = study.lander, min(study.bed.width)
+    unit = f', or name the unit of lander.file (lander.unit is "{lander.unit}")' if lander.file else ""
+    main = 2 * main_radius(lander)
+    least, why = BED_WIDTH_PER_LANDER * main, f"twice the largest diameter of the lander ({main:.3g} m)"
+    beside = widths_in_grains(study)[1] if study.bed.sides == "periodic" else 0.0
     images = 2 * radius + beside * largest_diameter(study)
-    if study.bed.sides == "periodic" and images > least:
-        least, why = images, f"the lander's largest diameter and {beside:.3g} of the grains', {TWO_IMAGES}"
+    if images > least:
+        grains = f" and {beside:.3g} of the grains', {TWO_IMAGES}" if beside > 0.0 else ", with its parts"
+        least, why = images, f"the lander's largest diameter{grains}"
     if width < least:
         yield (
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "
-            f"grains{unit if lander.file else ''}"
+            f"grains{unit}"
         )
 
 
 def narrowest_period(study: Study) -> float:
     """Least width [m] of ground that repeats, for the lander, the grains and the boulders of a study."""
-    across, (per_grain, beside_lander) = 2.0 * lander_radius(study), widths_in_grains(study)
+    radius, (per_grain, beside_lander) = lander_radius(study.lander), widths_in_grains(study)
     largest = largest_diameter(study)
-    boulders = boulder_width(study, largest, 0.5 * across)
-    return max(BED_WIDTH_PER_LANDER * across, across + beside_lander * largest, per_grain * largest, boulders)
-
-
-def lander_radius(study: Study) -> float:
-    """Largest distance of a point of the lander from its centre [m]. Raises ValueError for a mesh that is refused."""
-    lander = study.lander
-    if lander.edges is not None:
-        return math.hypot(*lander.edges) / 2
-    if lander.diameter is not None:
-        return reach(lander.diameter)[1] / 2
-    from lithobrake.touchdown import read_hull
-
-    hull = read_hull(Path(str(lander.file)), lander.unit)
-    return float(((hull.vertices - hull.centroid) ** 2).sum(axis=1).max() ** 0.5)
+    boulders = boulder_width(study, largest, radius)
+    main = BED_WIDTH_PER_LANDER * 2.0 * main_radius(study.lander)
+    return max(main, 2.0 * radius + beside_lander * largest, per_grain * largest, boulders)
 
 
 def _place_problems(study: Study) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What no contact law can answer, found before anything runs: how deep, how heavy, how light, and which inertia."""
+"""What no contact law can answer, found before anything runs: how deep, how heavy, how light."""
 
 import math
 from collections.abc import Iterator
@@ -10,36 +10,16 @@ from lithobrake.study.study import Study
 # A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
 # same part of the smallest grain bounces off as from a rock. Neither says anything about a soil.
 GRAINS_PER_LANDER = 1e6
-# Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
-ROUNDING = 1e-9
-# Thinner boxes, and mass that is nearer to one point or farther out than so many times mass x radius^2, are slips, and
-# no equation of motion can be solved for them. Booms and panels that the shape leaves out may reach far.
-THINNEST = 1e-3
+# Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of
+# motion can be solved for it. Booms and panels that the shape leaves out may reach far.
 INERTIAS = (1e-6, 1e2)
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
 
 
-def inertia_problems(study: Study) -> Iterator[str]:
-    """Moments of inertia that no body has."""
-    moments = study.lander.inertia
-    if moments is not None and 2.0 * max(moments) > sum(moments) + ROUNDING * max(moments):
-        shown = ", ".join(f"{moment:g}" for moment in moments)
-        yield (
-            f"lander.inertia is [{shown}] kg m2; allowed: each at most the sum of the other two, as every body has it; "
-            "mend it, or leave it out for a homogeneous lander"
-        )
-
-
 def size_problems(study: Study, radius: float) -> Iterator[str]:
-    """A lander too thin or too small, or with inertia that its mass cannot have; radius [m]: of its farthest point."""
+    """A lander too small, or with inertia that its mass cannot have; radius [m]: of its farthest point."""
     lander = study.lander
-    if lander.edges is not None and min(lander.edges) < THINNEST * max(lander.edges):
-        shown = ", ".join(f"{edge:g}" for edge in lander.edges)
-        yield (
-            f"lander.edges is [{shown}] m; allowed: the shortest at least {THINNEST:g} of the longest, "
-            f"{THINNEST * max(lander.edges):g} m; thicken the box"
-        )
     smallest = _grain_sizes(study)[0]
     if study.has_soil and radius < SMALLEST_LANDER * smallest:
         yield (
@@ -48,7 +28,7 @@ def size_problems(study: Study, radius: float) -> Iterator[str]:
         )
     if lander.inertia is not None:
         low, high = (factor * mass * radius**2 for factor, mass in zip(INERTIAS, usual_reach(lander.mass), strict=True))
-        if min(lander.inertia) < low or max(lander.inertia) > high:
+        if min(lander.inertia[:3]) < low or max(lander.inertia[:3]) > high:
             shown = ", ".join(f"{moment:g}" for moment in lander.inertia)
             yield (
                 f"lander.inertia is [{shown}] kg m2; allowed: {low:.3g} to {high:.3g} kg m2, a millionth to a hundred "
@@ -101,11 +81,13 @@ def _first_overlap(study: Study, mass: float, radius: float, speed: float) -> fl
     Eq 11.23: (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
     """
     grain, lander, give = study.grain, study.lander, 0.0
-    for modulus, ratio in (
-        (grain.young_modulus, grain.poisson_ratio),
-        (lander.young_modulus, grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio),
+    own = grain.young_modulus if lander.young_modulus is None else lander.young_modulus
+    of_parts = [part.young_modulus for part in lander.part.values() if part.young_modulus is not None]
+    ratio_of_lander = grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio
+    for softest, ratio in (
+        (usual_reach(grain.young_modulus)[0], grain.poisson_ratio),
+        (min([usual_reach(own)[0], *of_parts]), ratio_of_lander),
     ):
-        softest = usual_reach(grain.young_modulus if modulus is None else modulus)[0]
         give += (1.0 - usual_reach(ratio)[0] ** 2) / softest
     return float((15.0 * mass * speed**2 * give / (16.0 * math.sqrt(radius))) ** 0.4)
 

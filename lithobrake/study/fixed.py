@@ -70,6 +70,14 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
         table |= {"orientation": attitude, "pointing_error_deg": None}
     elif name.startswith("place."):
         table |= {"place": {**(_table(table["place"]) or {}), name.removeprefix("place."): value}, "region": None}
+    elif name.startswith("centre_of_mass."):
+        centre = _table(table["centre_of_mass"]) or {}
+        table["centre_of_mass"] = {**centre, name.removeprefix("centre_of_mass."): value}
+    elif name.startswith("part."):
+        _, part, inner = name.split(".")
+        if part not in table["part"]:
+            raise StudyError([_unread(key, [])])
+        table["part"] = {**table["part"], part: {**_table(table["part"][part]), inner: value}}
     elif key.startswith(INPUTS):
         table["inputs"] = {**table["inputs"], key.removeprefix(INPUTS): value}
     elif section == "site":

@@ -1,4 +1,4 @@
-"""The table of the study file of the lander: its shape, its mass, and what it is made of."""
+"""The table of the study file of the lander: its shape, its mass, what it is made of, and parts fixed to it."""
 
 from typing import Annotated, Literal
 
@@ -12,16 +12,75 @@ from lithobrake.study.material_sections import (
     SurfaceEnergy,
     YoungModulus,
 )
-from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Numbers, Scalar, Section
+from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
+
+Along = Annotated[Scalar, MaybeUncertain("m")]
+
+
+class CentreSection(Section):
+    """A place in the axes of the lander."""
+
+    x: Along = 0.0
+    """Along x."""
+    y: Along = 0.0
+    """Along y."""
+    z: Along = 0.0
+    """Along z."""
+
+
+class PartSection(Section):
+    """A convex part that is fixed to the lander, such as a leg, a panel or a boom; any number, each in a table
+    [lander.part.NAME] of its own. Parts may overlap, never touch each other and do not bend. Lengths and directions are
+    in the axes of the lander: of a box or sphere from its centre, of a mesh those of its file."""
+
+    shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
+    """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
+    edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
+        default=None, examples=["[1.5, 0.01, 0.01]"]
+    )
+    """Edge lengths of a box."""
+    diameter: Annotated[float, Number("m", above=0)] | None = None
+    """Diameter of a sphere."""
+    file: str | None = None
+    """Closed mesh (OBJ or STL) whose convex hull is the part; the path counts from the study file."""
+    unit: LengthUnit = "m"
+    """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
+    centre: Annotated[tuple[float, float, float], Numbers("m", count=3)] = Field(
+        default=(0.0, 0.0, 0.0), examples=["[0.93, 0.0, 0.0]"]
+    )
+    """Where the centre of the box or sphere, or the origin of the mesh, stands."""
+    orientation: Annotated[tuple[float, float, float, float], Numbers("", count=4)] = (1.0, 0.0, 0.0, 0.0)
+    """How it is turned about that: a quaternion w, x, y, z."""
+    mass: Annotated[float, Number("kg", above=0)] | None = Field(default=None, examples=["0.05"])
+    """Its mass, which is part of lander.mass; or give density."""
+    density: Annotated[float, Number("kg/m3", above=0)] | None = None
+    """Its mass over its volume; or give mass."""
+    young_modulus: Annotated[float, Number("Pa", above=0)] | None = None
+    """Young's modulus of the part; absent: that of the lander."""
+    poisson_ratio: Annotated[float, Number("", at_least=0, below=0.5)] | None = None
+    """Poisson's ratio of the part; absent: that of the lander."""
+    restitution: Restitution | None = None
+    """Restitution of the part, low for a foot that is crushed or damped, high for one on a spring; absent: that of the
+    lander."""
+    friction: Friction | None = None
+    """Friction of the part; absent: that of the lander."""
+    rolling_friction: Friction | None = None
+    """Rolling friction of the part; absent: that of the lander."""
+    spinning_friction: Friction | None = None
+    """Spinning friction of the part; absent: that of the lander."""
+    cohesion_force: Annotated[float, Number("N", at_least=0)] | None = None
+    """Cohesion of the part; absent: that of the lander."""
+    surface_energy: Annotated[float, Number("J/m2", at_least=0)] | None = None
+    """Surface energy of the part; absent: that of the lander."""
 
 
 class LanderSection(Section):
-    """The lander: a rigid convex body."""
+    """The lander: a rigid convex body, to which parts may be fixed."""
 
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["2.6"])
-    """Mass."""
+    """Mass, that of parts included."""
     edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
         default=None, examples=["[0.1, 0.1, 0.227]"]
     )
@@ -32,9 +91,12 @@ class LanderSection(Section):
     """Closed mesh (OBJ or STL) whose convex hull is the lander; the path counts from the study file."""
     unit: LengthUnit = "m"
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
-    inertia: Annotated[tuple[float, float, float], Numbers("kg m2", count=3, above=0)] | None = None
-    """Moments of inertia about the axes of the shape, each at most the sum of the other two; absent: those of the
-    homogeneous body."""
+    centre_of_mass: CentreSection | None = None
+    """Centre of mass in the axes of the lander; absent: that of homogeneous shape and parts."""
+    inertia: Annotated[tuple[float, ...], Tensor("kg m2")] | None = None
+    """Inertia about the centre of mass, in the axes of the lander: three moments, each at most the sum of the other
+    two, or six elements of the tensor, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, with Ixy minus the sum of mass x y; absent: that
+    of homogeneous shape and parts."""
     young_modulus: YoungModulus | None = None
     """Young's modulus of the lander; absent: that of the grains."""
     poisson_ratio: PoissonRatio | None = None
@@ -53,3 +115,15 @@ class LanderSection(Section):
     """Cohesion of the lander's hull; absent: that of the grains."""
     surface_energy: SurfaceEnergy | None = None
     """Surface energy of the lander's hull; absent: that of the grains."""
+    part: dict[str, PartSection] = Field(default={})
+    """Parts that are fixed to the lander."""
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether it is the same from all sides: a sphere alone, about its centre."""
+        return self.shape == "sphere" and not self.part and self.centre_of_mass is None
+
+    @property
+    def is_plain_box(self) -> bool:
+        """Whether it has the symmetry of a box: no parts, and the centre of mass amid it."""
+        return self.edges is not None and not self.part and self.centre_of_mass is None and len(self.inertia or ()) < 6

@@ -166,6 +166,22 @@ class Numbers(Number):
         return tuple(float(entry) for entry in value)
 
 
+class Tensor(Number):
+    """The moments of a symmetric tensor, three numbers above 0, or all of it: those and its elements xy, xz and yz."""
+
+    def __str__(self) -> str:
+        """Say what it takes."""
+        return f"three moments above 0, or these and the elements xy, xz, yz [{self.unit}]"
+
+    def check(self, value: Any) -> tuple[float, ...]:
+        """Give back the numbers."""
+        if not isinstance(value, list | tuple) or len(value) not in (3, 6) or not all(map(is_number, value)):
+            raise refuse(value, self, "write 3 or 6 numbers in square brackets")
+        if min(value[:3]) <= 0.0:
+            raise refuse(value, self, "write moments above 0")
+        return tuple(float(entry) for entry in value)
+
+
 class MaybeUncertain(Number):
     """A number in its range, or a distribution whose whole support lies in it."""
 

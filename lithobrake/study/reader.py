@@ -101,6 +101,13 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
                 yield from _tables(f"{path}.{name}".lstrip("."), kind)
 
 
+def _with_file(table: Any, folder: Path) -> Any:
+    """A table whose file, if it has one, is counted from a folder."""
+    if not isinstance(table, Mapping) or not isinstance(table.get("file"), str):
+        return table
+    return {**table, "file": str(folder / table["file"])}
+
+
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """The tables with each path of a mesh, kernel, program or template counted from the folder of the study file."""
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
@@ -111,6 +118,9 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         # A proper name may begin with a capital.
         is_built_in = key == "body" and table[key].lower() in BUILT_IN_BODIES
         table[key] = table[key].lower() if is_built_in else str(folder / table[key])
+    lander = result.get("lander")
+    if isinstance(lander, dict) and isinstance(lander.get("part"), Mapping):
+        lander["part"] = {name: _with_file(part, folder) for name, part in lander["part"].items()}
     for section, key in (("solver", "templates"), ("site", "kernels")):
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), list):

@@ -26,7 +26,7 @@ from lithobrake.study.impact_sections import (
     SurfaceSection,
 )
 from lithobrake.study.journey_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
-from lithobrake.study.lander_section import LanderSection
+from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 from lithobrake.study.question_sections import AimSection, LimitStatesSection
@@ -141,8 +141,10 @@ def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
         value = getattr(section, name)
         if isinstance(value, float | Uncertain):
             values[f"{path}.{name}"] = value
-        elif isinstance(value, PlaceSection):
+        elif isinstance(value, PlaceSection | CentreSection):
             values |= _scalars(f"{path}.{name}", value)
         elif isinstance(value, dict):
-            values |= {f"{path}.{name}.{key}": entry for key, entry in value.items()}
+            for key, entry in value.items():
+                of_table = isinstance(entry, BaseModel)
+                values |= _scalars(f"{path}.{name}.{key}", entry) if of_table else {f"{path}.{name}.{key}": entry}
     return values

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from lithobrake.study.quantity import DISTRIBUTIONS, MaybeUncertain
 from lithobrake.study.study import Study
-from lithobrake.study.units import limits, table
+from lithobrake.study.units import is_named, limits, table
 
 _HEAD = """\
 # A landing study. A key marked "number or table" takes a distribution in place of the number, as in
@@ -51,10 +51,21 @@ def _section(name: str, model: type[BaseModel]) -> str:
     """A table with its keys; those that it has from a base stand together below what the base says of them."""
     lines = f"{_comment(model.__doc__ or '')}[{name}]\n"
     owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
-    for owner, keys in groupby(model.model_fields, key=owners.__getitem__):
+    plain = [key for key, field in model.model_fields.items() if not (is_named(field) and table(field))]
+    for owner, keys in groupby(plain, key=owners.__getitem__):
         heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"
         lines += heading + "".join(_key(key, model.model_fields[key]) for key in keys)
+    for key in (key for key in model.model_fields if key not in plain):
+        lines += _named_table(f"{name}.{key}.NAME", model.model_fields[key])
     return lines
+
+
+def _named_table(name: str, field: FieldInfo) -> str:
+    """A table with a name of the user's own behind comment signs, and its keys."""
+    inner = table(field)
+    assert inner is not None
+    keys = "".join(commented(_key(key, one)) for key, one in inner.model_fields.items())
+    return f"\n{_comment(inner.__doc__ or '')}# [{name}]\n{keys}"
 
 
 def _key(name: str, field: FieldInfo) -> str:

@@ -15,6 +15,7 @@ from lithobrake.files.hashing import source_hash
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
 from lithobrake.study.bed_section import Constant, PowerLaw
+from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.progress import Progress, silent
 
@@ -114,6 +115,7 @@ ENGINE_PARTS = (
     "geometry/mesh.py",
     "geometry/mesh_files.py",
     "geometry/mesh_units.py",
+    "study/lander_shapes.py",
     "study/touchdown_model.py",
 )
 
@@ -241,23 +243,19 @@ def grain(values: Values) -> "Material":
 
 
 def lander(study: Study, values: Values) -> "Lander":
-    """The lander; what is not said about its material is that of the grains."""
-    from lithobrake.dem import Box, ConvexHull, Material, Sphere
-    from lithobrake.touchdown import Lander, read_hull
+    """The lander; what is not said about its material is that of the grains, and of a part that of the lander."""
+    from lithobrake.dem import Material
+    from lithobrake.touchdown import Lander
 
     section = study.lander
-    shape: Box | Sphere | ConvexHull
-    if section.edges is not None:
-        shape = Box(section.edges)
-    elif section.file is not None:
-        shape = read_hull(Path(section.file), section.unit)
-    else:
-        shape = Sphere(values["lander.diameter"] / 2)
+    shape = main_shape(section, values)
     properties: dict[str, Any] = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
     # The density of the material plays no part: the mass is given.
     material = Material(density=values["lander.mass"] / shape.volume, **properties)
-    inertia = None if section.inertia is None else np.diag(section.inertia)
-    return Lander(shape=shape, mass=values["lander.mass"], inertia=inertia, material=material)
+    return Lander(
+        shape=shape, mass=values["lander.mass"], material=material, inertia=given_inertia(section),
+        parts=lander_parts(section, values, properties), centre_of_mass=given_centre(section, values),
+    )  # fmt: skip
 
 
 def landing(study: Study, values: Values) -> "Landing":
@@ -285,7 +283,7 @@ def hop_height(study: Study, values: Values) -> float | None:
     """Height [m] of the lowest hop that leaves the bed in a journey; None for a study that follows none."""
     if study.journey is None:
         return None
-    return study.journey.hop_height or HOP_PER_LANDER * 2.0 * lander(study, values).shape.bounding_radius
+    return study.journey.hop_height or HOP_PER_LANDER * 2.0 * lander(study, values).reach
 
 
 def acceleration(values: Values, size: float) -> tuple[float, float, float]:

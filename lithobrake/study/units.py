@@ -1,7 +1,7 @@
 """Units of the numbers that a study gives its runs and gets back, and factors between units of one quantity."""
 
 import math
-from typing import get_args
+from typing import get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -45,7 +45,7 @@ def _units(path: str, model: type[BaseModel]) -> dict[str, str]:
         range_of_values, inner = limits(field), table(field)
         if range_of_values is not None:
             units[f"{path}{name}"] = range_of_values.unit or PURE
-        elif inner is not None:
+        elif inner is not None and not is_named(field):
             units |= _units(f"{path}{name}.", inner)
     return units
 
@@ -55,6 +55,11 @@ def table(field: FieldInfo) -> type[BaseModel] | None:
     kinds = [field.annotation, *get_args(field.annotation)]
     models = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
     return models[0] if len(models) == 1 else None
+
+
+def is_named(field: FieldInfo) -> bool:
+    """Whether a field takes any number of tables, each with a name of the user's own."""
+    return get_origin(field.annotation) is dict
 
 
 def limits(field: FieldInfo) -> Number | None:

@@ -3,9 +3,10 @@
 import itertools
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -180,8 +181,17 @@ def plain(value: Any) -> Any:
     return tuple(float(v) for v in value) if np.ndim(value) else value.item()
 
 
-def write_hulls(file: Any, hulls: list[ConvexHull]) -> None:
-    """Write vertices [m, about the centroid] and triangles of hulls, one after the other."""
+class Surface(Protocol):
+    """What is drawn of a body: vertices [m], [count, 3], and triangles, counter-clockwise from outside, [count, 3]."""
+
+    @property
+    def vertices(self) -> Floats: ...
+    @property
+    def triangles(self) -> NDArray[np.int64]: ...
+
+
+def write_hulls(file: Any, hulls: Sequence[Surface]) -> None:
+    """Write vertices [m, about the centre of mass] and triangles of hulls, one after the other."""
     file["vertices"] = np.concatenate([hull.vertices for hull in hulls])
     file["vertex_start"] = np.cumsum([0, *(len(hull.vertices) for hull in hulls)])
     file["faces"] = np.concatenate([hull.triangles for hull in hulls])

@@ -1,40 +1,76 @@
-"""The lander: a rigid convex body."""
+"""The lander: a rigid body of one convex part or of several, and of a mesh."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import Box, ConvexHull, Material, Sphere, checked_inertia
+from lithobrake.dem import Box, ConvexHull, Material, Part, RigidBody, Shape, Sphere, checked_inertia, new_body
 from lithobrake.geometry.mesh import refuse_malformed
 from lithobrake.geometry.mesh_files import read_mesh
 
 Floats = NDArray[np.float64]
+# Points at which a part is looked for above the ground: so many steps from its centroid to each of its vertices.
+FOOTPRINT_STEPS = 4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Lander:
-    """A rigid convex body with a mass [kg] and an inertia [kg m2, 3 x 3, about its centroid; None: homogeneous].
+    """A rigid body of a mass [kg]: a main shape, and parts fixed to it, such as legs and booms, in its axes.
 
-    Raises ValueError for a mass that is not positive, and for an inertia that no body has.
+    The mass is that of all; a part has its own by the density of its material, and the main shape has what is left.
+    centre_of_mass [m, 3] and inertia [kg m2, 3 x 3, about the centre of mass] are in the axes in which the shapes are
+    given; None: those of homogeneous parts.
+
+    Raises ValueError for a mass that is not positive or less than that of the parts, and for an inertia that no body
+    has.
     """
 
     shape: Sphere | Box | ConvexHull
     mass: float
     material: Material
     inertia: Floats | None = None
+    parts: tuple[Part, ...] = ()
+    centre_of_mass: Floats | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 < self.mass < np.inf:
             raise ValueError(f"Lander.mass is {self.mass!r} kg; allowed is a finite value above 0: change it")
         if self.inertia is not None:
             checked_inertia(self.inertia, "Lander.inertia")
+        if self.own_mass <= 0.0:
+            raise ValueError(
+                f"Lander.mass is {self.mass!r} kg, and its parts have {self.mass - self.own_mass:.6g} kg; allowed is "
+                "more than that, for its main shape: raise it, or make the parts lighter"
+            )
+
+    @property
+    def own_mass(self) -> float:
+        """Mass of the main shape [kg]."""
+        return self.mass - sum(part.mass for part in self.parts)
+
+    @cached_property
+    def own_material(self) -> Material:
+        """Material of the main shape, with the density that its mass asks for where there are parts."""
+        if not self.parts:
+            return self.material
+        return replace(self.material, density=self.own_mass / self.shape.volume)
+
+    @cached_property
+    def body(self) -> RigidBody:
+        """The body as a world has it: its parts, centre of mass, and inertia about that [kg m2, 3 x 3]."""
+        return new_body(self.shape, self.own_material, self.mass, self.inertia, self.parts, self.centre_of_mass)
+
+    @property
+    def reach(self) -> float:
+        """Distance of the farthest point from the centre of mass [m]."""
+        return self.body.bounding_radius
 
     @cached_property
     def smallest_edge(self) -> float:
-        """Smallest extent of the body [m]: the shortest edge of a box, the least width of a hull across a face."""
+        """Smallest extent of the main shape [m]: the shortest edge of a box, the least width of a hull over a face."""
         if isinstance(self.shape, Box):
             return min(self.shape.lengths)
         if isinstance(self.shape, Sphere):
@@ -44,9 +80,27 @@ class Lander:
 
     def lowest(self, position: Floats, rotation: Floats) -> float:
         """Return the height [m] of the lowest point of the body at a position and rotation matrix, body to world."""
-        if isinstance(self.shape, Sphere):
-            return float(position[2]) - self.shape.radius
-        return float(position[2] + ((self.shape.vertices - self.shape.centroid) @ rotation[2]).min())
+        return float(position[2]) + min(self._lowest_of(part.shape, rotation) for part in self.body.parts)
+
+    def _lowest_of(self, shape: Shape, rotation: Floats) -> float:
+        """Return the height of the lowest point of a shape over the centre of mass [m]."""
+        centre = self.body.centre_of_mass
+        if isinstance(shape, ConvexHull):
+            return float(((shape.vertices - centre) @ rotation[2]).min())
+        return float((shape.centroid - centre) @ rotation[2]) - shape.bounding_radius
+
+    def footprint(self, rotation: Floats) -> Floats:
+        """Return points spread over the parts beside the main shape, seen from above [m], [point_count, 2], from the
+        centre of mass.
+        """
+        points, steps = [np.zeros((0, 3))], np.linspace(0.0, 1.0, FOOTPRINT_STEPS + 1)[:, None, None]
+        for shape in (part.shape for part in self.parts):
+            corners = shape.bounding_radius * np.vstack([np.eye(3), -np.eye(3)])
+            if isinstance(shape, ConvexHull):
+                corners = shape.vertices - shape.centroid
+            points.append((shape.centroid - self.body.centre_of_mass + steps * corners).reshape(-1, 3))
+        across: Floats = (np.concatenate(points) @ rotation.T)[:, :2]
+        return across
 
 
 def read_hull(path: str | os.PathLike[str], unit: str = "m") -> ConvexHull:

@@ -24,7 +24,7 @@ class Landing:
     speed: float  # m/s
     incidence: float  # rad, of the velocity from the inward normal
     azimuth: float  # rad, of the horizontal velocity, from +x toward +y
-    place: tuple[float, float]  # m, where the lander's centroid starts, along x and y
+    place: tuple[float, float]  # m, where the lander's centre of mass starts, along x and y
     orientation: tuple[float, float, float, float]  # w, x, y, z
     spin: Vector  # rad/s, along the world's axes
     gravity: Vector  # m/s2

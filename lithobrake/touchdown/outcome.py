@@ -3,11 +3,12 @@
 import math
 import os
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import Box, ConvexHull, Sphere
+from lithobrake.dem import ConvexHull, Shape, Sphere
 from lithobrake.files.atomic import atomic_path
 from lithobrake.touchdown.bed import Bed, write_hulls
 from lithobrake.touchdown.lander import Lander
@@ -50,7 +51,7 @@ class Outcome:
         if self.frames is None:
             raise ValueError("Outcome.save_frames needs a landing that was recorded: give land() a frame_count above 0")
         with atomic_path(path) as draft, h5py.File(draft, "w") as file:
-            write_hulls(file, [*bed.grains, picture(lander.shape)])
+            write_hulls(file, [*bed.grains, picture(lander)])
             for name, values in self.frames.items():
                 file[f"frames/{name}"] = values
             file["position"], file["orientation"] = self.frames["position"][-1], self.frames["orientation"][-1]
@@ -94,10 +95,27 @@ def turned_attitude(orientation: Floats, angle: float) -> tuple[float, float, fl
     return sign * found[0], sign * found[1], sign * found[2], sign * found[3]
 
 
-def picture(shape: Sphere | Box | ConvexHull) -> ConvexHull:
+class Mesh(NamedTuple):
+    """Surfaces of convex parts, one after the other."""
+
+    vertices: Floats  # m, [vertex_count, 3]
+    triangles: NDArray[np.int64]  # [triangle_count, 3], counter-clockwise from outside
+
+
+def picture(lander: Lander) -> Mesh:
+    """Return the surfaces of all parts of a lander, about its centre of mass."""
+    hulls = [hull_about_centroid(part.shape) for part in lander.body.parts]
+    vertices = [hull.vertices + np.array(part.offset) for hull, part in zip(hulls, lander.body.parts, strict=True)]
+    starts = np.cumsum([0, *(len(hull.vertices) for hull in hulls)])
+    triangles = [hull.triangles + start for hull, start in zip(hulls, starts[:-1], strict=True)]
+    return Mesh(np.concatenate(vertices), np.concatenate(triangles))
+
+
+def hull_about_centroid(shape: Shape) -> ConvexHull:
     """Return a hull about the centroid that looks like the shape."""
     if isinstance(shape, ConvexHull):
         return ConvexHull(shape.vertices - shape.centroid)
+    assert isinstance(shape, Sphere)
     # Points of a golden spiral: even on the sphere, the same each time.
     k = np.arange(SPHERE_PICTURE_POINTS) + 0.5
     polar, turn = np.arccos(1.0 - 2.0 * k / SPHERE_PICTURE_POINTS), math.pi * (1.0 + math.sqrt(5.0)) * k

@@ -22,7 +22,8 @@ CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its ene
 CAPTURED_CONTACTS = 10.0
 # Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
 SUNK_FRACTION = 0.5
-# Where a boulder is looked for under a lander, in its bounding radii: its centre, and eight points around it.
+# Where a boulder is looked for under the main shape of a lander, in its bounding radii: its centre, and eight points
+# around it.
 FOOTPRINT = np.array([[0.0, 0.0]] + [[math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)] for k in range(8)])
 
 
@@ -108,7 +109,8 @@ class OutcomeJudge:
         ground, clear = self.bed.surface_height, self.clear_height
         if self.bed.boulder_count == 0:
             return ground, clear
-        across = self.lander.shape.bounding_radius * FOOTPRINT
+        main = self.lander.shape.bounding_radius * FOOTPRINT
+        across = np.concatenate([main, self.lander.footprint(rotation_matrix(self.motion.orientation))])
         boulder = float(self.bed.boulder_height(*(self.motion.position[:2] + across).T).max())
         return max(ground, boulder), max(clear, boulder)
 

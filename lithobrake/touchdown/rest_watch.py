@@ -18,7 +18,7 @@ class RestWatch:
 
     def __init__(self, lander: Lander, inward_gravity: float) -> None:
         """Begin; inward_gravity: of the site [m/s2]. Where it does not point inward nothing rests."""
-        self.reach, self.way = lander.shape.bounding_radius, REST_WAY * lander.smallest_edge
+        self.reach, self.way = lander.reach, REST_WAY * lander.smallest_edge
         self.patience = rest_time(lander, inward_gravity)
         self.since = math.inf
         self.anchor: BodyMotion | None = None

@@ -45,9 +45,9 @@ def land(
     """
     if bed.period is None and max(abs(at) / across for at, across in zip(landing.place, bed.width, strict=True)) >= 0.5:
         raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
-    if 2.0 * lander.shape.bounding_radius >= min(bed.width):
+    if 2.0 * lander.reach >= min(bed.width):
         raise ValueError(
-            f"the lander is {2.0 * lander.shape.bounding_radius:.3g} m across; allowed is less than the bed's width, "
+            f"the lander is {2.0 * lander.reach:.3g} m across; allowed is less than the bed's width, "
             f"{min(bed.width)} m: make the bed wider"
         )
     world = bed.world(landing.grain, bed.gravity, landing.contact, landing.gravity)
@@ -95,7 +95,7 @@ def released_speed(bed: Bed, material: Material) -> float:
 
 def surface_speed(motion: BodyMotion, lander: Lander) -> float:
     """Return a bound on the speed of a lander's surface [m/s]."""
-    turning = float(np.linalg.norm(motion.spin)) * lander.shape.bounding_radius
+    turning = float(np.linalg.norm(motion.spin)) * lander.reach
     return float(np.linalg.norm(motion.velocity)) + turning
 
 
@@ -112,8 +112,8 @@ def look_interval(world: World, speed: float, lander: Lander, landing: Landing) 
 
 
 def moving_reach(diameter: float, lander: Lander, landing: Landing) -> float:
-    """Return the distance [m] from the lander's centroid within which no grain is held, of grains of a diameter [m]."""
-    return lander.shape.bounding_radius + smallest_bed(lander, landing.grain, diameter, landing.speed)[1]
+    """Return the distance [m] from the lander's centre of mass within which no grain of a diameter [m] is held."""
+    return lander.reach + smallest_bed(lander, landing.grain, diameter, landing.speed)[1]
 
 
 def relax(
@@ -156,7 +156,7 @@ def grain_speed(world: World) -> float:
 
 def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
     """Put the lander just above every grain under its bounding circle, and return its number."""
-    reach = lander.shape.bounding_radius
+    reach = lander.reach
     place = np.array([*landing.place, 0.0])
     below = np.linalg.norm(folded(world.position[:, :2] - place[:2], period_of(bed.period)), axis=1)
     top = 0.0
@@ -167,6 +167,6 @@ def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
     rotation = rotation_matrix(np.array(landing.orientation) / np.linalg.norm(landing.orientation))
     place[2] = top - lander.lowest(np.zeros(3), rotation)
     return world.add_body(
-        lander.shape, lander.material, tuple(place), tuple(landing.velocity), landing.orientation, landing.spin,
-        mass=lander.mass, inertia=lander.inertia,
+        lander.shape, lander.own_material, tuple(place), tuple(landing.velocity), landing.orientation, landing.spin,
+        mass=lander.mass, inertia=lander.inertia, parts=lander.parts, centre_of_mass=lander.centre_of_mass,
     )  # fmt: skip

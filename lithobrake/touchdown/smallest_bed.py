@@ -32,4 +32,4 @@ def smallest_bed(lander: Lander, rock: Material, diameter: float, speed: float) 
     radius = 1.0 / (1.0 / equivalent_radius(lander.shape) + 2.0 / diameter)
     modulus = 0.5 * rock.young_modulus / (1.0 - rock.poisson_ratio**2)
     way = wave_speed(rock, diameter, speed) * contact_duration(mass, radius, modulus, speed)
-    return 2.0 * lander.shape.bounding_radius + way, 0.5 * way
+    return 2.0 * lander.reach + way, 0.5 * way

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial import ConvexHull as Quickhull
 
 from lithobrake.dem import Box, ConvexHull
+from lithobrake.dem.bodies.rigid_body import AT_CENTRE
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
 from lithobrake.dem.narrow_phase.feature_distance import edge_to_edge, point_to_core
 from lithobrake.dem.narrow_phase.gjk import PENETRATING, weighted
@@ -32,7 +33,7 @@ def test_distance_of_random_pairs(stretch):
     for trial in range(150):
         first = ConvexHull(generator.normal(size=(14, 3)) * [0.05, 0.05, 0.05 * stretch])
         second = Box((0.37, 0.23, 0.1)) if trial % 3 == 0 else ConvexHull(generator.normal(size=(8, 3)) * 0.05)
-        cores = cores_of([first, second])
+        cores = cores_of([(first, AT_CENTRE), (second, AT_CENTRE)])
         turns = generator.normal(size=(2, 4))
         rotation = rotation_matrices(turns / np.linalg.norm(turns, axis=1)[:, None])
         apart = generator.normal(size=3)
@@ -53,7 +54,7 @@ def test_distance_of_random_pairs(stretch):
 def test_point_to_core_is_the_distance_of_a_point():
     generator = np.random.default_rng(3)
     hull = ConvexHull(generator.normal(size=(14, 3)))
-    cores = cores_of([hull])
+    cores = cores_of([(hull, AT_CENTRE)])
     for point in generator.normal(size=(300, 3)) * 1.5:
         distance, normal, near, _ = point_to_core(cores, 0, tuple(point), np.inf)
         expected = signed_distance(hull.core, point[None])

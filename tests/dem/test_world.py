@@ -218,8 +218,8 @@ def test_many_bodies_at_once_are_those_added_one_by_one():
     assert at_once.add_bodies(shapes, ROCK, position, orientation) == range(1, 7)
     for name in ("position", "orientation", "mass", "inertia"):
         assert np.array_equal(getattr(at_once, name)[1:], getattr(one_by_one, name))
-    lightest = [body.smallest_mass_at_contact for body in at_once.bodies[1:]]
-    assert lightest == [body.smallest_mass_at_contact for body in one_by_one.bodies]
+    lightest = [body.smallest_masses_at_contact for body in at_once.bodies[1:]]
+    assert lightest == [body.smallest_masses_at_contact for body in one_by_one.bodies]
 
 
 def test_many_bodies_ask_for_a_row_each():
@@ -238,5 +238,5 @@ def test_a_given_inertia_decides_what_a_contact_meets():
     cube, world = Box((1.0, 1.0, 1.0)), World()
     world.add_body(cube, ROCK, (0.0, 0.0, 0.0), mass=8.0)
     world.add_body(cube, ROCK, (3.0, 0.0, 0.0), mass=8.0, inertia=np.eye(3) * 8.0 / 3.0)
-    assert world.bodies[0].smallest_mass_at_contact == pytest.approx(2.0)
-    assert world.bodies[1].smallest_mass_at_contact == pytest.approx(8.0 / 2.5)
+    assert world.bodies[0].smallest_masses_at_contact == pytest.approx((2.0,))
+    assert world.bodies[1].smallest_masses_at_contact == pytest.approx((8.0 / 2.5,))

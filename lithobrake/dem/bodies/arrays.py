@@ -15,16 +15,19 @@ Flags = NDArray[np.bool_]
 
 
 class Cores(NamedTuple):
-    """Constant: the convex cores of all shapes, one after the other. `start[s]:start[s + 1]` belongs to shape s."""
+    """Constant: the convex cores of all shapes, one after the other. `start[s]:start[s + 1]` belongs to shape s.
 
-    vertex: Floats  # [vertex_total, 3], about the centroid
+    A shape that stands at different places of bodies counts as several.
+    """
+
+    vertex: Floats  # [vertex_total, 3], about the centre of mass of the body
     vertex_start: Integers  # [shape_count + 1]
     normal: Floats  # [face_total, 3]
     offset: Floats  # [face_total]
     face_start: Integers  # [shape_count + 1]
     edge: Integers  # [edge_total, 4]: from, to, left face, right face, counted within the shape
     edge_start: Integers  # [shape_count + 1]
-    edge_begin: Floats  # [edge_total, 3], about the centroid
+    edge_begin: Floats  # [edge_total, 3], about the centre of mass of the body
     edge_along: Floats  # [edge_total, 3], from begin to end
     adjacent_face: Integers  # [2 edge_total]: the faces across the edges of each face, counted within the shape
     adjacent_start: Integers  # [face_total + 1]
@@ -41,20 +44,24 @@ class Period(NamedTuple):
 
 
 class Bodies(NamedTuple):
-    """Per body; constants first, then what a step changes."""
+    """Per body, or per convex part of one; constants first, then what a step changes.
+
+    The parts of a body move as one. Their cores are about its centre of mass, in its own frame.
+    """
 
     period: Period
-    shape: Integers  # [body_count]
-    material: Integers  # [body_count]
+    part_start: Integers  # [body_count + 1]: parts part_start[b] to before part_start[b + 1] belong to body b
+    shape: Integers  # [part_count]
+    material: Integers  # [part_count]
+    contact_radius: Floats  # [part_count], radius of the volume-equivalent sphere
+    curvature: Floats  # [part_count], 1/m, one over that
     mass: Floats  # [body_count], kg
     inverse_mass: Floats  # [body_count], 1/kg
     inverse_inertia_body: Floats  # [body_count, 3, 3], body frame, 1/(kg m2)
     isotropic: Flags  # [body_count], whether all moments of inertia are the same number
-    contact_radius: Floats  # [body_count], radius of the volume-equivalent sphere
-    curvature: Floats  # [body_count], 1/m, one over that
     bounding_radius: Floats  # [body_count]
     turning_radius: Floats  # [body_count], arm at which a spin moves the surface; 0 for spheres, which look the same
-    position: Floats  # [body_count, 3], centroid
+    position: Floats  # [body_count, 3], centre of mass
     velocity: Floats  # [body_count, 3], m/s
     quaternion: Floats  # [body_count, 4], w x y z, body to world
     angular_momentum: Floats  # [body_count, 3], kg m2/s
@@ -81,10 +88,12 @@ class Planes(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Per pair of neighbours, ordered by (first, second); plane k is second = -1 - k."""
+    """Per pair of neighbouring parts, ordered by bodies and then by parts; plane k is second = -1 - k."""
 
-    first: Integers  # [pair_count]
-    second: Integers  # [pair_count]
+    first: Integers  # [pair_count], body
+    second: Integers  # [pair_count], body
+    first_part: Integers  # [pair_count], part of the first
+    second_part: Integers  # [pair_count], part of the second; of a plane as second
     wake: Floats  # [pair_count], m: its list of features serves until the travels of both add up to this
     overlap: Floats  # [pair_count], m, effective; 0 where apart
     normal: Floats  # [pair_count, 3], unit, from first to second

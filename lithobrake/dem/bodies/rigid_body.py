@@ -4,33 +4,99 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import repeat
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.arrays import Floats
 from lithobrake.dem.bodies.material import Material
-from lithobrake.dem.bodies.shape import ConvexHull, Shape
+from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
 
+Offset = tuple[float, ...]
+AT_CENTRE: Offset = (0.0, 0.0, 0.0)
 ROUNDING = 1e-9  # of a moment of inertia: what the eigenvalues of a flat plate may be off
 
 
 @dataclass(frozen=True, eq=False)
+class Part:
+    """A convex part of a body: its shape, in the frame of the body's own, and what it is made of."""
+
+    shape: Shape
+    material: Material
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg] by the density of its material."""
+        return self.material.density * self.shape.volume
+
+
+class PlacedPart(NamedTuple):
+    """A part as contacts see it."""
+
+    shape: Shape
+    material: Material
+    offset: Offset  # m, from the centre of mass of the body to the centroid of the shape, frame of the shape
+
+
+@dataclass(frozen=True, eq=False)
 class RigidBody:
-    """A body as it was added: what never changes of it."""
+    """A body as it was added: what never changes of it. It has one part of its own, and may have others."""
 
     shape: Shape
     material: Material
     mass: float  # kg
-    inertia: Floats  # kg m2, [3, 3], about the centroid, in the frame the shape was given in
+    inertia: Floats  # kg m2, [3, 3], about the centre of mass, in the frame the shape was given in
     is_uniform: bool = False  # its mass is known to be spread evenly
+    others: tuple[Part, ...] = ()
+    centre: Floats | None = None  # m, [3], of mass, in the frame the shape was given in; None: the shape's centroid
+
+    @property
+    def centre_of_mass(self) -> Floats:
+        """Centre of mass [m], shape [3], in the frame the shape was given in."""
+        return self.shape.centroid if self.centre is None else self.centre
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is one convex part about its centroid."""
+        return not self.others and self.centre is None
 
     @cached_property
-    def smallest_mass_at_contact(self) -> float:
-        """Smallest mass [kg] that a contact force meets."""
-        if self.is_uniform or not isinstance(self.shape, ConvexHull):
-            return self.mass * self.shape.smallest_mass_fraction
-        return self.mass * self.shape.mass_fraction(self.inertia / self.mass)
+    def parts(self) -> tuple[PlacedPart, ...]:
+        """Its parts, its own first."""
+        if self.is_plain:
+            return (PlacedPart(self.shape, self.material, AT_CENTRE),)
+        return tuple(
+            PlacedPart(part.shape, part.material, tuple((part.shape.centroid - self.centre_of_mass).tolist()))
+            for part in (Part(self.shape, self.material), *self.others)
+        )
+
+    @cached_property
+    def bounding_radius(self) -> float:
+        """Radius of a sphere about the centre of mass that holds the rounded body [m]."""
+        return max(placed_radius(part) for part in self.parts)
+
+    @property
+    def turning_radius(self) -> float:
+        """Arm at which a spin moves the surface [m]: 0 for a ball about its centre, which looks the same."""
+        if self.is_plain:
+            return 0.0 if isinstance(self.shape, Sphere) else self.shape.bounding_radius
+        return max(placed_radius(part) - isinstance(part.shape, Sphere) * part.shape.rounding for part in self.parts)
+
+    @cached_property
+    def smallest_masses_at_contact(self) -> tuple[float, ...]:
+        """Smallest mass [kg] that a contact force meets on each part."""
+        if self.is_plain and (self.is_uniform or not isinstance(self.shape, ConvexHull)):
+            return (self.mass * self.shape.smallest_mass_fraction,)
+        per_mass, centre = self.inertia / self.mass, self.centre_of_mass
+        return tuple(self.mass * part.shape.mass_fraction(per_mass, centre) for part in self.parts)
+
+
+def placed_radius(part: PlacedPart) -> float:
+    """Return the radius of a sphere about the centre of mass of its body that holds a part [m]."""
+    if part.offset == AT_CENTRE:
+        return part.shape.bounding_radius
+    return float(np.linalg.norm(part.shape.core + np.array(part.offset), axis=1).max()) + part.shape.rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,17 +109,59 @@ class Plane:
     meets: frozenset[int] | None
 
 
-def new_body(shape: Shape, material: Material, mass: float | None, inertia: ArrayLike | None) -> RigidBody:
-    """Return a body; its mass and inertia follow from the material's density unless given.
+def new_body(
+    shape: Shape, material: Material, mass: float | None, inertia: ArrayLike | None, others: Sequence[Part] = (),
+    centre_of_mass: ArrayLike | None = None,
+) -> RigidBody:  # fmt: skip
+    """Return a body; what is not given of its mass, centre of mass and inertia follows from the materials' densities.
 
-    Raises ValueError for a mass that is not positive, and for an inertia that no body has.
+    Raises ValueError for a mass that is not positive, a centre that is not finite, and an inertia that no body has.
     """
     if mass is not None and not 0.0 < mass < np.inf:
         raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
+    centre = None if centre_of_mass is None else vector(centre_of_mass, "add_body centre_of_mass")
+    if others or centre is not None:
+        return _body_of_parts((Part(shape, material), *others), mass, inertia, centre)
     mass = material.density * shape.volume if mass is None else float(mass)
     if inertia is None:
         return RigidBody(shape, material, mass, shape.inertia_per_density * (mass / shape.volume), is_uniform=True)
     return RigidBody(shape, material, mass, checked_inertia(inertia, "add_body inertia"), is_uniform=False)
+
+
+def _body_of_parts(
+    parts: tuple[Part, ...], mass: float | None, inertia: ArrayLike | None, centre: Floats | None
+) -> RigidBody:
+    """Return a body of several parts, or with its centre of mass off the centroid.
+
+    Where the centre alone is given, the inertia about it is that of the homogeneous parts about their own.
+    """
+    whole = sum_of_parts([(part.shape, part.mass) for part in parts])
+    mass = whole.mass if mass is None else float(mass)
+    centre = whole.centre if centre is None else centre
+    tensor = whole.inertia * (mass / whole.mass) if inertia is None else checked_inertia(inertia, "add_body inertia")
+    return RigidBody(parts[0].shape, parts[0].material, mass, tensor, False, parts[1:], centre)
+
+
+class Assembly(NamedTuple):
+    """What parts come to together."""
+
+    mass: float  # kg
+    centre: Floats  # m, [3], of mass
+    inertia: Floats  # kg m2, [3, 3], about that
+
+
+def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
+    """Return mass, centre of mass and inertia of homogeneous parts, each a shape and its mass [kg].
+
+    All shapes are given in one frame; where parts overlap, the mass of both is there. Source: the theorem of Steiner.
+    """
+    mass = sum(mass for _, mass in parts)
+    centre = sum((mass * shape.centroid for shape, mass in parts), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for shape, own in parts:
+        way = shape.centroid - centre
+        inertia += shape.inertia_per_density * (own / shape.volume) + own * (way @ way * np.eye(3) - np.outer(way, way))
+    return Assembly(mass, centre, inertia)
 
 
 def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:

@@ -46,17 +46,23 @@ class Shape(Protocol):
     def contact_radius(self) -> float: ...  # m, of the sphere of equal volume: enters Hertz' law
     @property
     def smallest_mass_fraction(self) -> float: ...  # of a uniform body's mass, that a contact force meets
+    def mass_fraction(self, inertia_per_mass: NDArray[np.float64], centre: NDArray[np.float64]) -> float: ...
 
 
 class Sphere:
-    """A sphere of a given radius [m]. Raises ValueError unless the radius is finite and positive."""
+    """A sphere of a given radius [m] about a centre [m], shape [3].
 
-    def __init__(self, radius: float) -> None:
+    Raises ValueError unless the radius is finite and positive, and the centre finite.
+    """
+
+    def __init__(self, radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         if not 0.0 < radius < math.inf:
             raise ValueError(f"Sphere radius is {radius!r} m; allowed is a finite value above 0: change it")
         self.radius = float(radius)
         self.volume = 4.0 / 3.0 * math.pi * self.radius**3
-        self.centroid = np.zeros(3)
+        self.centroid = np.array(centre, dtype=np.float64)
+        if self.centroid.shape != (3,) or not np.isfinite(self.centroid).all():
+            raise ValueError(f"Sphere centre is {centre!r} m; allowed are three finite numbers: change it")
         self.inertia_per_density = 0.4 * self.volume * self.radius**2 * np.eye(3)
         self.rounding = self.radius
         self.core_polyhedron = single_point()
@@ -64,6 +70,12 @@ class Sphere:
         self.bounding_radius = self.radius
         self.contact_radius = self.radius
         self.smallest_mass_fraction = 1.0
+
+    def mass_fraction(self, inertia_per_mass: NDArray[np.float64], centre: NDArray[np.float64]) -> float:
+        """Return the part of a mass that a contact force meets at least, see ConvexHull.mass_fraction."""
+        x, y, z = self.centroid - centre
+        arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        return float(1.0 / (1.0 + np.linalg.eigvalsh(arm.T @ np.linalg.solve(inertia_per_mass, arm))[-1]))
 
 
 class ConvexHull:
@@ -128,17 +140,18 @@ class ConvexHull:
     @cached_property
     def smallest_mass_fraction(self) -> float:
         """Part of its mass, spread evenly, that a contact force meets at least."""
-        return self.mass_fraction(self.inertia_per_density / self.volume)
+        return self.mass_fraction(self.inertia_per_density / self.volume, self.centroid)
 
-    def mass_fraction(self, inertia_per_mass: NDArray[np.float64]) -> float:
-        """Return the part of a mass that a contact force meets at least, with an inertia over mass [m2, 3 x 3].
+    def mass_fraction(self, inertia_per_mass: NDArray[np.float64], centre: NDArray[np.float64]) -> float:
+        """Return the part of a mass that a contact force meets at least, with an inertia over mass [m2, 3 x 3] about a
+        centre of mass [m], shape [3], in the frame the shape was given in.
 
         1/(1 + m n . W . n) over the corners of the faces: a cube's corner pushed along the normal of one of its faces
         weighs a quarter of the cube.
         """
         surface = self.polyhedron
         normals = np.repeat(surface.face_normals[surface.triangle_face], 3, axis=0)
-        arms = surface.vertices[surface.triangles.ravel()] - self.centroid
+        arms = surface.vertices[surface.triangles.ravel()] - centre
         turns = np.cross(arms, normals)
         turning = np.einsum("ij,ij->i", turns, np.linalg.solve(inertia_per_mass, turns.T).T)
         return float(1.0 / (1.0 + turning.max()))

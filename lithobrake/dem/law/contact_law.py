@@ -29,7 +29,7 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     Writes to system.
     """
     bodies, cores, planes, pairs, laws, scratch, reactions = system
-    patch, first, second = scratch.patch, pairs.first[pair], pairs.second[pair]
+    patch, first = scratch.patch, pairs.first[pair]
     if pairs.feature_count[pair] == 0:
         end_contact(pair, pairs)
         return 0.0
@@ -40,8 +40,8 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     point, normal, time_step = contact.point, contact.normal, step.time_step
     # A force through the centroid turns nothing: it meets the whole mass.
     whole_mass = contact.through_centroids or step.paper_mass
-    motion = relative_motion(bodies, first, second, point, normal, whole_mass)
-    law = law_between(bodies, planes, laws, first, second)
+    motion = relative_motion(pair, bodies, pairs, point, normal, whole_mass)
+    law = law_between(pair, bodies, planes, pairs, laws)
     springs = contact_springs(law, contact.overlap, motion)
     load = normal_force(pair, bodies, pairs, patch, contact, motion, springs, time_step)
     pairs.lost[pair, DAMPING] += load.damped

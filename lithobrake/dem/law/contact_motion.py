@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs
+from lithobrake.dem.bodies.parts import curvature_of
 from lithobrake.dem.bodies.period import arm_to
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled, times
 
@@ -53,12 +54,12 @@ def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vect
 
 @kernel
 def relative_motion(
-    bodies: Bodies, first: int, second: int, point: Vector, normal: Vector, whole_mass: bool
+    pair: int, bodies: Bodies, pairs: Pairs, point: Vector, normal: Vector, whole_mass: bool
 ) -> RelativeMotion:
-    """Return how a body meets another, or a plane (second < 0)."""
+    """Return how a body meets another, or a plane."""
+    first, second = pairs.first[pair], pairs.second[pair]
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, whole_mass)
-    curvature = bodies.curvature[first]
     now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
     moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
     spin = scaled(-1.0, row(bodies.half_spin, first))
@@ -66,9 +67,8 @@ def relative_motion(
     if second >= 0:
         arm = arm_to(bodies, second, point)
         inverse_mass += inverse_mass_at(bodies, second, arm, normal, whole_mass)
-        curvature += bodies.curvature[second]
         now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, arm))
         moved = plus(moved, point_velocity(bodies.velocity, bodies.half_spin, second, arm))
         spin = plus(spin, row(bodies.half_spin, second))
         twist += 0.5 * dot(row(bodies.half_spin, second), normal)
-    return RelativeMotion(inverse_mass, curvature, now, moved, spin, twist)
+    return RelativeMotion(inverse_mass, curvature_of(pair, bodies, pairs), now, moved, spin, twist)

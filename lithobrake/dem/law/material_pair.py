@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Laws, Planes
+from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.law.restitution import damping_ratio_of
 
@@ -70,9 +70,10 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
 
 
 @kernel
-def law_between(bodies: Bodies, planes: Planes, laws: Laws, first: int, second: int) -> PairLaw:
-    """Return the law of the materials of two bodies, or of a body and a plane (second < 0)."""
-    here, there = bodies.material[first], bodies.material[second] if second >= 0 else planes.material[-1 - second]
+def law_between(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws) -> PairLaw:
+    """Return the law of the materials of the members of a pair."""
+    here, other = bodies.material[pairs.first_part[pair]], pairs.second_part[pair]
+    there = bodies.material[other] if other >= 0 else planes.material[-1 - other]
     return PairLaw(
         laws.young_modulus[here, there], laws.shear_modulus[here, there], laws.damping_ratio[here, there],
         laws.shear_damping[here, there], laws.friction[here, there], laws.rolling_friction[here, there],

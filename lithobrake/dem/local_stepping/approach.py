@@ -6,8 +6,9 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.bodies.parts import both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, row, scaled, times
+from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled, times
 from lithobrake.dem.local_stepping.free_flight import (
     Flight,
     Rules,
@@ -16,7 +17,7 @@ from lithobrake.dem.local_stepping.free_flight import (
     spin_of,
     time_to_close,
 )
-from lithobrake.dem.narrow_phase.contact_patch import measure_feature
+from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
 from lithobrake.dem.narrow_phase.feature_id import SPHERES, feature_indices, feature_kind, listed_feature
 from lithobrake.dem.narrow_phase.feature_list import travelled
 
@@ -90,7 +91,7 @@ def approach_to_plane(
 ) -> Approach:  # fmt: skip
     """Return the soonest of an approach and of the listed corners near a plane."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
-    shape, outward, spin = bodies.shape[body], row(planes.normal, plane), spin_of(bodies, body)
+    shape, outward, spin = first_shape(pair, bodies, pairs), row(planes.normal, plane), spin_of(bodies, body)
     level = dot(outward, row(bodies.position, body)) - planes.offset[plane] - cores.rounding[shape]
     for k in range(pairs.feature_count[pair]):
         corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pair, pairs, k))[0])
@@ -106,18 +107,18 @@ def approach_to_body(
 ) -> Approach:
     """Return the soonest of an approach and of the listed features of two bodies."""
     first, second = pairs.first[pair], pairs.second[pair]
-    apart = way_between(bodies, first, second)
+    apart, shapes = way_between(bodies, first, second), both_shapes(pair, bodies, pairs)
     between = minus(row(bodies.velocity, second), row(bodies.velocity, first))
     slack, left = flight.slack[first] + flight.slack[second], approach.gap
     if feature_kind(pairs.feature[pair, 0]) == SPHERES:
-        distance = dot(apart, apart) ** 0.5
-        gap = distance - bodies.contact_radius[first] - bodies.contact_radius[second]
-        return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, acceleration)
-    reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
+        return approach_of_spheres(pair, bodies, cores, pairs, between, slack, acceleration, approach)
+    reach = both_roundings(cores, shapes)
     spin, other_spin = spin_of(bodies, first), spin_of(bodies, second)
     for k in range(pairs.feature_count[pair]):
         feature = listed_feature(pair, pairs, k)
-        on_first, normal, distance = measure_feature(bodies, cores, feature, first, second, apart, reach + left)
+        on_first, normal, distance = measure_feature(
+            bodies, cores, feature, (first, second), shapes, apart, reach + left
+        )
         if distance < reach + left:
             on_second = minus(plus(on_first, scaled(distance, normal)), apart)
             moving = plus(between, minus(cross(other_spin, on_second), cross(spin, on_first)))
@@ -125,3 +126,22 @@ def approach_to_body(
             if approach.gap <= 0.0:
                 break
     return approach
+
+
+@kernel
+def approach_of_spheres(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, between: Vector, slack: float, acceleration: float,
+    approach: Approach,
+) -> Approach:  # fmt: skip
+    """Return the sooner of an approach and of two spheres whose bodies move against each other, `between` [m/s]."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    centre, apart, central = sphere_centres(pair, bodies, cores, pairs)
+    if not central:
+        arm = minus(centre, row(bodies.position, first))
+        other_arm = minus(plus(arm, apart), way_between(bodies, first, second))
+        turning = minus(cross(spin_of(bodies, second), other_arm), cross(spin_of(bodies, first), arm))
+        between = plus(between, turning)
+    distance = dot(apart, apart) ** 0.5
+    radius = bodies.contact_radius
+    gap = distance - radius[pairs.first_part[pair]] - radius[pairs.second_part[pair]]
+    return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, acceleration)

@@ -21,9 +21,9 @@ class Flight(NamedTuple):
     momentum: Floats  # [body_count, 3], kg m2/s, the same
     slack: Floats  # [body_count], m/s, change of the speed of its surface for which the plans hold
     turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
-    mass: Floats  # [body_count], kg, smallest that a contact meets
+    mass: Floats  # [part_count], kg, smallest that a contact meets
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
-    stamp: Integers  # [body_count], by which a search tells whom it has listed
+    stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
     held: Flags  # [body_count], see holding.py
     held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
     held_momentum: Floats  # [body_count, 3], kg m2/s, the same

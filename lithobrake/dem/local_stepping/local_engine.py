@@ -14,7 +14,7 @@ from lithobrake.dem.local_stepping.holding import hold_what_is_slow
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
 from lithobrake.dem.stepping.engine import Engine
-from lithobrake.dem.stepping.neighbours import new_pairs, with_overflow_for_all, with_overflow_where_used
+from lithobrake.dem.stepping.neighbours import free_slots, new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.stepping.threads import new_reactions
 from lithobrake.dem.stepping.watch import new_record
 
@@ -34,9 +34,9 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     """Return bodies that have just arrived at an instant [s] and were never planned."""
     n = len(bodies)
     turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
-    mass = np.array([body.smallest_mass_at_contact for body in bodies])
+    mass = np.array([mass for body in bodies for mass in body.smallest_masses_at_contact])
     never = np.full((n, 3), np.nan)
-    stamp = np.full(n + len(engine.planes.offset), -1)
+    stamp = np.full(len(mass) + len(engine.planes.offset), -1)
     return Flight(
         np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
         held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
@@ -82,7 +82,7 @@ class LocalEngine:
     def _take(self, pairs: Pairs, capacity: int) -> None:
         """Put pairs into the first of so many slots."""
         used = np.flatnonzero(pairs.first >= 0)
-        slots = new_pairs(np.full(capacity, -1), np.zeros(capacity, dtype=np.int64))._replace(overflow=pairs.overflow)
+        slots = new_pairs(free_slots(capacity))._replace(overflow=pairs.overflow)
         for name in Pairs._fields[:-1]:
             getattr(slots, name)[: len(used)] = getattr(pairs, name)[used]
         self.engine.pairs, self.engine.scratch = slots, self.engine.scratch_of(slots)
@@ -152,7 +152,8 @@ class LocalEngine:
         self.sum_forces()
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
-        used = used[np.lexsort((pairs.second[used], pairs.first[used]))]
+        order = pairs.second_part, pairs.first_part, pairs.second, pairs.first
+        used = used[np.lexsort([numbers[used] for numbers in order])]
         arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}
         self.engine.pairs = with_overflow_where_used(Pairs(**arrays, overflow=pairs.overflow))
         self.engine.list_neighbours()

@@ -10,6 +10,7 @@ Source: [Lew-2003], asynchronous variational integrators.
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
+from lithobrake.dem.bodies.parts import contact_radii
 from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
 from lithobrake.dem.local_stepping.agenda import put_on
@@ -59,8 +60,7 @@ def list_features(
         return True
     speed = closing_speed(bodies, flight, first, second)
     step = plans.interval[pair] if touching else collision_step(pair, pairs, flight, plans, speed, rules)
-    radius = bodies.contact_radius[first] + (bodies.contact_radius[second] if second >= 0 else 0.0)
-    most = ROUNDING_OF_RADIUS * radius
+    most = ROUNDING_OF_RADIUS * contact_radii(pair, bodies, pairs)
     way = (STEPS_LISTED if touching else STEPS_NEAR) * speed * step if speed > 0.0 else 0.0
     margin = max(NARROWEST * most, min(way, most))
     return renew_list(pair, bodies, cores, planes, pairs, scratch, margin, travel)

@@ -1,5 +1,6 @@
 """The neighbours of one body, listed anew when it has moved by half the skin; pairs come and go one by one.
 
+Each part of a body has neighbours of its own: parts of other bodies, and planes.
 Every body has a list of its pairs: entries 2 k and 2 k + 1 stand for the first and the second of the pair in slot k.
 """
 
@@ -7,6 +8,7 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
+from lithobrake.dem.bodies.parts import curvature_of
 from lithobrake.dem.bodies.period import nearest
 from lithobrake.dem.bodies.vectors import dot, minus, row
 from lithobrake.dem.law.material_pair import law_between
@@ -41,12 +43,14 @@ def unlink(flight: Flight, plans: Plans, body: int, entry: int) -> None:
 
 
 @kernel
-def collision_duration(bodies: Bodies, planes: Planes, laws: Laws, flight: Flight, first: int, second: int) -> float:
+def collision_duration(
+    pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight
+) -> float:  # fmt: skip
     """Return the duration of a collision of two times the fifth root of its speed, see time_step.contact_duration."""
-    law = law_between(bodies, planes, laws, first, second)
-    inverse, curvature = 1.0 / flight.mass[first], bodies.curvature[first]
-    if second >= 0:
-        inverse, curvature = inverse + 1.0 / flight.mass[second], curvature + bodies.curvature[second]
+    law, curvature = law_between(pair, bodies, planes, pairs, laws), curvature_of(pair, bodies, pairs)
+    inverse = 1.0 / flight.mass[pairs.first_part[pair]]
+    if pairs.second[pair] >= 0:
+        inverse += 1.0 / flight.mass[pairs.second_part[pair]]
     return HERTZ_DURATION * (curvature / (inverse * law.young_modulus) ** 2) ** 0.2 / max(1.0, 2.0 * law.damping_ratio)
 
 
@@ -60,7 +64,7 @@ def enter_pair(
     Writes to flight, plans and agenda.
     """
     first, second = pairs.first[pair], pairs.second[pair]
-    plans.duration[pair] = collision_duration(bodies, planes, laws, flight, first, second)
+    plans.duration[pair] = collision_duration(pair, bodies, planes, pairs, laws, flight)
     link(flight, plans, first, 2 * pair)
     if second >= 0:
         link(flight, plans, second, 2 * pair + 1)
@@ -92,15 +96,20 @@ def plan_all_searches(bodies: Bodies, flight: Flight, agenda: Agenda, now: float
 
 @kernel
 def add_pair(
-    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda, one: int,
-    other: int, now: float,
+    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
+    members: tuple[int, int], parts: tuple[int, int], now: float,
 ) -> bool:  # fmt: skip
-    """List two as neighbours, due at once; tell whether there was a slot. Writes to pairs, flight, plans and agenda."""
+    """List parts of two as neighbours, due at once; tell whether there was a slot.
+
+    Writes to pairs, flight, plans and agenda.
+    """
     if plans.free_count[0] == 0:
         return False
     plans.free_count[0] -= 1
     pair = plans.free[plans.free_count[0]]
-    pairs.first[pair], pairs.second[pair] = (min(one, other), max(one, other)) if other >= 0 else (one, other)
+    own, other = (1, 0) if 0 <= members[1] < members[0] else (0, 1)
+    pairs.first[pair], pairs.second[pair] = members[own], members[other]
+    pairs.first_part[pair], pairs.second_part[pair] = parts[own], parts[other]
     pairs.wake[pair], pairs.feature_count[pair] = 0.0, 0
     plans.last[pair], plans.interval[pair] = now, 0.0
     enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, now)
@@ -123,13 +132,15 @@ def forget_pair(
 
 @kernel
 def is_near(
-    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, flight: Flight, body: int, other: int, now: float,
-    rules: Rules,
+    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, flight: Flight, members: tuple[int, int],
+    parts: tuple[int, int], now: float, rules: Rules,
 ) -> bool:  # fmt: skip
-    """Tell whether a body that has been moved to now [s] may be less than the skin from another, or from a plane.
+    """Tell whether a part of a body that has been moved to now [s] may be less than the skin from one of another, or
+    from a plane.
 
     Writes to scratch.
     """
+    body, other = members
     here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
     if other < 0:
         return dot(row(planes.normal, -1 - other), here) - planes.offset[-1 - other] < reach
@@ -140,23 +151,26 @@ def is_near(
     turned = 0.0
     if not flight.held[other]:
         turned = (now - flight.time[other]) * bodies.turning_radius[other] * spin_bound(bodies, flight, other)
-    return are_near(bodies, cores, scratch, body, other, apart, rules.skin + turned)
+    shapes = (bodies.shape[parts[0]], bodies.shape[parts[1]])
+    return are_near(bodies, cores, scratch, members, shapes, apart, rules.skin + turned)
 
 
 @kernel
-def list_if_near(system: System, schedule: Schedule, body: int, other: int, now: float, rules: Rules) -> bool:
-    """List another as a neighbour of a body if it is near and not listed yet; tell whether there was a slot.
+def list_if_near(
+    system: System, schedule: Schedule, members: tuple[int, int], parts: tuple[int, int], now: float, rules: Rules
+) -> bool:
+    """List a part of another, or a plane, as a neighbour of a part of a body if it is near and not listed yet; tell
+    whether there was a slot.
 
     Writes to system and schedule.
     """
     bodies, cores, planes, pairs, laws, scratch, _ = system
     flight, plans, agenda, _ = schedule
-    n = len(bodies.mass)
-    if other == body or flight.stamp[other if other >= 0 else n - 1 - other] == body:
+    if flight.stamp[stamp_of(bodies, parts[1])] == parts[0]:
         return True
-    if not is_near(bodies, cores, planes, scratch, flight, body, other, now, rules):
+    if not is_near(bodies, cores, planes, scratch, flight, members, parts, now, rules):
         return True
-    return add_pair(bodies, planes, pairs, laws, flight, plans, agenda, body, other, now)
+    return add_pair(bodies, planes, pairs, laws, flight, plans, agenda, members, parts, now)
 
 
 @large_kernel
@@ -165,49 +179,90 @@ def search_neighbours(system: System, schedule: Schedule, body: int, now: float,
 
     Writes to system and schedule.
     """
-    bodies, planes, pairs = system.bodies, system.planes, system.pairs
+    bodies, pairs = system.bodies, system.pairs
     flight, plans, agenda, cells = schedule
     fly_to(bodies, flight, body, now, rules)
     if not np.isfinite(bodies.travel[body]):
         return LOST
     move_to_cell(bodies, cells, body)
-    here, reach = row(bodies.position, body), bodies.bounding_radius[body] + rules.skin
-    drop_distant(system, schedule, body, now, rules)
-    has_room = True
-    for at in range(-len(planes.offset), gather_near(cells, here, reach)):
-        other = at if at < 0 else cells.found[at]
-        if other >= 0 or planes.meets[-1 - other, body]:
-            has_room &= list_if_near(system, schedule, body, other, now, rules)
-    if not has_room:
-        return NO_SLOT
-    unstamp(pairs, flight, plans, body, len(bodies.mass))
+    found = gather_near(cells, row(bodies.position, body), bodies.bounding_radius[body] + rules.skin)
+    for part in range(bodies.part_start[body], bodies.part_start[body + 1]):
+        drop_distant(system, schedule, body, part, now, rules)
+        if not list_near(system, schedule, body, part, found, now, rules):
+            return NO_SLOT
+        unstamp(bodies, pairs, flight, plans, body, part)
     bodies.travel_listed[body] = bodies.travel[body]
     plan_search(bodies, flight, agenda, body, now, rules)
     return LISTED
 
 
 @kernel
-def unstamp(pairs: Pairs, flight: Flight, plans: Plans, body: int, body_count: int) -> None:
-    """Take a body's stamp off all that it has listed. Writes to flight."""
+def list_near(
+    system: System, schedule: Schedule, body: int, part: int, found: int, now: float, rules: Rules
+) -> bool:  # fmt: skip
+    """List what is near a part of a body, of the planes and of so many that the cells found; tell whether there were
+    slots for all.
+
+    Writes to system and schedule.
+    """
+    bodies, planes, cells = system.bodies, system.planes, schedule.cells
+    has_room = True
+    for at in range(-len(planes.offset), found):
+        if at < 0:
+            if planes.meets[-1 - at, body]:
+                has_room &= list_if_near(system, schedule, (body, at), (part, at), now, rules)
+            continue
+        other = cells.found[at]
+        if other == body:
+            continue
+        for its in range(bodies.part_start[other], bodies.part_start[other + 1]):
+            has_room &= list_if_near(system, schedule, (body, other), (part, its), now, rules)
+    return has_room
+
+
+@kernel
+def stamp_of(bodies: Bodies, part: int) -> int:
+    """Return where the stamp of a part, or of a plane (below 0), stands."""
+    return part if part >= 0 else len(bodies.shape) - 1 - part
+
+
+@kernel
+def parts_from(pairs: Pairs, entry: int) -> tuple[int, int]:
+    """Return the parts of a pair, first that of the body in whose list the entry stands."""
+    first, second = pairs.first_part[entry >> 1], pairs.second_part[entry >> 1]
+    return (second, first) if entry & 1 else (first, second)
+
+
+@kernel
+def unstamp(bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, body: int, part: int) -> None:
+    """Take the stamp of a part of a body off all that it has listed. Writes to flight."""
     entry = flight.head[body]
     while entry >= 0:
-        pair = entry >> 1
-        other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
-        flight.stamp[other if other >= 0 else body_count - 1 - other] = -1
+        own, other = parts_from(pairs, entry)
+        if own == part:
+            flight.stamp[stamp_of(bodies, other)] = -1
         entry = plans.link[entry]
 
 
 @kernel
-def drop_distant(system: System, schedule: Schedule, body: int, now: float, rules: Rules) -> None:
-    """Forget the pairs of a body that are no longer near it, and stamp the others. Writes to system and schedule."""
+def drop_distant(system: System, schedule: Schedule, body: int, part: int, now: float, rules: Rules) -> None:
+    """Forget the pairs of a part of a body that are no longer near it, and stamp the others.
+
+    Writes to system and schedule.
+    """
     bodies, cores, planes, pairs, _, scratch, _ = system
     flight, plans, agenda, _ = schedule
-    entry, n = flight.head[body], len(bodies.mass)
+    entry = flight.head[body]
     while entry >= 0:
         after, pair = plans.link[entry], entry >> 1
-        other = pairs.second[pair] if pairs.first[pair] == body else pairs.first[pair]
-        if pairs.overlap[pair] == 0.0 and not is_near(bodies, cores, planes, scratch, flight, body, other, now, rules):
-            forget_pair(pair, pairs, flight, plans, agenda, n)
+        other = pairs.first[pair] if entry & 1 else pairs.second[pair]
+        parts = parts_from(pairs, entry)
+        if parts[0] != part:
+            entry = after
+            continue
+        is_apart = pairs.overlap[pair] == 0.0
+        if is_apart and not is_near(bodies, cores, planes, scratch, flight, (body, other), parts, now, rules):
+            forget_pair(pair, pairs, flight, plans, agenda, len(bodies.mass))
         else:
-            flight.stamp[other if other >= 0 else n - 1 - other] = body
+            flight.stamp[stamp_of(bodies, parts[1])] = part
         entry = after

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
+from lithobrake.dem.bodies.parts import both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
 from lithobrake.dem.narrow_phase.deep_edges import add_deep_edges
@@ -53,17 +54,16 @@ class Contact(NamedTuple):
 @kernel
 def find_contact(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, scratch: Scratch) -> Contact:
     """Return where the members of a pair touch that has features to look at. Writes to scratch."""
-    patch = scratch.patch
-    first, second = pairs.first[pair], pairs.second[pair]
+    patch, second = scratch.patch, pairs.second[pair]
     if feature_kind(pairs.feature[pair, 0]) == SPHERES and pairs.feature_count[pair] > 0:
-        overlap, point, normal = sphere_overlap(bodies, first, second)
+        overlap, point, normal, central = sphere_overlap(pair, bodies, cores, pairs)
         patch.weight[0], patch.family[0] = 1.0, CORNER
-        return Contact(1 if overlap > 0.0 else 0, overlap, point, normal, True)
-    reach = cores.rounding[bodies.shape[first]]
+        return Contact(1 if overlap > 0.0 else 0, overlap, point, normal, central)
     if second >= 0:
         count, deep, derivative = body_patch(pair, bodies, cores, pairs, scratch)
-        reach += cores.rounding[bodies.shape[second]]
+        reach = both_roundings(cores, both_shapes(pair, bodies, pairs))
     else:
+        reach = cores.rounding[first_shape(pair, bodies, pairs)]
         count, deep, derivative = plane_patch(pair, bodies, cores, planes, pairs, patch), 0.0, 0.0
     if count == 0:
         return Contact(0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), False)
@@ -79,7 +79,7 @@ def plane_patch(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: 
     Writes to patch.
     """
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
-    outward, shape, count = row(planes.normal, plane), bodies.shape[body], 0
+    outward, shape, count = row(planes.normal, plane), first_shape(pair, bodies, pairs), 0
     inward, rounding = scaled(-1.0, outward), cores.rounding[shape]
     down = transposed_times(bodies.rotation, body, outward)
     level = planes.offset[plane] + rounding - dot(outward, row(bodies.position, body))
@@ -100,14 +100,13 @@ def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, scratch: S
     """
     relative, patch = scratch.relative, scratch.patch
     first, second = pairs.first[pair], pairs.second[pair]
-    apart = way_between(bodies, first, second)
+    apart, shapes = way_between(bodies, first, second), both_shapes(pair, bodies, pairs)
     penetrating = pairs.feature_count[pair] == ALL_FEATURES
     if penetrating:
-        count, deep, derivative = add_all_corners(bodies, cores, patch, first, second, apart), 1.0, 0.0
+        count, deep, derivative = add_all_corners(bodies, cores, patch, (first, second), shapes, apart), 1.0, 0.0
     else:
         count, deep, derivative = add_listed_features(pair, bodies, cores, pairs, patch, apart)
     if deep > 0.0:
-        shapes = (bodies.shape[first], bodies.shape[second])
         write_relative(bodies.rotation, first, second, relative)
         there = transposed_times(bodies.rotation, first, apart)
         apart_count, count = count, add_deep_edges(cores, patch, relative, count, shapes, there)
@@ -116,7 +115,7 @@ def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, scratch: S
             put(patch.normal, k, times(bodies.rotation, first, row(patch.normal, k)))
             put(patch.couple, k, times(bodies.rotation, first, row(patch.couple, k)))
     if penetrating:
-        count = add_penetration_point(bodies, cores, scratch, count, first, second, apart)
+        count = add_penetration_point(bodies, cores, scratch, count, (first, second), shapes, apart)
     return count, deep, derivative
 
 
@@ -129,17 +128,17 @@ def add_listed_features(
 
     Writes to patch.
     """
-    first, second = pairs.first[pair], pairs.second[pair]
+    members, shapes = (pairs.first[pair], pairs.second[pair]), both_shapes(pair, bodies, pairs)
     count, corners, deepest = 0, 0, 0.0
     for k in range(pairs.feature_count[pair]):
         feature = listed_feature(pair, pairs, k)
-        count = add_feature_point(bodies, cores, patch, count, first, second, apart, feature)
+        count = add_feature_point(bodies, cores, patch, count, members, shapes, apart, feature)
         # Corners are listed before edges.
         if feature_kind(feature) <= CORNER_OF_SECOND:
             corners = count
     for k in range(count):
         deepest = max(deepest, patch.depth[k])
-    reach = cores.rounding[bodies.shape[first]] + cores.rounding[bodies.shape[second]]
+    reach = both_roundings(cores, shapes)
     if deepest <= DEEP_FROM * reach:
         return count, 0.0, 0.0
     deep, derivative = deepening(deepest / reach)
@@ -147,39 +146,44 @@ def add_listed_features(
 
 
 @large_kernel
-def add_all_corners(bodies: Bodies, cores: Cores, patch: Patch, first: int, second: int, apart: Vector) -> int:
+def add_all_corners(
+    bodies: Bodies, cores: Cores, patch: Patch, members: tuple[int, int], shapes: tuple[int, int], apart: Vector
+) -> int:
     """Write all corners of two bodies that overlap; return their number. Writes to patch."""
     count = 0
     for kind in range(2):
-        shape = bodies.shape[first if kind == 0 else second]
+        shape = shapes[0] if kind == 0 else shapes[1]
         for k in range(cores.vertex_start[shape + 1] - cores.vertex_start[shape]):
             feature = encode_feature(kind, k, 0)
-            count = add_feature_point(bodies, cores, patch, count, first, second, apart, feature)
+            count = add_feature_point(bodies, cores, patch, count, members, shapes, apart, feature)
     return count
 
 
 @kernel
 def add_feature_point(
-    bodies: Bodies, cores: Cores, patch: Patch, count: int, first: int, second: int, apart: Vector, feature: int
-) -> int:
+    bodies: Bodies, cores: Cores, patch: Patch, count: int, members: tuple[int, int], shapes: tuple[int, int],
+    apart: Vector, feature: int,
+) -> int:  # fmt: skip
     """Add a feature to the patch if it overlaps; return the number of points. Writes to patch."""
-    roundings = (cores.rounding[bodies.shape[first]], cores.rounding[bodies.shape[second]])
+    roundings = (cores.rounding[shapes[0]], cores.rounding[shapes[1]])
     reach, half_difference = roundings[0] + roundings[1], 0.5 * (roundings[0] - roundings[1])
-    on_first, normal, distance = measure_feature(bodies, cores, feature, first, second, apart, reach)
+    on_first, normal, distance = measure_feature(bodies, cores, feature, members, shapes, apart, reach)
     if distance >= reach:
         return count
     middle = plus(on_first, scaled(0.5 * distance + half_difference, normal))
     family = CORNER if feature_kind(feature) <= CORNER_OF_SECOND else EDGES_APART
-    return add_point(patch, count, family, reach - distance, plus(row(bodies.position, first), middle), normal)
+    return add_point(patch, count, family, reach - distance, plus(row(bodies.position, members[0]), middle), normal)
 
 
 @kernel
 def measure_feature(
-    bodies: Bodies, cores: Cores, feature: int, first: int, second: int, apart: Vector, reach: float
-) -> tuple[Vector, Vector, float]:
-    """Return point on the first core, about its centroid, normal to the second and distance of a feature."""
+    bodies: Bodies, cores: Cores, feature: int, members: tuple[int, int], shapes: tuple[int, int], apart: Vector,
+    reach: float,
+) -> tuple[Vector, Vector, float]:  # fmt: skip
+    """Return point on the first core, about its centre of mass, normal to the second and distance of a feature."""
     kind, (i, j), turn = feature_kind(feature), feature_indices(feature), bodies.rotation
-    shape, other_shape = bodies.shape[first], bodies.shape[second]
+    first, second = members
+    shape, other_shape = shapes
     if kind == CORNER_OF_FIRST:
         corner = times(turn, first, row(cores.vertex, cores.vertex_start[shape] + i))
         seen = transposed_times(turn, second, minus(corner, apart))
@@ -219,12 +223,33 @@ def corner_over_core(cores: Cores, shape: int, point: Vector, face: int, reach: 
 
 
 @kernel
-def sphere_overlap(bodies: Bodies, first: int, second: int) -> tuple[float, Vector, Vector]:
-    """Return overlap (not above 0: none), middle and normal of two spheres."""
-    apart = way_between(bodies, first, second)
+def sphere_overlap(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs
+) -> tuple[float, Vector, Vector, bool]:  # fmt: skip
+    """Return overlap (not above 0: none), middle and normal of two spheres, and whether the normal runs through the
+    centres of mass of both bodies.
+    """
+    centre, apart, central = sphere_centres(pair, bodies, cores, pairs)
+    radius = bodies.contact_radius[pairs.first_part[pair]]
     distance = dot(apart, apart) ** 0.5
-    overlap = bodies.contact_radius[first] + bodies.contact_radius[second] - distance
+    overlap = radius + bodies.contact_radius[pairs.second_part[pair]] - distance
     # Spheres about one centre: every normal is as good as another.
     normal = scaled(1.0 / distance, apart) if distance > 0.0 else (0.0, 0.0, 1.0)
-    half = scaled(bodies.contact_radius[first] - 0.5 * overlap, normal)
-    return overlap, plus(row(bodies.position, first), half), normal
+    half = scaled(radius - 0.5 * overlap, normal)
+    return overlap, plus(centre, half), normal, central
+
+
+@kernel
+def sphere_centres(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs
+) -> tuple[Vector, Vector, bool]:  # fmt: skip
+    """Return the centre of a pair's first sphere, the way to that of the second [m], and whether both are centres of
+    mass.
+    """
+    first, second, (shape, other_shape) = pairs.first[pair], pairs.second[pair], both_shapes(pair, bodies, pairs)
+    centre, apart = row(bodies.position, first), way_between(bodies, first, second)
+    arm, other_arm = row(cores.vertex, cores.vertex_start[shape]), row(cores.vertex, cores.vertex_start[other_shape])
+    if dot(arm, arm) + dot(other_arm, other_arm) == 0.0:
+        return centre, apart, True
+    arm, other_arm = times(bodies.rotation, first, arm), times(bodies.rotation, second, other_arm)
+    return plus(centre, arm), plus(apart, minus(other_arm, arm)), False

@@ -7,6 +7,7 @@ difference to any bit when, or how often, a list is renewed.
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Pairs, Planes
 from lithobrake.dem.bodies.motion import surface_speed_bound
+from lithobrake.dem.bodies.parts import both_roundings, both_shapes, contact_radii, first_shape
 from lithobrake.dem.bodies.period import way_between
 from lithobrake.dem.bodies.vectors import Vector, dot, row, scaled, transposed_times
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
@@ -32,15 +33,14 @@ def travelled(bodies: Bodies, first: int, second: int) -> float:
 
 
 @kernel
-def list_margin(bodies: Bodies, cores: Cores, first: int, second: int, time_step: float) -> float:
+def list_margin(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, time_step: float) -> float:
     """Return the motion [m] for which the list of a pair shall serve."""
-    rounding, radius = cores.rounding[bodies.shape[first]], bodies.contact_radius[first]
-    speed = surface_speed_bound(bodies, first)
-    if second >= 0:
-        rounding += cores.rounding[bodies.shape[second]]
-        radius += bodies.contact_radius[second]
-        speed += surface_speed_bound(bodies, second)
-    most = ROUNDING_OF_RADIUS * radius
+    rounding = cores.rounding[first_shape(pair, bodies, pairs)]
+    speed = surface_speed_bound(bodies, pairs.first[pair])
+    if pairs.second[pair] >= 0:
+        rounding += cores.rounding[bodies.shape[pairs.second_part[pair]]]
+        speed += surface_speed_bound(bodies, pairs.second[pair])
+    most = ROUNDING_OF_RADIUS * contact_radii(pair, bodies, pairs)
     return max(MARGIN_OF_ROUNDING * min(rounding, most), min(STEPS_LISTED * speed * time_step, most))
 
 
@@ -74,11 +74,10 @@ def update_feature_lists(
     """
     lacking = 0
     for pair in range(start, stop):
-        first, second = pairs.first[pair], pairs.second[pair]
-        travel = travelled(bodies, first, second)
+        travel = travelled(bodies, pairs.first[pair], pairs.second[pair])
         if travel < pairs.wake[pair]:
             continue
-        margin = list_margin(bodies, cores, first, second, time_step)
+        margin = list_margin(pair, bodies, cores, pairs, time_step)
         if not renew_list(pair, bodies, cores, planes, pairs, scratch, margin, travel):
             lacking += 1
     return lacking
@@ -88,7 +87,7 @@ def update_feature_lists(
 def list_plane(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, margin: float) -> float:
     """List the corners near a plane; return the gap. Writes to pairs."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
-    shape = bodies.shape[body]
+    shape = first_shape(pair, bodies, pairs)
     pairs.feature_count[pair] = 0
     outward = row(planes.normal, plane)
     down = transposed_times(bodies.rotation, body, outward)
@@ -121,13 +120,13 @@ def list_bodies(
     Writes to pairs, simplex, turned and relative.
     """
     first, second = pairs.first[pair], pairs.second[pair]
-    shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
+    shapes, members = both_shapes(pair, bodies, pairs), (first, second)
     pairs.feature_count[pair] = 0
     apart = way_between(bodies, first, second)
     bound = dot(apart, apart) ** 0.5 - bodies.bounding_radius[first] - bodies.bounding_radius[second]
     if bound >= margin:
         return bound
-    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
+    reach = both_roundings(cores, shapes)
     if is_point(cores, shapes[0]) and is_point(cores, shapes[1]):
         add_feature(pair, pairs, SPHERES, 0, 0)
         return margin

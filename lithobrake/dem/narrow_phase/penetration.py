@@ -4,6 +4,7 @@ import math
 
 from lithobrake.compilation.compiled import large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats
+from lithobrake.dem.bodies.parts import both_roundings
 from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, row, scaled, times
 from lithobrake.dem.narrow_phase.closest_points import find_closest_points
 from lithobrake.dem.narrow_phase.gjk import PENETRATING, weighted
@@ -39,8 +40,9 @@ def penetration_vector(
 
 @large_kernel
 def add_penetration_point(
-    bodies: Bodies, cores: Cores, scratch: Scratch, count: int, first: int, second: int, apart: Vector
-) -> int:
+    bodies: Bodies, cores: Cores, scratch: Scratch, count: int, members: tuple[int, int], shapes: tuple[int, int],
+    apart: Vector,
+) -> int:  # fmt: skip
     """Add the point at the shortest way out, if the cores still cross; return the number of points.
 
     Its overlap is the depth of the cores and both roundings. It keeps two flat bars apart of which no corner lies in
@@ -49,7 +51,6 @@ def add_penetration_point(
     Writes to scratch.
     """
     simplex, turned, relative, patch = scratch
-    shapes, members = (bodies.shape[first], bodies.shape[second]), (first, second)
     found, _, _ = find_closest_points(cores, simplex, turned, relative, shapes, bodies.rotation, members, apart, 0.0)
     if found != PENETRATING:
         return count
@@ -58,6 +59,5 @@ def add_penetration_point(
     )
     half_difference = 0.5 * (cores.rounding[shapes[0]] - cores.rounding[shapes[1]])
     middle = plus(scaled(0.5, plus(on_first, on_second)), scaled(half_difference, normal))
-    point = plus(row(bodies.position, first), middle)
-    reach = cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
+    point, reach = plus(row(bodies.position, members[0]), middle), both_roundings(cores, shapes)
     return add_point(patch, count, PENETRATION, reach - distance, point, normal)

@@ -1,33 +1,49 @@
 """From what a person adds to a world to the arrays that kernels work on."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Period, Planes
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.motion import write_matrices, write_rotations
-from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
-from lithobrake.dem.bodies.shape import Shape, Sphere
+from lithobrake.dem.bodies.polyhedron import Polyhedron
+from lithobrake.dem.bodies.rigid_body import AT_CENTRE, Offset, PlacedPart, Plane, RigidBody
+from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.law.material_pair import pair_law
 
-
-def shapes_of(bodies: list[RigidBody]) -> list[Shape]:
-    """Return the shapes of bodies, each once."""
-    return list({id(body.shape): body.shape for body in bodies}.values())
+# A shape and where its centroid stands from the centre of mass [m], frame of the shape.
+PlacedShape = tuple[Shape, Offset]
 
 
-def shape_numbers(bodies: list[RigidBody], shapes: list[Shape]) -> Integers:
-    """Return which of the shapes each body has, shape [body_count]."""
-    number = {id(shape): k for k, shape in enumerate(shapes)}
-    return np.array([number[id(body.shape)] for body in bodies], dtype=np.int64)
+def parts_of(bodies: list[RigidBody]) -> list[PlacedPart]:
+    """Return the parts of all bodies, body by body."""
+    return [part for body in bodies for part in body.parts]
 
 
-def materials_of(bodies: list[RigidBody], planes: list[Plane]) -> list[Material]:
-    """Return the materials of bodies and planes, each once."""
-    return list(dict.fromkeys([body.material for body in bodies] + [plane.material for plane in planes]))
+def part_starts(bodies: list[RigidBody]) -> Integers:
+    """Return where the parts of each body begin among those of all, and how many there are, shape [body_count + 1]."""
+    return np.cumsum([0, *(len(body.parts) for body in bodies)], dtype=np.int64)
 
 
-def material_numbers(made: list[RigidBody] | list[Plane], materials: list[Material]) -> Integers:
-    """Return which of the materials each body or plane is made of."""
+def shapes_of(parts: list[PlacedPart]) -> list[PlacedShape]:
+    """Return the shapes of parts, each once for every place that it has in a body."""
+    return list({(id(part.shape), part.offset): (part.shape, part.offset) for part in parts}.values())
+
+
+def shape_numbers(parts: list[PlacedPart], shapes: list[PlacedShape]) -> Integers:
+    """Return which of the shapes each part has, shape [part_count]."""
+    number = {(id(shape), offset): k for k, (shape, offset) in enumerate(shapes)}
+    return np.array([number[id(part.shape), part.offset] for part in parts], dtype=np.int64)
+
+
+def materials_of(parts: list[PlacedPart], planes: list[Plane]) -> list[Material]:
+    """Return the materials of parts and planes, each once."""
+    return list(dict.fromkeys([part.material for part in parts] + [plane.material for plane in planes]))
+
+
+def material_numbers(made: list[PlacedPart] | list[Plane], materials: list[Material]) -> Integers:
+    """Return which of the materials each part or plane is made of."""
     return np.array([materials.index(one.material) for one in made], dtype=np.int64)
 
 
@@ -38,9 +54,9 @@ def rotation_matrices(quaternions: Floats) -> Floats:
     return rotation
 
 
-def cores_of(shapes: list[Shape]) -> Cores:
-    """Lay the convex cores of shapes one after the other."""
-    cores = [shape.core_polyhedron for shape in shapes]
+def cores_of(shapes: list[PlacedShape]) -> Cores:
+    """Lay the convex cores of shapes one after the other, each where it stands in its body."""
+    cores = [placed(shape.core_polyhedron, offset) for shape, offset in shapes]
 
     def starts(counts: list[int] | np.ndarray) -> np.ndarray:
         return np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
@@ -54,8 +70,16 @@ def cores_of(shapes: list[Shape]) -> Cores:
         lines[:, 0].copy(), lines[:, 1] - lines[:, 0],
         np.concatenate([core.adjacent_faces for core in cores]),
         starts(np.concatenate([core.edges_of_face for core in cores])),
-        np.array([shape.rounding for shape in shapes]),
+        np.array([shape.rounding for shape, _ in shapes]),
     )  # fmt: skip
+
+
+def placed(core: Polyhedron, offset: Offset) -> Polyhedron:
+    """Return a core that stands at an offset [m]."""
+    if offset == AT_CENTRE:
+        return core
+    way = np.array(offset)
+    return replace(core, vertices=core.vertices + way, face_offsets=core.face_offsets + core.face_normals @ way)
 
 
 def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:
@@ -87,21 +111,23 @@ def inertias(bodies: list[RigidBody]) -> Floats:
 
 
 def bodies_of(
-    bodies: list[RigidBody], shapes: list[Shape], materials: list[Material], motion: dict[str, Floats], period: Period
-) -> Bodies:
-    """Return bodies as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
-    n, bounding = len(bodies), np.array([body.shape.bounding_radius for body in bodies])
-    inertia = inertias(bodies)
+    bodies: list[RigidBody], parts: list[PlacedPart], shapes: list[PlacedShape], materials: list[Material],
+    motion: dict[str, Floats], period: Period,
+) -> Bodies:  # fmt: skip
+    """Return bodies and their parts as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
+    n, inertia = len(bodies), inertias(bodies)
     arrays = Bodies(
         period=period,
-        shape=shape_numbers(bodies, shapes),
-        material=material_numbers(bodies, materials),
+        part_start=part_starts(bodies),
+        shape=shape_numbers(parts, shapes),
+        material=material_numbers(parts, materials),
+        contact_radius=np.array([part.shape.contact_radius for part in parts]),
+        curvature=np.array([1.0 / part.shape.contact_radius for part in parts]),
         mass=np.array([body.mass for body in bodies]), inverse_mass=np.array([1.0 / body.mass for body in bodies]),
         inverse_inertia_body=inverses(inertia),
         isotropic=(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2)),
-        contact_radius=np.array([body.shape.contact_radius for body in bodies]),
-        curvature=np.array([1.0 / body.shape.contact_radius for body in bodies]),
-        bounding_radius=bounding, turning_radius=np.where([isinstance(b.shape, Sphere) for b in bodies], 0.0, bounding),
+        bounding_radius=np.array([body.bounding_radius for body in bodies]),
+        turning_radius=np.array([body.turning_radius for body in bodies]),
         position=motion["position"], velocity=motion["velocity"], quaternion=motion["quaternion"],
         angular_momentum=motion["angular_momentum"], rotation=np.zeros((n, 3, 3)), inverse_inertia=np.zeros((n, 3, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), half_spin=np.zeros((n, 3)),

@@ -11,7 +11,7 @@ from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.feature_list import BOUND_SLACK
 from lithobrake.dem.narrow_phase.scratch import Scratch, System, scratch_for
-from lithobrake.dem.stepping.assembly import bodies_of, cores_of, laws_of, materials_of, planes_of, shapes_of
+from lithobrake.dem.stepping.assembly import bodies_of, cores_of, laws_of, materials_of, parts_of, planes_of, shapes_of
 from lithobrake.dem.stepping.neighbours import carry_over, neighbouring_pairs, with_more_overflow
 from lithobrake.dem.stepping.threads import Team, new_reactions, partitions_of
 from lithobrake.dem.stepping.time_loop import DONE, FEATURES_OVERFLOW, LIST_USED_UP, advance
@@ -50,11 +50,12 @@ class Engine:
         thread_count: int,
         period: Period,
     ) -> None:
-        shapes, materials = shapes_of(bodies), materials_of(bodies, planes)
+        parts = parts_of(bodies)
+        shapes, materials = shapes_of(parts), materials_of(parts, planes)
         self.cores: Cores = cores_of(shapes)
         self.laws: Laws = laws_of(materials, options["shear_modulus_rule"], options["pair_rule"])
         self.planes: Planes = planes_of(planes, materials, len(bodies))
-        self.bodies: Bodies = bodies_of(bodies, shapes, materials, motion, period)
+        self.bodies: Bodies = bodies_of(bodies, parts, shapes, materials, motion, period)
         self.pairs: Pairs
         self.scratch: Scratch
         self.team: Team | None
@@ -149,6 +150,6 @@ class Engine:
     def list_neighbours(self) -> None:
         """List neighbours anew; contacts keep their history."""
         self.book()
-        first, second = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
-        self.gather(carry_over(self.pairs, first, second))
+        pairs = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
+        self.gather(carry_over(self.pairs, pairs))
         self.bodies.travel_listed[:] = self.bodies.travel

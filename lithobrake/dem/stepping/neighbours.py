@@ -1,4 +1,9 @@
-"""Pairs of bodies near enough to touch before the surface of any has moved half the skin."""
+"""Pairs of bodies near enough to touch before the surface of any has moved half the skin.
+
+Of bodies with several parts, each part has pairs of its own; parts of one body never meet.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,38 +44,46 @@ def sweep(
 
 @kernel
 def are_near(
-    bodies: Bodies, cores: Cores, scratch: Scratch, first: int, second: int, apart: Vector, way: float
+    bodies: Bodies, cores: Cores, scratch: Scratch, members: tuple[int, int], shapes: tuple[int, int], apart: Vector,
+    way: float,
 ) -> bool:  # fmt: skip
-    """Tell whether two bodies, as they are turned now, are less than a way apart [m]; apart: from centroid to centroid.
+    """Tell whether shapes of two bodies, as they are turned now, are less than a way apart [m].
 
-    Writes to scratch.
+    apart: from one body's centre of mass to the other's. Writes to scratch.
     """
-    shapes = (bodies.shape[first], bodies.shape[second])
     farthest = cores.rounding[shapes[0]] + cores.rounding[shapes[1]] + way
     found, _, _ = find_closest_points(
-        cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, (first, second), apart,
-        farthest,
-    )  # fmt: skip
+        cores, scratch.simplex, scratch.turned, scratch.relative, shapes, bodies.rotation, members, apart, farthest
+    )
     return found != APART
 
 
 @large_kernel
 def mark_near(
-    bodies: Bodies, cores: Cores, scratch: Scratch, first: Integers, second: Integers, skin: float, near: Flags
-) -> None:
-    """Note which pairs of bodies are less than the skin apart: fewer than half of those whose bounding spheres meet.
+    bodies: Bodies, cores: Cores, scratch: Scratch, first: Integers, second: Integers, parts: Integers, skin: float,
+    near: Flags,
+) -> None:  # fmt: skip
+    """Note which pairs are less than the skin apart: fewer than half of those whose bounding spheres meet.
 
-    Writes to scratch and near.
+    first and second are bodies, parts [pair_count, 2] those of either. Writes to scratch and near.
     """
     for pair in range(len(first)):
-        apart = way_between(bodies, first[pair], second[pair])
-        near[pair] = are_near(bodies, cores, scratch, first[pair], second[pair], apart, skin)
+        members, shapes = (first[pair], second[pair]), (bodies.shape[parts[pair, 0]], bodies.shape[parts[pair, 1]])
+        apart = way_between(bodies, members[0], members[1])
+        near[pair] = are_near(bodies, cores, scratch, members, shapes, apart, skin)
 
 
-def neighbouring_pairs(
-    bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, skin: float
-) -> tuple[Integers, Integers]:
-    """Return first and second of all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
+class Neighbours(NamedTuple):
+    """Pairs of parts that are near each other, see Pairs."""
+
+    first: Integers  # [pair_count]
+    second: Integers  # [pair_count]
+    first_part: Integers  # [pair_count]
+    second_part: Integers  # [pair_count]
+
+
+def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, skin: float) -> Neighbours:
+    """Return all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
     position = folded(bodies.position, bodies.period)
     low = position[:, 0] - reach
@@ -82,21 +95,39 @@ def neighbouring_pairs(
         if count <= capacity:
             break
         capacity = count
-    near = np.zeros(count, dtype=np.bool_)
-    mark_near(bodies, cores, scratch, first[:count], second[:count], skin, near)
+    met = pairs_of_parts(bodies.part_start, first[:count], second[:count])
+    near = np.zeros(len(met.first), dtype=np.bool_)
+    parts = np.column_stack([met.first_part, met.second_part])
+    mark_near(bodies, cores, scratch, met.first, met.second, parts, skin, near)
     gap = planes.normal @ bodies.position.T - planes.offset[:, None] - reach
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
-    first = np.concatenate([first[:count][near], body])
-    second = np.concatenate([second[:count][near], -1 - plane])
-    sorting = np.lexsort((second, first))
-    return first[sorting], second[sorting]
+    on_plane = pairs_of_parts(bodies.part_start, body, -1 - plane)
+    found = [np.concatenate([one[near], other]) for one, other in zip(met, on_plane, strict=True)]
+    sorting = np.lexsort(found[::-1])
+    return Neighbours(*(column[sorting] for column in found))
 
 
-def new_pairs(first: Integers, second: Integers) -> Pairs:
+def pairs_of_parts(part_start: Integers, first: Integers, second: Integers) -> Neighbours:
+    """Return the pairs of all parts of first bodies with all of second ones, or with planes (second below 0)."""
+    counts = np.diff(part_start)
+    if (counts == 1).all():
+        return Neighbours(first, second, first, second)
+    theirs = np.where(second < 0, 1, counts[second])
+    begin = np.where(second < 0, second, part_start[second])
+    each = counts[first] * theirs
+    place = np.arange(each.sum()) - np.repeat(np.cumsum(each) - each, each)
+    number, other = np.divmod(place, np.repeat(theirs, each))
+    return Neighbours(
+        np.repeat(first, each), np.repeat(second, each), np.repeat(part_start[first], each) + number,
+        np.repeat(begin, each) + other,
+    )  # fmt: skip
+
+
+def new_pairs(between: Neighbours) -> Pairs:
     """Return pairs without any history."""
-    n = len(first)
+    n = len(between.first)
     return Pairs(
-        first=first, second=second, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
+        *between, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
         point=np.zeros((n, 3)), normal_force=np.zeros(n), elastic_force=np.zeros(n), cohesion=np.zeros(n),
         spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
         twist=np.zeros(n), twist_stiffness=np.zeros(n), roll=np.zeros((n, 3)), roll_stiffness=np.zeros(n),
@@ -106,22 +137,29 @@ def new_pairs(first: Integers, second: Integers) -> Pairs:
     )  # fmt: skip
 
 
+def free_slots(count: int) -> Neighbours:
+    """Return so many slots for pairs, with nothing in them (first = -1)."""
+    none, nothing = np.full(count, -1), np.zeros(count, dtype=np.int64)
+    return Neighbours(none, nothing, none.copy(), nothing.copy())
+
+
 def no_pairs() -> Pairs:
     """Return the pairs of a world in which nothing has met."""
-    return new_pairs(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    return new_pairs(free_slots(0))
 
 
-def carry_over(old: Pairs, first: Integers, second: Integers) -> Pairs:
+def carry_over(old: Pairs, between: Neighbours) -> Pairs:
     """Return pairs for a new list that carry on the history of those already in the old one.
 
     No contact is lost: what touches lies deep inside the reach of the list.
     """
-    new = new_pairs(first, second)
-    span = 1 + max(int(first.max(initial=0)), int(old.first.max(initial=0)), int(np.abs(second).max(initial=0)),
-                   int(np.abs(old.second).max(initial=0)))  # fmt: skip
-    key_old, key_new = old.first * (2 * span) + old.second, first * (2 * span) + second
+    new = new_pairs(between)
+    # Of parts there are at least as many as of bodies, and each is of one body.
+    ours, theirs = (old.first_part, old.second_part), (between.first_part, between.second_part)
+    span = 1 + max(int(np.abs(parts).max(initial=0)) for parts in (*ours, *theirs))
+    key_old, key_new = (first * (2 * span) + second for first, second in (ours, theirs))
     _, here, there = np.intersect1d(key_new, key_old, assume_unique=True, return_indices=True)
-    for name in Pairs._fields[2:-1]:
+    for name in Pairs._fields[len(between) : -1]:
         getattr(new, name)[here] = getattr(old, name)[there]
     return with_overflow_rows(new, old.overflow, old.overflow.shape[1])
 

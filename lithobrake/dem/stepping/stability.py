@@ -93,7 +93,7 @@ def pair_rates(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: La
     if second >= 0:
         theirs = inverse_masses(bodies, second, arm_to(bodies, second, point), normal)
         inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
-    law = law_between(bodies, planes, laws, first, second)
+    law = law_between(pair, bodies, planes, pairs, laws)
     stiffness = contact_stiffness(pair, pairs, inverse_mass, ours[2] + theirs[2], law)
     return ContactRates(stiffness, ours, theirs)
 

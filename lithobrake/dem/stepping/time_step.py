@@ -110,7 +110,11 @@ def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict
     """
     if not speed > 0.0:
         raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
-    parts = [(b.material, b.smallest_mass_at_contact, b.shape.contact_radius) for b in bodies]
+    parts = [
+        (part.material, mass, part.shape.contact_radius)
+        for body in bodies
+        for part, mass in zip(body.parts, body.smallest_masses_at_contact, strict=True)
+    ]
     made_of = [plane.material for plane in planes]
     rules = options["shear_modulus_rule"], options["pair_rule"]
     duration = shortest_contact_duration(parts, made_of, speed, *rules)
@@ -126,7 +130,7 @@ def meeting_speed_bound(
 
     position, velocity, spin [body_count, 3] are those of the bodies.
     """
-    reach = np.array([body.shape.bounding_radius for body in bodies])
+    reach = np.array([body.bounding_radius for body in bodies])
     speed = np.linalg.norm(velocity, axis=1) + np.linalg.norm(spin, axis=1) * reach
     down = gravity / max(float(np.linalg.norm(gravity)), np.finfo(float).tiny)
     points = np.vstack(

@@ -56,6 +56,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "bed": bed_dependencies(study),
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
+        **_part_dependencies(study),
         "stepping": study.contact.stepping,
         "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
@@ -65,11 +66,20 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
     }
 
 
+def _part_dependencies(study: Study) -> dict[str, Any]:
+    """What a touchdown depends on of the lander's parts, where it has any; a mesh counts with its content."""
+    parts = {name: part.model_dump() for name, part in study.lander.part.items()}
+    for part in parts.values():
+        part["file"] = None if part["file"] is None else content_hash(Path(part["file"]))
+    return {"parts": parts} if parts else {}
+
+
 def solver_dependencies(study: Study) -> dict[str, Any]:
     """What a touchdown by a program depends on beside its values: the program's files, and what it is told."""
     setting = solver_setting(study)
     # A mesh counts with its content, wherever it lies.
     setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
+    setting |= _part_dependencies(study)
     identity = [study.function] if study.function else solver_command(study, Path()).identity()
     return {"solver": identity, "setting": setting, "version": __version__}
 
@@ -79,6 +89,7 @@ def solver_setting(study: Study) -> dict[str, Any]:
     return {
         "bed": bed_setting(study),
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "file", "unit"}),
+        **({"parts": study.lander.model_dump(include={"part"})["part"]} if study.lander.part else {}),
         "contact": study.contact.model_dump(),
         "time_limit": study.landing.time_limit,
     }

@@ -15,12 +15,8 @@ if TYPE_CHECKING:
 
 
 def lander_inertia(study: Study, row: Mapping[str, float]) -> np.ndarray:
-    """Inertia of the lander of a journey about its centroid [kg m2], [3, 3]."""
-    body = lander(study, row)
-    if body.inertia is not None:
-        return body.inertia
-    whole: np.ndarray = body.shape.inertia_per_density * (body.mass / body.shape.volume)
-    return whole
+    """Inertia of the lander of a journey about its centre of mass [kg m2], [3, 3]."""
+    return lander(study, row).body.inertia
 
 
 def turned_in_flight(

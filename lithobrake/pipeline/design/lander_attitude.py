@@ -18,13 +18,12 @@ PREFIX = "attitude."
 def attitude_terms(study: Study) -> AttitudeTerms | None:
     """The terms of the lander's attitude; None for a ball."""
     section = study.lander
-    if section.shape == "sphere":
+    if section.is_ball:
         return None
-    if section.edges is not None:
+    if section.is_plain_box:
         moments = None if section.inertia is None else np.array(section.inertia)
         return AttitudeTerms.of_box(np.array(section.edges), moments)
-    body = lander(study, medians(study))
-    return AttitudeTerms.of_body(body.shape.inertia_per_density if body.inertia is None else body.inertia)
+    return AttitudeTerms.of_body(lander(study, medians(study)).body.inertia)
 
 
 def attitude_inputs_of(terms: AttitudeTerms, inputs: Mapping[str, np.ndarray]) -> dict[str, Array]:

@@ -55,10 +55,10 @@ class JourneyModel:
     @property
     def is_ball(self) -> bool:
         """Whether the lander has no sides."""
-        return self.design.study.lander.shape == "sphere"
+        return self.design.study.lander.is_ball
 
     def inertia(self, row: Mapping[str, float]) -> np.ndarray:
-        """Inertia of the lander of a journey about its centroid [kg m2], [3, 3]."""
+        """Inertia of the lander of a journey about its centre of mass [kg m2], [3, 3]."""
         return lander_inertia(self.design.study, row)
 
     def place(self, x: float, y: float, row: Mapping[str, float]) -> tuple[float, float]:

@@ -149,5 +149,8 @@ class ExpectedSoil:
         for grain in self.grains:
             world.add_body(grain, rock, (0.0, 0.0, 0.0))
         if lander is not None:
-            world.add_body(lander.shape, lander.material, (0.0, 0.0, 0.0), mass=lander.mass, inertia=lander.inertia)
+            world.add_body(
+                lander.shape, lander.own_material, (0.0, 0.0, 0.0), mass=lander.mass, inertia=lander.inertia,
+                parts=lander.parts, centre_of_mass=lander.centre_of_mass,
+            )  # fmt: skip
         return world.shortest_contact(speed)

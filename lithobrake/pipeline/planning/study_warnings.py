@@ -1,6 +1,7 @@
 """What a user should know of a study before it runs: nothing here is an error, and all of it may be meant."""
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,7 +74,7 @@ def _sides(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
 
 def _rim(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
     """A lander that comes down over the edge of the bed."""
-    reach, region = soil.landings[0][0].shape.bounding_radius, design.region
+    reach, region = soil.landings[0][0].reach, design.region
     for number, (axis, name, width) in enumerate(zip("xy", PLACE, soil.recipe.width, strict=True)):
         low, high = region[number] if region else _reach(design.study.touchdown_values()[name])
         room = 0.5 * width - reach
@@ -111,13 +112,14 @@ def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
 
 
 def _never_count(study: Study) -> Iterator[str]:
-    """Properties of the lander that no contact takes."""
+    """Properties of the lander and its parts that no contact takes."""
     values = study.touchdown_values() if study.contact.pair_rule == "smaller" else {}
-    for name in SHARED:
-        own, rock = values.get(f"lander.{name}"), values.get(f"grain.{name}")
+    tables = ("lander", *(f"lander.part.{part}" for part in study.lander.part))
+    for table, name in product(tables, SHARED):
+        own, rock = values.get(f"{table}.{name}"), values.get(f"grain.{name}")
         if own is not None and rock is not None and own != rock and _reach(own)[0] >= _reach(rock)[1]:
             yield (
-                f'lander.{name} never counts: contact.pair_rule = "smaller" takes grain.{name}, which is always less; '
+                f'{table}.{name} never counts: contact.pair_rule = "smaller" takes grain.{name}, which is always less; '
                 'take "mean" or "geometric", or leave it out.'
             )
 
@@ -231,7 +233,7 @@ def expected_loss(landings: "Sequence[tuple[Lander, Landing]]", width: float) ->
     """
     angles, lost = np.array(MEASURED).T
     incidence = np.array([np.degrees(one.incidence) for _, one in landings])
-    room = np.array([0.5 * width / lander.shape.bounding_radius for lander, _ in landings])
+    room = np.array([0.5 * width / lander.reach for lander, _ in landings])
     shares = np.interp(incidence, angles, lost)
     steep = np.minimum(shares, np.interp(STEEP, angles, lost))
     return float(np.mean(steep + (shares - steep) * np.minimum(1.0, MEASURED_ROOM / room)))

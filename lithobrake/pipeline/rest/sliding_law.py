@@ -19,9 +19,9 @@ GRAINS = 1000
 
 
 def has_measured_size(design: DrawnDesign) -> bool:
-    """Whether the study's lander is one that the law was measured for: no ball, and about as large as a grain."""
+    """Whether the study's lander is one that the law was measured for: one hull, no ball, about as large as a grain."""
     study = design.study
-    if not study.has_soil or study.lander.shape == "sphere":
+    if not study.has_soil or study.lander.shape == "sphere" or study.lander.part:
         return False
     sizes = grain_sizes(study).draw((np.arange(GRAINS) + 0.5) / GRAINS)
     least, largest = EDGES

@@ -1,6 +1,7 @@
 """The speed and spin that no lander leaves with: what energy allows."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -86,7 +87,7 @@ def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     """
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
-    has_inertia, is_ball = study.lander.inertia is not None, "lander.diameter" in known
+    has_inertia, is_sphere = study.lander.inertia is not None, _is_sphere(study)
     names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
         "height": bed_height,
@@ -95,7 +96,7 @@ def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
         "smallest": smallest,
         "largest": largest,
         "mass_power": -1.0 if has_inertia else 0.0,
-        "diameter_power": 2.0 if is_ball and not has_inertia else 0.0,
+        "diameter_power": 2.0 if is_sphere and not has_inertia else 0.0,
         **{name: float(known[name]) for name in names if name in known},
     }
 
@@ -129,18 +130,26 @@ def height_of_beds(study: Study, folder: StudyFolder) -> float:
     return max((float(stored_bed(folder / name).surface_height) for name in bed_files(study)), default=0.0)
 
 
+def _is_sphere(study: Study) -> bool:
+    """Whether the lander is a sphere alone: the one shape whose size may be uncertain."""
+    return study.lander.diameter is not None and not study.lander.part
+
+
 def gyrations(
     design: DrawnDesign, values: "Mapping[str, NDArray[np.float64]]"
 ) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
     """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""
-    inertia = design.study.lander.inertia
-    if inertia is not None:
-        return min(inertia) / values["lander.mass"], max(inertia) / values["lander.mass"]
-    # A ball is the one shape whose size may be uncertain.
-    of_ball = values.get("lander.diameter")
-    if of_ball is not None:
-        return 0.1 * of_ball**2, 0.1 * of_ball**2
+    section, mass = design.study.lander, values["lander.mass"]
+    if section.inertia is None and _is_sphere(design.study):
+        return 0.1 * values["lander.diameter"] ** 2, 0.1 * values["lander.diameter"] ** 2
     body = lander(design.study, design.medians)
-    own = np.linalg.eigvalsh(body.shape.inertia_per_density) / body.shape.volume
-    count = len(values["lander.mass"])
-    return np.full(count, own[0]), np.full(count, own[-1])
+    if section.inertia is not None:
+        own = np.linalg.eigvalsh(body.body.inertia)
+        return own[0] / mass, own[-1] / mass
+    if not body.parts:
+        own = np.linalg.eigvalsh(body.shape.inertia_per_density) / body.shape.volume
+        return np.full(len(mass), own[0]), np.full(len(mass), own[-1])
+    # What is uncertain of the mass is that of the main shape.
+    masses, place = np.unique(mass, return_inverse=True)
+    moments = np.array([np.linalg.eigvalsh(replace(body, mass=float(one)).body.inertia) / one for one in masses])
+    return moments[place, 0], moments[place, -1]

@@ -28,7 +28,9 @@ LARGE = 1.5
 
 @dataclass(frozen=True)
 class Hull:
-    """A convex body: vertices [m], shape [vertex, 3], centroid at the origin; faces, shape [face, 3]; its colour."""
+    """A body of one convex part or more: vertices [m], shape [vertex, 3], about the point that its position is of;
+    faces, shape [face, 3], counter-clockwise from outside; its colour.
+    """
 
     vertices: Array
     faces: Triangles
@@ -78,10 +80,6 @@ def world_triangles(bodies: Sequence[Hull], position: Array, orientation: Array)
     pieces, owners = [], []
     for index, body in enumerate(bodies):
         corners = body.vertices[body.faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        # The centroid is inside, so a normal that points to it marks a face wound the other way.
-        inward = np.einsum("fk,fk->f", normals, corners.mean(axis=1)) < 0
-        corners = np.where(inward[:, None, None], corners[:, ::-1], corners)
         if large[index]:
             corners = subdivide(corners, longest)
         pieces.append(corners @ turns[index].T + position[index])
@@ -109,7 +107,8 @@ def paint(
     order = seen[np.argsort(-np.linalg.norm(to_eye[seen], axis=1), kind="stable")]
     triangles, owners, normals = triangles[order], owners[order], normals[order]
 
-    radius = np.array([0.85 * np.linalg.norm(body.vertices, axis=1).mean() for body in bodies])
+    # Of a lander with booms most corners are near its middle: the median leaves the tips out of its shadow.
+    radius = np.array([0.85 * np.median(np.linalg.norm(body.vertices, axis=1)) for body in bodies])
     light = light_on_faces(
         triangles.mean(axis=1), normals, owners, position, radius, camera.azimuth_deg, surface_height
     )
@@ -169,7 +168,7 @@ def draw_box(axes: Axes, width: tuple[float, float] | None, height: float, camer
 
 @dataclass(frozen=True)
 class Scene:
-    """Bodies as they are drawn, each about its centroid, and how they moved.
+    """Bodies as they are drawn, and how they moved.
 
     box: width of the box that they lie in [m], None on ground that repeats.
     """
@@ -192,21 +191,8 @@ def scene(moving: MovingBodies, has_lander: bool) -> Scene:
     moving = with_images(moving)
     last = len(moving.vertices) - 1
     bodies = tuple(
-        _body(vertices, faces, LANDER if has_lander and number == last else GRAIN)
+        Hull(vertices, faces, LANDER if has_lander and number == last else GRAIN)
         for number, (vertices, faces) in enumerate(zip(moving.vertices, moving.faces, strict=True))
     )
     along, across = moving.attributes.get("width", (0.0, 0.0))
     return Scene(bodies, moving, None if moving.attributes.get("sides") == "periodic" else (along, across))
-
-
-def _body(vertices: Array, faces: NDArray[np.int64], colour: str) -> Hull:
-    """A body about its centroid, which is what its position in the file means."""
-    corners = vertices[faces]
-    middle = vertices.mean(axis=0)
-    # Pyramids from an inner point to the faces; signs do not matter for a convex body seen from inside.
-    volumes = np.abs(
-        np.einsum("fk,fk->f", corners[:, 0] - middle, np.cross(corners[:, 1] - middle, corners[:, 2] - middle))
-    )
-    centres = (corners.sum(axis=1) + middle) / 4
-    centroid = np.average(centres, axis=0, weights=volumes)
-    return Hull(vertices - centroid, faces, colour)

@@ -1,11 +1,12 @@
 """The sentences of the page, built from the numbers of the files. They are plain text."""
 
 import math
+import re
 from collections.abc import Mapping
 
 from lithobrake.report.page_data import DRAWN_COUNT, PageData, PaperPage, SampledPage
 from lithobrake.report.words.chance import follows_gaussian
-from lithobrake.report.words.labels import PAPER_OUTPUTS, output
+from lithobrake.report.words.labels import PAPER_OUTPUTS, PART_KEY, output
 from lithobrake.report.words.numbers import fixed, number, q2_words
 from lithobrake.results.expansions import DesignCounts, ExpansionResults, OutputErrors
 from lithobrake.results.journey_results import JourneyRest
@@ -25,6 +26,8 @@ POINT_WORDS = {
 def input_words(name: str) -> str:
     """An input in words, without unit: "restitution of the grains"."""
     section, _, field = name.partition(".")
+    if part := re.fullmatch(PART_KEY, name):
+        return f"{FIELD_WORDS.get(part['key'], part['key'].replace('_', ' '))} of {part['part']}"
     words = FIELD_WORDS.get(
         field, field.removeprefix("inputs.").removesuffix("_deg").replace("_", " ").replace(".", " ")
     )

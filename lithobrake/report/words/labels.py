@@ -18,6 +18,8 @@ SYMBOLS = {
 }
 # The three outputs of [Landings-PCE], in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
+# An input of a part of the lander.
+PART_KEY = r"lander\.part\.(?P<part>[\w-]+)\.(?P<key>\w+)"
 INPUT_LABELS = {
     "grain.young_modulus": "Young's modulus $E$, grains",
     "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
@@ -93,6 +95,9 @@ def output(name: str) -> Output:
 
 def input_label(name: str, unit: str = "") -> str:
     """How a design input is shown, with its unit if it has one; without an entry it keeps its dotted key in words."""
+    if part := re.fullmatch(PART_KEY, name):
+        own = INPUT_LABELS.get(f"lander.{part['key']}", part["key"].replace("_", " "))
+        return f"{own.removesuffix(', lander')}, {part['part']}"
     words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
     label = INPUT_LABELS.get(name, words.removesuffix(" deg"))
     shown = re.sub(r"(\d)", r"$^\1$", unit)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from scipy.spatial import ConvexHull
 
+from lithobrake.dem import ConvexHull
 from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.report.figures.hulls import Camera, Hull, frame_axes, paint, subdivide
 from lithobrake.report.figures.shading import SUN, direction
@@ -15,7 +15,8 @@ STRAIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])
 
 
 def cube(colour: str = "#808080") -> Hull:
-    return Hull(CUBE, ConvexHull(CUBE).simplices, colour)
+    hull = ConvexHull(CUBE)
+    return Hull(hull.vertices, hull.triangles, colour)
 
 
 def test_camera_from_the_front_sees_x_to_the_right_and_z_up() -> None:
