@@ -10,7 +10,6 @@ Numbers of the landers at rest weigh a branch by its weight times its share at r
 within branches.
 """
 
-import hashlib
 import sys
 import time
 from pathlib import Path
@@ -18,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from branches import LANDERS, SCENARIOS, branches
-from forecast import FIRST, HERE, KINDS, TABLE
+from forecast import FIRST, HERE, KINDS, TABLE, digest, package_files
 
 from lithobrake.analysis.highest_density import highest_density
 from lithobrake.study.touchdown_model import touchdown_version
@@ -260,25 +259,16 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
     }
 
 
-def digest(*paths: Path) -> str:
-    """SHA-256 of files one after the other."""
-    found = hashlib.sha256()
-    for path in paths:
-        found.update(path.read_bytes())
-    return found.hexdigest()
-
-
 def main() -> None:
     """Write the forecast."""
     options = command_line(__doc__, out=HERE).parse_args()
     rows = read_rows(options.out / TABLE, KINDS)
-    code = sorted(Path(__file__).parents[2].joinpath("lithobrake").rglob("*.py"))
     document = {
         "made": time.strftime("%Y-%m-%d"),
         "sha256": {
             "studies": {name: digest(SCENARIOS / f"{name}.toml") for name in LANDERS},
             "branches": digest(HERE / "branches.py", HERE / "descent.py", HERE / "grounds.py"),
-            "code": digest(*code), "results": digest(options.out / TABLE),
+            "code": digest(*package_files()), "results": digest(options.out / TABLE),
         },
         "touchdown_version": touchdown_version(),
         "bins": {name: list(edges) for name, edges in BINS.items()} | {

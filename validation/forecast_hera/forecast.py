@@ -8,6 +8,7 @@ ends, and runs.json. Then answers.py gives forecast.json, and write_page.py docs
 """
 
 import csv
+import hashlib
 import io
 import sys
 import time
@@ -84,6 +85,19 @@ def speed_ratio(touchdowns: Table, place: int | None) -> float:
     return float(touchdowns["speed_out"][place] / touchdowns["impact.speed"][place])
 
 
+def digest(*paths: Path) -> str:
+    """SHA-256 of files one after the other."""
+    found = hashlib.sha256()
+    for path in paths:
+        found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def package_files() -> list[Path]:
+    """All that makes a study, in the order of their paths."""
+    return sorted(Path(lithobrake.__file__).parent.rglob("*.py"))
+
+
 def add_rows(path: Path, rows: list[Row]) -> None:
     """Add the rows of a study to a CSV table on disk, all or none."""
     text = io.StringIO()
@@ -111,7 +125,8 @@ def main() -> None:
             ends = ", ".join(f"{end} {one['count']}" for end, one in study.summary["results"]["ends"].items())
             print(f"{lander}, {branch.name}, {ground}: {ends}", flush=True)
     command = "validation/forecast_hera/forecast.py --work FOLDER"
-    write_document(options.out / "runs.json", origin(command) | {"wall_s": round(time.perf_counter() - started)})
+    made = {"wall_s": round(time.perf_counter() - started), "code_sha256": digest(*package_files())}
+    write_document(options.out / "runs.json", origin(command) | made)
 
 
 if __name__ == "__main__":
