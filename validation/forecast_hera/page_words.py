@@ -76,9 +76,9 @@ counts.
 LEFT_OUT = """## What is left out
 
 - The booms of Juventas (four of 1.5 m) and the wings of both: the lander is its body. A boom may touch first.
-- The centre of mass lies in the middle of the box, whose mass is spread evenly.
-- Grains are stones of 0.15 to 0.4 m, and softer than rock, so that steps are long. Finer grains between them, if there
-  are any, take more energy from a lander.
+- The mass of a lander is spread evenly over its box, but for the place of the centre of mass.
+- Grains are stones of 0.18 to 0.25 m, and softer than rock, so that steps are long. Finer grains between them, if there
+  are any, take more energy from a lander; a stone larger than the lander gives more back.
 - Dimorphos is a smooth ellipsoid: no crater, no large boulder, no slope at the scale of metres.
 - Didymos' orbit is a circle, and neither the lander nor its thrusters act after the first contact.
 - The dates of the landings are not known; nothing in the forecast depends on them.
