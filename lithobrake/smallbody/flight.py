@@ -59,7 +59,7 @@ def fly(
     progress             called with the finished fraction of the flights, from this thread
 
     A body that does not turn uniformly (Body.rotation) turns as its history has it from start_time on; inertial axes
-    are then those at time 0 of the frame that its attitudes are against, and every flight has its own spin period.
+    are then those at time 0 of the frame that its attitudes are against, and spin_period is that of the body.
 
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
