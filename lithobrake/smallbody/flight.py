@@ -79,11 +79,7 @@ def fly(
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
     dynamics = _dynamics(body, masses, periods, tolerance)
     refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
-    if frame == "inertial":
-        starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
-        fixed = np.concatenate(out_of_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
-    else:
-        fixed, starts = starts, np.concatenate(into_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
+    fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
     sources, ends, turning = _sources(body, gravity), FlightEnds.of_count(count), turning_of(body.rotation)
 
@@ -173,6 +169,16 @@ def _one_each(
     if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
     return np.array(np.broadcast_to(values, count))
+
+
+def _in_both_frames(
+    body: Body, starts: NDArray[np.float64], frame: str, spin_rate: NDArray[np.float64], begin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Start states [count, 6] body-fixed, and in the frame that turns uniformly."""
+    if frame == "inertial":
+        starts = _into_turning_frame(starts, spin_rate, begin)
+        return np.concatenate(out_of_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1), starts
+    return starts, np.concatenate(into_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
 
 
 def _into_turning_frame(
