@@ -59,7 +59,7 @@ def fly(
     progress             called with the finished fraction of the flights, from this thread
 
     A body that does not turn uniformly (Body.rotation) turns as its history has it from start_time on; inertial axes
-    are then those at time 0 of the frame that its attitudes are against, and every flight has its own spin period.
+    are then those at time 0 of the frame that its attitudes are against, and spin_period is that of the body.
 
     A start on the surface (within a millionth of the radius, at most 1 mm) is no impact; the first meeting with the
     ground after the flight has left it is. A flight that starts on the surface and moves into it at once has its impact
@@ -79,11 +79,7 @@ def fly(
     periods = _one_each("spin_period", body.spin_period if spin_period is None else spin_period, count, infinite=True)
     dynamics = _dynamics(body, masses, periods, tolerance)
     refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
-    if frame == "inertial":
-        starts = _into_turning_frame(starts, dynamics.spin_rate, begin)
-        fixed = np.concatenate(out_of_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
-    else:
-        fixed, starts = starts, np.concatenate(into_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
+    fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
     sources, ends, turning = _sources(body, gravity), FlightEnds.of_count(count), turning_of(body.rotation)
 
@@ -173,6 +169,16 @@ def _one_each(
     if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
     return np.array(np.broadcast_to(values, count))
+
+
+def _in_both_frames(
+    body: Body, starts: NDArray[np.float64], frame: str, spin_rate: NDArray[np.float64], begin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Start states [count, 6] body-fixed, and in the frame that turns uniformly."""
+    if frame == "inertial":
+        starts = _into_turning_frame(starts, spin_rate, begin)
+        return np.concatenate(out_of_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1), starts
+    return starts, np.concatenate(into_frame(body.rotation, starts[:, :3], starts[:, 3:], begin), axis=1)
 
 
 def _into_turning_frame(

@@ -1,5 +1,6 @@
 """Journeys on a body that librates or tumbles: when they begin, where they go, and what goes with it."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,16 +11,18 @@ from scipy import stats
 from scipy.spatial.transform import Rotation
 
 import lithobrake
+from lithobrake.export import Push, export_study, write_push
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.pipeline.design.local_ground import felt
+from lithobrake.pipeline.journeys.stages import journey_dependencies
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.smallbody import Launch, fly, hop, rotation_history, tumble
+from lithobrake.smallbody import Flights, Launch, fly, hop, rotation_history, tumble
 from lithobrake.study import StudyError
 from lithobrake.study.source import StudySource
 
-from .bouncing_lander import bounce, journey_tables
+from .bouncing_lander import journey_tables
 from .test_journeys import HARD, TABLES, hard_ground, hard_velocity, rows
 from .test_local_ground import two_balls
 
@@ -30,13 +33,22 @@ ROTATION = {"yaw_deg": 30.0, "roll_deg": 60.0, "days": 2.0}
 def turning(**changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study on hard ground whose body tumbles."""
     given = TABLES | {"site": {"body": "dimorphos", "rotation": ROTATION}}
+    given["journey"] = TABLES["journey"] | {"emulated_count": 30}
     return given | {name: given.get(name, {}) | keys for name, keys in changes.items()}
+
+
+def turning_cubesat(**changes: dict[str, Any]) -> dict[str, Any]:
+    """Those of a study of a CubeSat; of what it sees of the sky none."""
+    given = journey_tables(**changes)
+    del given["sky"]
+    given["site"] |= {"body": "dimorphos", "rotation": ROTATION}
+    return given
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("turning") / "out"
-    lithobrake.run(turning(), folder, workers=1, model=hard_ground, report=False)
+    lithobrake.run(turning(), folder, workers=1, model=hard_ground)
     return folder
 
 
@@ -76,12 +88,17 @@ def test_flights_are_noted_with_the_time_at_which_they_may_be_flown_again(made: 
     assert between == pytest.approx(lasting[following], abs=1e-6)
 
 
-def test_the_same_seed_gives_the_same_journeys_and_another_start_others(made: Path, tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_journeys(made: Path, tmp_path: Path) -> None:
     lithobrake.run(turning(), tmp_path / "again", workers=1, model=hard_ground, report=False)
-    assert (tmp_path / "again" / "journeys.csv").read_bytes() == (made / "journeys.csv").read_bytes()
-    other = turning(site={"rotation": ROTATION | {"yaw_deg": -30.0}})
-    lithobrake.run(other, made.parent / "other", workers=1, model=hard_ground, report=False)
-    assert (made.parent / "other" / "journeys.csv").read_bytes() != (made / "journeys.csv").read_bytes()
+    for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (made / name).read_bytes()
+
+
+def test_another_start_makes_the_journeys_of_before_outdated() -> None:
+    others = ROTATION | {"yaw_deg": -30.0}, ROTATION | {"days": 3.0}, ROTATION | {"spin": [0.0, 1e-4, 0.0]}
+    studies = [StudySource.of_tables(turning(site={"rotation": one})).study for one in (ROTATION, *others)]
+    kept = [json.dumps(journey_dependencies(study), default=str) for study in studies]
+    assert len(set(kept)) == 4
 
 
 def test_a_time_of_arrival_may_be_given() -> None:
@@ -90,30 +107,48 @@ def test_a_time_of_arrival_may_be_given() -> None:
     assert (site.clock(site.sampled(5)) == 5000.0).all()
 
 
-def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:
+def released(**delivery: Any) -> Flights:
+    """Flights of six landers of one release."""
     release = {"position": [5.0, 150.0, 10.0], "velocity": [0.0, -0.03, 0.0]}
-    delivery = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed", "release": release}
-    given = journey_tables(journey={"count": 6}) | {"delivery": delivery}
-    given["site"] = given.get("site", {}) | {"body": "dimorphos", "rotation": ROTATION}
+    given = turning_cubesat(journey={"count": 6}, site={"pole_right_ascension_deg": 60.0})
+    given["site"] |= {"pole_declination_deg": -71.0, "meridian_deg": 25.0}
+    given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "release": release, **delivery}
     study = with_site_gravity(StudySource.of_tables(given).study)
-    flights = Descents.flown(study, 0, np.full((6, 6), 0.5)).flights
+    return Descents.flown(study, 0, np.full((6, 6), 0.5)).flights
+
+
+def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:
+    flights = released(frame="body_fixed")
     here = flights.body.rotation.at(flights.start.time)
     place, rate = here.states_into_frame(flights.start.position, flights.start.velocity)
-    assert place == pytest.approx(np.tile(release["position"], (6, 1)))
-    assert rate == pytest.approx(np.tile(release["velocity"], (6, 1)), abs=1e-12)
+    assert place == pytest.approx(np.tile([5.0, 150.0, 10.0], (6, 1)))
+    assert rate == pytest.approx(np.tile([0.0, -0.03, 0.0], (6, 1)), abs=1e-12)
     assert len(set(flights.start.time.tolist())) == 6
     assert np.ptp(flights.time[flights.facet >= 0]) > 60.0
 
 
-def test_a_whole_study_with_released_and_emulated_landers_ends(tmp_path: Path) -> None:
-    given = journey_tables(journey={"count": 24, "emulated_count": 50})
-    given["site"] = given.get("site", {}) | {"body": "dimorphos", "rotation": ROTATION}
-    lithobrake.run(given, tmp_path / "out", workers=1, model=bounce)
-    results = lithobrake.open_study(tmp_path / "out")
-    assert results.journeys.row_count == 24
-    assert (tmp_path / "out" / "report.html").is_file()
+def test_states_of_icrf_go_through_the_pole_of_the_orbit_into_the_axes_of_the_body() -> None:
+    flights = released(frame="icrf", epoch="2027-04-20T12:00:00")
+    here = flights.body.rotation.at(flights.start.time)
+    place, rate = here.states_into_frame(flights.start.position, flights.start.velocity)
+    # At the epoch the axes of the orbit are these three turns from ICRF ([Archinal-2018]).
+    turn = Rotation.from_euler("ZXZ", [60.0 + 90.0, 90.0 + 71.0, 25.0], degrees=True).inv()
+    fixed = turn.apply([5.0, 150.0, 10.0])
+    spin = np.array([0.0, 0.0, flights.body.spin_rate])
+    assert place == pytest.approx(np.tile(fixed, (6, 1)))
+    assert rate == pytest.approx(np.tile(turn.apply([0.0, -0.03, 0.0]) - np.cross(spin, fixed), (6, 1)), abs=1e-12)
+
+
+def test_the_study_has_its_page_and_its_flights_are_not_passed_on(made: Path, tmp_path: Path) -> None:
+    results = lithobrake.open_study(made)
+    assert len((made / "emulated.csv").read_text().splitlines()) == 31
+    assert (made / "report" / "index.html").is_file()
+    for kind in ("oem", "facets"):
+        with pytest.raises(ValueError, match="no place for an attitude over time"):
+            export_study(results, tmp_path, [kind])
+    export_study(results, tmp_path, ["geojson"])
     with pytest.raises(ValueError, match="no place for an attitude over time"):
-        lithobrake.export.export_study(results, tmp_path / "export", ["oem"])
+        write_push(results, tmp_path / "push.csv", Push(0.04, 45.0))
 
 
 def test_what_is_felt_on_a_body_that_tumbles_is_how_a_slow_flight_begins() -> None:
