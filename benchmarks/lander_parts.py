@@ -5,7 +5,7 @@
 The box and the grains are those of scenarios/mission.toml, its soil at the medians. The bed is poured once into the
 file; as booms reach over several of its periods, 4 x 4 copies of it side by side are the ground of the others: ground
 that repeats fits itself. Each landing is followed for a minute; a row is written as it comes, and the picture is of
-the last landing with booms.
+one landing with booms.
 """
 
 import csv
@@ -28,6 +28,7 @@ SKIN = replace(ROCK, friction=0.45, density=1450.0)
 BOX, MASS, DIAMETER, WIDTH, COPIES = (0.366, 0.226, 0.1), 12.0, 0.15, (0.96, 0.96), 4
 GRAVITY, SPEED, FOLLOWED = (0.0, 0.0, -4.5e-5), 0.08, 60.0
 HELD = 0.03  # of the lander's speed
+DRAWN = 1  # number of the landing in the picture
 
 
 def part(edges: tuple[float, float, float], centre: tuple[float, float, float], mass: float) -> Part:
@@ -111,7 +112,7 @@ def main() -> None:
             row = [name, number // len(cases), len(bed.grains), f"{lander.reach:.3f}", outcome.status.value]
             table.writerow([*row, f"{outcome.simulated_time:.1f}", f"{spent:.2f}", f"{os.getloadavg()[0]:.1f}"])
             file.flush()
-            if name == "booms":
+            if name == "booms" and number // len(cases) == DRAWN:
                 draw(MovingBodies.of_landing(outcome, bed, lander, landing), given.picture)
 
 
