@@ -218,7 +218,7 @@ def ask_plane(
 ) -> None:  # fmt: skip
     """Ask for gaps over planes."""
     for k in range(len(first)):
-        pair.first[0] = first[k]
+        pair.first[0] = pair.first_part[0] = first[k]
         bodies.position[first[k]], bodies.rotation[first[k]] = position[k, 0], rotation[k, 0]
         planes = Planes(normal[k : k + 1], np.array([np.dot(normal[k], position[k, 1])]), pair.first, NO_ONE)
         gap[k] = list_plane(0, bodies, cores, planes, pair, math.inf)

@@ -7,6 +7,7 @@ from pydantic import BaseModel, ValidationError
 
 from lithobrake.study.body_checks import body_problems
 from lithobrake.study.checks import landing_problems
+from lithobrake.study.lander_section import PartSection
 from lithobrake.study.quantity import is_number
 from lithobrake.study.reader import StudyError, known_keys
 from lithobrake.study.refusals import sentences
@@ -74,8 +75,8 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
         centre = _table(table["centre_of_mass"]) or {}
         table["centre_of_mass"] = {**centre, name.removeprefix("centre_of_mass."): value}
     elif name.startswith("part."):
-        _, part, inner = name.split(".")
-        if part not in table["part"]:
+        part, _, inner = name.removeprefix("part.").partition(".")
+        if part not in table["part"] or inner not in PartSection.model_fields:
             raise StudyError([_unread(key, [])])
         table["part"] = {**table["part"], part: {**_table(table["part"][part]), inner: value}}
     elif key.startswith(INPUTS):

@@ -227,7 +227,7 @@ def test_neighbours_are_those_among_all_images() -> None:
     way = world.position[:, None] - world.position
     distance = np.min([np.linalg.norm(way + image, axis=2) for image in images], axis=0)
     first, second = np.nonzero(np.triu(distance < 0.1 + skin, 1))
-    assert list(zip(*found, strict=True)) == list(zip(first, second, strict=True))
+    assert list(zip(found.first, found.second, strict=True)) == list(zip(first, second, strict=True))
     across = np.abs(way[first, second, :2]) > 0.5 * np.array(PERIOD)
     assert across.any(axis=0).all()
 

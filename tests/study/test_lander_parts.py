@@ -82,6 +82,9 @@ def test_numbers_of_a_run_stand_in_the_tables_of_parts() -> None:
     assert fixed.lander.part["foot"].restitution == 0.4
     assert fixed.lander.centre_of_mass is not None
     assert fixed.lander.centre_of_mass.y == 0.03
+    for key in ("lander.part.foot", "lander.part.hand.restitution", "lander.part.foot.speed"):
+        with pytest.raises(StudyError, match=key):
+            fixed_study(one, {**medians(one), **orientation, key: 0.4})
 
 
 def test_a_landing_depends_on_the_parts_and_on_nothing_more_without_any() -> None:
