@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.design.rough_ground import first_axes, on_rough_ground
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.period_checks import LEAST_FRICTION
@@ -64,8 +65,10 @@ def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
     site = Site(study)
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
+    met = first_axes(study, axes, rows)
     time = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    return on_ground(site.body, rows, origin, axes, time, columns["mass"], columns["spin_period"])
+    arriving = on_rough_ground(study, rows, axes, met)
+    return on_ground(site.body, arriving, origin, met, time, columns["mass"], columns["spin_period"])
 
 
 def on_ground(
