@@ -45,12 +45,12 @@ def site_agreement(job: Job) -> tuple[SiteAgreement, ...]:
     for place, those in parts:
         if place is not None and (those.sum() < FEWEST or len(np.unique(table.bed[those])) < FEWEST_BEDS):
             continue
-        middle = (None, None) if place is None else tuple(regions.centres_deg[place].tolist())
+        latitude_deg, longitude_deg = (None, None) if place is None else regions.centres_deg[place].tolist()
         of_region = share_difference(landings[those], emulator[those], table.bed[those], why=why)
         pair = (of_region.first, of_region.second)
         first, second = (ShareInterval(one.value or 0.0, one.lower, one.upper) for one in pair)
         difference = ShareInterval(of_region.value or 0.0, of_region.lower, of_region.upper)
-        found.append(SiteAgreement(*middle, int(those.sum()), first, second, difference))
+        found.append(SiteAgreement(latitude_deg, longitude_deg, int(those.sum()), first, second, difference))
     return tuple(found)
 
 

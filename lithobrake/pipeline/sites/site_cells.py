@@ -29,11 +29,11 @@ def site_cells(
     """Every cell in its order; journeys: of the study with their first touchdown in each, [cell_count]."""
     unknown = (landers.end == UNKNOWN_END).mean(axis=1)
     answered = unknown <= MOST_UNKNOWN
-    best = set(_not_worse(landers, answered, fitted))
+    best, middles, bounds = set(_not_worse(landers, answered, fitted)), cells.centres_deg, cells.bounds_deg
     return tuple(
         SiteCell(
-            *middle,
-            *bounds,
+            **dict(zip(("latitude_deg", "longitude_deg"), middles[number].tolist(), strict=True)),
+            **dict(zip(("south_deg", "north_deg", "west_deg", "east_deg"), bounds[number].tolist(), strict=True)),
             unknown=float(unknown[number]),
             beyond=_beyond(landers.beyond[number]),
             ends=_ends(landers, number, fitted) if answered[number] else None,
@@ -43,9 +43,7 @@ def site_cells(
             light={name: _spread(seen[number]) for name, seen in ground.light.items()},
             journeys=int(journeys[number]),
         )
-        for number, (middle, bounds) in enumerate(
-            zip(cells.centres_deg.tolist(), cells.bounds_deg.tolist(), strict=True)
-        )
+        for number in range(cells.total)
     )
 
 
@@ -70,11 +68,11 @@ def _ends(landers: SiteLanders, cell: int, fitted: Refits) -> SiteEnds:
     known, rests = end != UNKNOWN_END, end == JourneyEnd.AT_REST
     words = (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY)
     shares = [share_of_known(end == word, known, refit, fitted) for word in words]
-    medians = [
+    time, distance = (
         quantile_of_some(values[cell], rests, MEDIAN, lambda met: fitted.share(met, rests, refit))
         for values in (landers.time, landers.distance)
-    ]
-    return SiteEnds(*shares, *medians)
+    )
+    return SiteEnds(*shares, time_s=time, distance_m=distance)
 
 
 def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tuple[int, ...]:

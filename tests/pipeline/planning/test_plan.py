@@ -149,7 +149,7 @@ def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
 
 
 def test_the_plan_says_how_the_ground_of_the_first_touchdowns_lies() -> None:
-    """Smooth ground slopes by what the partner pulls aside; rough ground by what was asked for, as far as soil holds it."""
+    """Smooth ground slopes as the partner pulls; rough ground by what was asked for, as far as soil holds it."""
     smooth, rough = (planned_ground(DrawnDesign(with_site_gravity(journeys(angle)))) for angle in (0.0, 30.0))
     assert smooth is not None
     assert rough is not None
