@@ -54,7 +54,9 @@ class EqualAreaCells:
     def centres_deg(self) -> Array:
         """Latitude and longitude of the middle of each cell [deg], [cell_count, 2]: half of its area on either side."""
         half = np.full((self.total, 1, 2), 0.5)
-        return self.places_deg(half)[:, 0]
+        # Without the rounding that leaves the equator and longitude 0 beside themselves.
+        middles: Array = np.round(self.places_deg(half)[:, 0], 12) + 0.0
+        return middles
 
     def places_deg(self, uniforms: ArrayLike) -> Array:
         """Latitude and longitude [deg], [cell_count, place_count, 2], of places spread evenly over each cell.

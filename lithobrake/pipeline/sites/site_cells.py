@@ -66,13 +66,18 @@ def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted
 def _ends(landers: SiteLanders, cell: int, fitted: Refits) -> SiteEnds:
     end, refit = landers.end[cell], landers.refit[cell]
     known, rests = end != UNKNOWN_END, end == JourneyEnd.AT_REST
-    words = (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY)
-    shares = [share_of_known(end == word, known, refit, fitted) for word in words]
     time, distance = (
         quantile_of_some(values[cell], rests, MEDIAN, lambda met: fitted.share(met, rests, refit))
         for values in (landers.time, landers.distance)
     )
-    return SiteEnds(*shares, time_s=time, distance_m=distance)
+    return SiteEnds(
+        at_rest=share_of_known(rests, known, refit, fitted),
+        partner=share_of_known(end == JourneyEnd.PARTNER, known, refit, fitted),
+        escaped=share_of_known(end == JourneyEnd.ESCAPED, known, refit, fitted),
+        under_way=share_of_known(end == JourneyEnd.UNDER_WAY, known, refit, fitted),
+        time_s=time,
+        distance_m=distance,
+    )
 
 
 def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tuple[int, ...]:

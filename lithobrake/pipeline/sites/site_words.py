@@ -35,7 +35,9 @@ def _statement(found: SiteMap) -> str:
         f"to rest over {where}, by site {span(min(shares), max(shares), 0)}."
     )
     best = [cell for cell in answered if cell.not_worse]
-    if best:
+    if best and len(best) == len(answered) > 1:
+        said += " No site can be told from the best."
+    elif best:
         cell = max(best, key=lambda one: one.ends.at_rest.share if one.ends else 0.0)
         count = f"{len(best)} sites" if len(best) > 1 else "One site"
         cannot = "cannot be told from the best" if len(best) > 1 else "is better than every other"
