@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 from lithobrake.export.maps import WORDS, MapFrame
@@ -22,7 +23,8 @@ def write_site_cells(site_map: SiteMap, place: Path) -> Path:
     Borders of cells are lines of constant latitude or longitude, as straight lines in these coordinates are.
     """
     radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
-    frame, path = MapFrame(site_map.body, radius), site_cells_file(place)
+    name = re.sub(r"\W+", "_", site_map.body, flags=re.ASCII).upper()
+    frame, path = MapFrame(name, radius), site_cells_file(place)
     features = []
     for number, cell in enumerate(site_map.cells):
         south, north, west, east = cell.bounds_deg

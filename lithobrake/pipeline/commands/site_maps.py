@@ -65,8 +65,6 @@ def map_sites(
     why = why_no_emulator(folder.read_json(EMULATOR))
     if why is not None:
         raise ValueError(f"{out} has nothing to follow landers by. {why} Follow more journeys (journey.count).")
-    if model is not None:
-        study = study.with_function("of the folder's runs")
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         design = grown(DrawnDesign(study), folder)
         job = Job(design, Site(study), source.tables, folder, executor, shown, model)
@@ -104,7 +102,7 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
     shape = job.site.body.shape
     found = SiteMap(
         title=study.title or stem,
-        body=study.site.name or job.site.body.name,
+        body=study.site.name or Path(study.site.body).stem.capitalize(),
         statement="",
         of="",
         level=LEVEL,

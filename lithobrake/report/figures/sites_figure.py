@@ -199,8 +199,8 @@ def _legend(figure: Figure, site_map: SiteMap, bottom: float) -> None:
 
 def agreement_figure(regions: Sequence[SiteAgreement], level: float) -> Figure:
     """Draw landers at rest by landings against those by the emulator, with intervals; the whole body is filled."""
-    figure = Figure(figsize=(4.6, 4.2))
-    axes = figure.add_axes((0.14, 0.13, 0.82, 0.82))
+    figure = Figure(figsize=(9.2, 3.7))
+    axes = figure.add_axes((0.32, 0.13, 0.34, 0.845))
     axes.plot([0.0, 100.0], [0.0, 100.0], color=RULE, linewidth=1.0, zorder=1)
     lowest = 100.0
     for one in regions:
