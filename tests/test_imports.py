@@ -55,6 +55,7 @@ ROOMS = {
             "emulated",
             "sky",
             "answer",
+            "sites",
             "paper",
             "stages",
             "outdated_files",
@@ -71,6 +72,7 @@ ROOMS = {
         "pages",
         "study_report",
         "comparison_report",
+        "site_report",
     ),
 }
 # Who uses which part by the names of its __init__ alone.

@@ -5,6 +5,7 @@ from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, wilson_inter
 from lithobrake.analysis.control_variate import regression_terms
 from lithobrake.analysis.direction import DirectionEstimate, direction_estimate
 from lithobrake.analysis.ellipse import Ellipses, dispersion_ellipses
+from lithobrake.analysis.equal_area_cells import EqualAreaCells
 from lithobrake.analysis.failure_inputs import FailureInput, failure_inputs
 from lithobrake.analysis.failure_probability import (
     FailureProbability,
@@ -40,9 +41,9 @@ from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 from lithobrake.chaos.design import sample_inputs
 
 __all__ = [
-    "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "FailureInput", "FailureProbability",
-    "HalfWidthRange", "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput", "Observation",
-    "OutcomeModel", "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult",
+    "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "EqualAreaCells", "FailureInput",
+    "FailureProbability", "HalfWidthRange", "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput",
+    "Observation", "OutcomeModel", "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult",
     "VarianceShares", "bed_shares", "beds_statement", "best_choice", "best_runs_a_bed", "chaos_variance",
     "cost_over_best", "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures",
     "expected_half_width", "failure_inputs", "failure_probability", "half_width_of", "half_width_range",

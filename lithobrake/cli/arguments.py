@@ -79,3 +79,12 @@ def refuse_written(path: Path, force: bool) -> None:
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
+
+
+def scheduler_of(executor: str, scheduler: str | None) -> str | None:
+    """The address of the Dask scheduler, or None for runs made here."""
+    if executor not in ("local", "dask"):
+        leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
+    if (executor == "dask") != (scheduler is not None):
+        leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
+    return scheduler

@@ -15,9 +15,10 @@ from lithobrake.cli.arguments import (
     StudyPath,
     Workers,
     app,
+    scheduler_of,
     study_folder,
 )
-from lithobrake.cli.terminal import BAD_INPUT, command_line, leave, one_sentence, study_headline, tell, tell_json
+from lithobrake.cli.terminal import command_line, one_sentence, study_headline, tell, tell_json
 
 BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
 
@@ -87,7 +88,7 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
         logs: Logs = False,
     ) -> None:
         folder = study_folder(study, out)
-        _make(study, folder, last, workers, _scheduler(executor, scheduler), logs)
+        _make(study, folder, last, workers, scheduler_of(executor, scheduler), logs)
         tell(study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
     app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
@@ -140,7 +141,7 @@ def rare(
     scheduler: Scheduler = None,
 ) -> None:
     """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
-    folder, address = study_folder(study, out), _scheduler(executor, scheduler)
+    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
     with one_sentence():
         from lithobrake.study import StudySource
 
@@ -167,15 +168,6 @@ def status(folder: StudyDirectory, json: Json = False) -> None:
         tell_json(content)
     else:
         tell(lines)
-
-
-def _scheduler(executor: str, scheduler: str | None) -> str | None:
-    """The address of the Dask scheduler, or None for runs made here."""
-    if executor not in ("local", "dask"):
-        leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
-    if (executor == "dask") != (scheduler is not None):
-        leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
-    return scheduler
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:

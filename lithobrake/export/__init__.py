@@ -5,8 +5,9 @@ from lithobrake.export.files import KINDS, ExportOptions, export_study
 from lithobrake.export.maps import write_geojson, write_geotiff, write_rest_geojson
 from lithobrake.export.push import Push, write_push
 from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, write_plates
+from lithobrake.export.site_cells import write_site_cells
 
 __all__ = [
     "KINDS", "ExportOptions", "Push", "export_study", "write_ephemerides", "write_facet_csv", "write_facet_fits",
-    "write_geojson", "write_geotiff", "write_plates", "write_push", "write_rest_geojson",
+    "write_geojson", "write_geotiff", "write_plates", "write_push", "write_rest_geojson", "write_site_cells",
 ]  # fmt: skip

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from lithobrake.pipeline.commands.serving import ServedStudy as ServedStudy
     from lithobrake.pipeline.commands.serving import served_models as served_models
     from lithobrake.pipeline.commands.serving_process import EvaluationProcess as EvaluationProcess
+    from lithobrake.pipeline.commands.site_maps import map_sites as map_sites
+    from lithobrake.pipeline.commands.site_maps import site_lines as site_lines
+    from lithobrake.pipeline.commands.site_maps import site_map_files as site_map_files
+    from lithobrake.pipeline.commands.site_maps import write_site_map as write_site_map
     from lithobrake.pipeline.commands.status import study_status as study_status
     from lithobrake.pipeline.folder.state import report_page as report_page
     from lithobrake.pipeline.folder.study_folder import StudyFolder as StudyFolder

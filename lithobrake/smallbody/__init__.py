@@ -10,6 +10,7 @@ from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.rotation_history import rotation_history
+from lithobrake.smallbody.rough_ground import RoughGround, incidence_on, met_normals
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.sky import day_directions, seen_over_a_day
 from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
@@ -32,6 +33,7 @@ __all__ = [
     "PartnerPlace",
     "Rebounds",
     "RestitutionTable",
+    "RoughGround",
     "Shape",
     "SpinState",
     "day_directions",
@@ -39,6 +41,8 @@ __all__ = [
     "dimorphos",
     "fly",
     "hop",
+    "incidence_on",
+    "met_normals",
     "read_partner",
     "read_spin",
     "rotation_history",

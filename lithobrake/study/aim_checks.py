@@ -40,6 +40,11 @@ def aim_problems(study: Study) -> Iterator[str]:
             "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
             "of the two out"
         )
+    if study.site.roughness_deg and "delivery.incidence_deg" in grid:
+        yield (
+            'aim.grid has "delivery.incidence_deg", and site.roughness_deg draws the ground under each lander by its '
+            "own incidence; leave one of the two out"
+        )
     axes, count = len(study.aim.names), len(study.aim.aims())
     if axes > MOST_AXES or count > MOST_AIMS:
         yield (

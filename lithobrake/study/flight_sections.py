@@ -75,6 +75,10 @@ class SiteSection(Section):
     """Declination of that pole."""
     meridian_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
     """Angle W of longitude 0 at delivery.epoch, from the node of the body's equator on that of ICRF, eastward."""
+    roughness_deg: Annotated[float, Number("deg", at_least=0, at_most=60)] | None = None
+    """Rms slope of the ground at the lander's scale against the facets of the body's shape: the angle whose tangent is
+    the rms gradient. Each touchdown of a journey draws its gradient, in any direction; without [journey] so does each
+    impact after the first, and on hard ground each impact. Absent: the facets are flat."""
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0

@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL, IntervalEstimate, best_choice, quantile_within, refit_interval, wilson_interval
+from lithobrake.analysis import LEVEL, best_choice, wilson_interval
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
-from lithobrake.pipeline.answer.shares_over_refits import Refits
+from lithobrake.pipeline.answer.shares_over_refits import Refits, quantile_of_some
 from lithobrake.pipeline.answer.typed_estimates import finite_estimate, share_interval
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
@@ -106,13 +106,7 @@ def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGro
 
     def far(values: np.ndarray) -> Estimate | None:
         """Where most of those that settle lie, or when."""
-        if not settled.any():
-            return None
-        point = float(quantile_within(values[settled], FAR, (FAR, FAR))[0])
-        share = _share(settled & (values <= point), settled, refit, ground, fitted)
-        if share.lower is None or share.upper is None:
-            return Estimate(quantile_within(values[settled], FAR, (0.0, 1.0))[0], None, None)
-        return finite_estimate(IntervalEstimate(*quantile_within(values[settled], FAR, (share.lower, share.upper))))
+        return quantile_of_some(values, settled, FAR, lambda met: _share(met, settled, refit, ground, fitted))
 
     return AimOnGround(
         settled=_share(settled, np.ones(len(settled), dtype=bool), refit, ground, fitted),
@@ -125,16 +119,10 @@ def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGro
 
 def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> ShareInterval:
     """Share of some landers that have met an event, with its bounds: over refits on soil, by their number on hard."""
-    share = float(met.sum() / of.sum())
     if ground == "hard":
+        share = float(met.sum() / of.sum())
         return ShareInterval(share, *wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
-    counts, totals = (np.bincount(refit[one], minlength=REFIT_COUNT) for one in (met, of))
-    # Of one lander of a refit no scatter within it can be told; of few refits none between them.
-    told = totals >= 2
-    if fitted.why is not None or told.sum() < REFIT_COUNT // 2:
-        return ShareInterval(share, None, None)
-    found = refit_interval(counts[told], totals[told], fitted.bed_count)
-    return ShareInterval(share, found.lower, found.upper)
+    return fitted.share(met, of, refit)
 
 
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:

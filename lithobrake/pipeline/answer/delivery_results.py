@@ -6,6 +6,7 @@ from lithobrake.analysis import highest_density
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
 from lithobrake.pipeline.answer.journey_ends import SHARES, rest_regions
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
 from lithobrake.pipeline.folder.study_folder import AGAIN
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -28,7 +29,7 @@ def delivery_results(job: Job, first: DesignRuns, journey_count: int) -> Deliver
         count=len(rows),
         of=journey_count,
         speed=_spread(first.inputs["impact.speed"]),
-        incidence_deg=_spread(first.inputs["impact.incidence_deg"]),
+        incidence_deg=_spread(first.inputs.get(MEAN_INCIDENCE, first.inputs["impact.incidence_deg"])),
         descent_s=_spread(descents) if len(descents) else None,
         ellipse=place_ellipses(job.study, latitude, longitude),
         regions=rest_regions(density),

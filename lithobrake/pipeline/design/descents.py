@@ -13,6 +13,7 @@ from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, 
 from lithobrake.pipeline.design.free_rotation import lander_inertia, turned_in_flight
 from lithobrake.pipeline.design.local_ground import on_ground
 from lithobrake.pipeline.design.release_draws import released_states
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_uniforms, roughness
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.contact_checks import contact_problems
@@ -33,8 +34,8 @@ class Descents:
     """Flights of the landers of a study to the ground, one row a journey from `first` on.
 
     flights         in axes fixed to the body; their start time is that of the partner's motion and the body's rotation
-    axes            of the first touchdown, in rows, [count, 3, 3], x along the incoming horizontal velocity; of those
-                    that touch down
+    axes            of the first touchdown, in rows, [count, 3, 3], x along the incoming horizontal velocity, z along
+                    the normal of the ground that is met; of those that touch down
     attitude, spin  at the start, fixed to the body, of a lander whose states have them: [count, 4] as w, x, y, z, and
                     against axes that do not turn [rad/s], [count, 3]; else None
     """
@@ -53,7 +54,6 @@ class Descents:
         Raises StudyError for states below the ground, and landers too fast for any contact.
         """
         from lithobrake.smallbody import fly
-        from lithobrake.smallbody.hopping import impact_frame
 
         assert study.journey is not None
         site, count = Site(study), len(uniforms)
@@ -79,9 +79,8 @@ class Descents:
             mass=columns["mass"],
             spin_period=columns["spin_period"],
         )
-        axes = np.tile(np.eye(3), (count, 1, 1))
         down = flights.status == FlightStatus.IMPACT
-        axes[down] = impact_frame(flights.velocity[down], site.body.shape.normals[flights.facet[down]])
+        axes = _axes(study, flights, down, first)
         _refuse_fast(study, flights.impact_speed[down])
         attitude, spin = _turning(states, into_body)
         return cls(study, first, flights, axes, attitude, spin)
@@ -118,13 +117,24 @@ class Descents:
         flights, down = self.flights, np.flatnonzero(self.touches_down)
         found = []
         for lander in down.tolist():
-            row = rows[lander] | impact_inputs(float(flights.impact_speed[lander]), float(flights.incidence[lander]))
+            row = rows[lander] | self._impact(lander)
             found.append(row | self._attitude(lander, row))
         start = flights.start
         return on_ground(
             flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
             start.spin_period[down],
         )  # fmt: skip
+
+    def _impact(self, lander: int) -> Row:
+        """Speed and incidence of a first touchdown, on the ground that is met."""
+        flights, mean = self.flights, float(self.flights.incidence[lander])
+        speed = float(flights.impact_speed[lander])
+        if not self.study.site.roughness_deg:
+            return impact_inputs(speed, mean)
+        from lithobrake.smallbody import incidence_on
+
+        met = incidence_on(flights.velocity[lander][None], self.axes[lander][None, 2])
+        return impact_inputs(speed, float(met[0])) | {MEAN_INCIDENCE: np.degrees(mean)}
 
     def _attitude(self, lander: int, row: Row) -> Row:
         """Attitude and spin of a lander at its first touchdown, where its state has them."""
@@ -137,6 +147,20 @@ class Descents:
             *(inertia, self.attitude[lander], self.spin[lander], period, time), ground=ground, start=start
         )
         return attitude_inputs(self.axes[lander], row[AZIMUTH], attitude, spin)
+
+
+def _axes(study: Study, flights: "Flights", down: np.ndarray, first: int) -> np.ndarray:
+    """Axes of the first touchdowns of the landers that are down, those of the others those of the body."""
+    from lithobrake.smallbody import met_normals
+    from lithobrake.smallbody.hopping import impact_frame
+
+    axes, velocity = np.tile(np.eye(3), (len(flights), 1, 1)), flights.velocity[down]
+    up = flights.body.shape.normals[flights.facet[down]]
+    if study.site.roughness_deg:
+        uniforms = np.array([first_uniforms(study, first + one) for one in np.flatnonzero(down).tolist()])
+        up = met_normals(velocity, up, roughness(study), uniforms.reshape(-1, 2))
+    axes[down] = impact_frame(velocity, up)
+    return axes
 
 
 def _is_icrf(study: Study) -> bool:

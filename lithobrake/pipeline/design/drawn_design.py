@@ -117,6 +117,13 @@ class DrawnDesign:
         return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
 
     @cached_property
+    def delivered_rows(self) -> list[dict[str, float]]:
+        """The same as the study draws them: an impact against the facets of the body's shape, under no acceleration of
+        the place.
+        """
+        return self._delivered(self.rows_at(self.beds, self._points(len(self.beds))), 0)
+
+    @cached_property
     def keys(self) -> list[str]:
         """The keys of the runs in the ledger, in their order."""
         return touchdown_keys(self.study, self.rows, 0)
@@ -190,13 +197,21 @@ class DrawnDesign:
         self, rows: list[dict[str, float]], first: int, descents: Descents | None
     ) -> list[dict[str, float]]:
         """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
+        delivered = self._delivered(rows, first)
+        if self.study.journey is None:
+            return delivered
+        if descents is not None:
+            return descents.first_touchdowns(delivered)
+        return on_local_ground(self.study, delivered, first)
+
+    def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+        """Rows of runs as journeys have them before it is known which ground they meet."""
         journey = self.study.journey
         if journey is None:
             return rows
         begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
-        numbered = arriving_together(self.study, numbered, first)
-        return on_local_ground(self.study, numbered, first) if descents is None else descents.first_touchdowns(numbered)
+        return arriving_together(self.study, numbered, first)
 
     def _descents(self, first: int, points: np.ndarray) -> Descents:
         """The flights of the journeys from `first` on, at these points of the sequence."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.design.rough_ground import first_axes, on_rough_ground
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.period_checks import LEAST_FRICTION
@@ -67,7 +68,9 @@ def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
     site = Site(study)
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
-    return on_ground(site.body, rows, origin, axes, site.clock(columns), columns["mass"], columns["spin_period"])
+    met = first_axes(study, axes, rows)
+    arriving = on_rough_ground(study, rows, axes, met)
+    return on_ground(site.body, arriving, origin, met, site.clock(columns), columns["mass"], columns["spin_period"])
 
 
 def on_ground(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.rough_ground import first_axes
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.site import Site
 
@@ -35,7 +36,8 @@ class Arrivals:
         cls, place: Site, number: np.ndarray, rows: list[Row], site: Mapping[str, np.ndarray], refit: np.ndarray
     ) -> "Arrivals":
         """Those of these rows at these places, by columns of SITE_KEYS [count]."""
-        origin, axes = place.frames(site)
+        origin, mean_axes = place.frames(site)
+        axes = first_axes(place.study, mean_axes, rows)
         return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
 
     @classmethod

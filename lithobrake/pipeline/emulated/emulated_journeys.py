@@ -83,5 +83,12 @@ def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, mos
     """Follow landers, and give their rows of emulated.csv."""
     landers = EmulatedLanders.of(job, emulator, f"{name} landers by the emulator", begin)
     landers.follow(most)
-    columns = (begin.number, begin.refit, landers.end, landers.beyond.astype(int), landers.landings, landers.time)
+    columns = (
+        begin.number,
+        begin.refit,
+        landers.end,
+        (landers.beyond != "").astype(int),
+        landers.landings,
+        landers.time,
+    )
     return [[name, *row] for row in zip(*(one.tolist() for one in columns), strict=True)]

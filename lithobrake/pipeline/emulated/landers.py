@@ -9,12 +9,14 @@ from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.arrival import FLATTEST_DEG
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.local_ground import AZIMUTH, felt, friction_of, ground_inputs
+from lithobrake.pipeline.design.rough_ground import roughness
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
 from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, SLOPE, SPEED, TouchdownEmulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
+from lithobrake.pipeline.journeys.journey_model import on_ground
 from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 
@@ -31,7 +33,8 @@ class EmulatedLanders:
 
     time: since the first touchdown began [s]; position [m]; speed [m/s], incidence [deg], axes (in rows) and spin
     against the ground [rad/s] in that frame: of the next impact. end: a word of JourneyEnd, UNKNOWN_END, or "" while
-    under way. landings: made for it; beyond: whether the emulator had no answer for it at least once.
+    under way. landings: made for it; beyond: the input of an impact that the emulator did not know, the last one; ""
+    where there was none.
     """
 
     job: Job
@@ -67,7 +70,7 @@ class EmulatedLanders:
             time=np.zeros(count),
             end=np.full(count, "", dtype="<U10"),
             landings=np.zeros(count, dtype=np.int64),
-            beyond=np.zeros(count, dtype=bool),
+            beyond=np.full(count, "", dtype="<U24"),
             soil={name: begin.column(name) for name in names},
         )
 
@@ -85,9 +88,8 @@ class EmulatedLanders:
             impacts = self._impacts(going[asked], acceleration[asked])
             landed = between.answers(impacts, number)
             answers.fill(asked, landed)
-            self.beyond[impacts.lander] = True
             self.landings[impacts.lander] += landed.is_known
-            self._go_on(going, answers)
+            self._go_on(going, answers, number)
         self.end[self.end == ""] = JourneyEnd.UNDER_WAY
 
     def _impacts(self, which: np.ndarray, acceleration: np.ndarray) -> NextImpacts:
@@ -112,6 +114,8 @@ class EmulatedLanders:
             SLOPE: np.array([one[SLOPE] for one in ground]),
             **self._attitude(going, number),
         }
+        beyond = self.emulator.beyond(inputs)
+        self.beyond[going] = np.where(beyond == "", self.beyond[going], beyond)
         seed = hashed_seed(self.job.study.seed, self.title, number)
         return self.emulator.answers(inputs, self.spin[going], self.begin.refit[going], seed)
 
@@ -129,8 +133,8 @@ class EmulatedLanders:
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
         return self.emulator.attitude_of(Rotation.random(len(self.end), rng=random)[going])
 
-    def _go_on(self, going: np.ndarray, answers: Answers) -> None:
-        """Take in how touchdowns ended, and fly what left to its next impact."""
+    def _go_on(self, going: np.ndarray, answers: Answers, number: int) -> None:
+        """Take in how touchdowns of a number ended, and fly what left to its next impact."""
         duration = self.duration
         self.time[going] += answers.duration
         self.position[going] += np.einsum("nji,nj->ni", self.axes[going], answers.way)
@@ -138,13 +142,14 @@ class EmulatedLanders:
         left = answers.outcome == TouchdownOutcome.CLEAR
         self.end[going[left]] = np.where(self.time[going[left]] < duration, "", JourneyEnd.UNDER_WAY.value)
         flying = self.end[going] == ""
+        for lander in going[flying & answers.way.any(axis=1)].tolist():
+            self.position[lander] = on_ground(self.job.site.body.shape, self.position[lander])
         if flying.any():
-            self._fly(going[flying], answers.velocity[flying], answers.spin[flying])
+            self._fly(going[flying], answers.velocity[flying], answers.spin[flying], number)
 
-    def _fly(self, going: np.ndarray, velocity: np.ndarray, spin: np.ndarray) -> None:
+    def _fly(self, going: np.ndarray, velocity: np.ndarray, spin: np.ndarray, number: int) -> None:
         """Fly landers that leave with velocities [m/s] and spins [rad/s] in the frames of their touchdowns."""
         from lithobrake.smallbody import fly
-        from lithobrake.smallbody.hopping import impact_frame
 
         site, job = self.begin.site, self.job
         velocity, spin = (np.einsum("nji,nj->ni", self.axes[going], one) for one in (velocity, spin))
@@ -161,11 +166,24 @@ class EmulatedLanders:
         ended = {status.value: end.value for status, end in ENDS.items()}
         self.end[going] = [ended.get(str(word), "") for word in flown.status]
         hit = flown.status == FlightStatus.IMPACT
-        down, normal = going[hit], job.site.body.shape.normals[flown.facet[hit]]
-        self.axes[down] = impact_frame(flown.velocity[hit], normal)
+        down = going[hit]
         self.speed[down] = flown.impact_speed[hit]
         self.incidence[down] = np.minimum(np.degrees(flown.incidence[hit]), FLATTEST_DEG)
+        self._meet_ground(down, flown.velocity[hit], job.site.body.shape.normals[flown.facet[hit]], number)
         self.spin[down] = self._arriving_spin(down, spin[hit], flown.start.time[hit], flown.time[hit], period[hit])
+
+    def _meet_ground(self, down: np.ndarray, velocity: np.ndarray, up: np.ndarray, number: int) -> None:
+        """Lay the frames of the next impacts: velocities [m/s] and normals of the facets, [count, 3]."""
+        from lithobrake.smallbody import incidence_on, met_normals
+        from lithobrake.smallbody.hopping import impact_frame
+
+        study, normal = self.job.study, up
+        if study.site.roughness_deg:
+            seed = hashed_seed(study.seed, self.title, "roughness", number)
+            uniforms = np.random.default_rng(seed).random((len(self.end), 2))[down]
+            normal = met_normals(velocity, up, roughness(study), uniforms)
+            self.incidence[down] = np.minimum(np.degrees(incidence_on(velocity, normal)), FLATTEST_DEG)
+        self.axes[down] = impact_frame(velocity, normal)
 
     def _arriving_spin(
         self, down: np.ndarray, spin: np.ndarray, start: np.ndarray, time: np.ndarray, period: np.ndarray

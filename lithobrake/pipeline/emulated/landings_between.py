@@ -11,6 +11,7 @@ from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.geometry.contact_frame import about_z
 from lithobrake.pipeline.design.local_ground import AZIMUTH, friction_of, ground_inputs
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import SPIN, Arrivals, Row
 from lithobrake.pipeline.emulated.touchdown_emulator import ALONG, ASIDE, DURATION, INCIDENCE, SPEED
@@ -81,7 +82,8 @@ class LandingsBetween:
         x, y, turn, *attitude = np.random.default_rng(seed).random(6).tolist()
         azimuth = 360.0 * turn
         spin = about_z(math.radians(azimuth)).apply(impacts.spin[place])
-        return row | {
+        of_lander = {name: value for name, value in row.items() if name != MEAN_INCIDENCE}
+        return of_lander | {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - float(impacts.time[place]),
             SPEED: float(impacts.speed[place]),

@@ -97,17 +97,24 @@ class TouchdownEmulator:
         there = self.bed == bed
         return np.flatnonzero([not model.weights[there].any() for model in self.refits])
 
+    def beyond(self, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Which input of each touchdown lies beyond the ranges, the first of them, [count]; "" where none does."""
+        found = np.full(len(inputs[SPEED]), "", dtype="<U24")
+        for name, (lower, upper) in self.ranges.items():
+            # No speed is too low: such a touchdown is as the slowest of them.
+            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (name != SPEED))
+            found[outside & (found == "")] = name
+        return found
+
     def answers(self, inputs: Mapping[str, np.ndarray], spin: np.ndarray, refit: np.ndarray, seed: int) -> Answers:
         """Draw how touchdowns end, each by its refit [count]; nothing is known of those beyond the ranges.
 
         inputs: by dotted key in the file's units, [count] each. spin: of the arrival [rad/s], [count, 3].
         """
         found = Answers.unknown(len(refit))
+        inside = self.beyond(inputs) == ""
         # Slower than any touchdown is as the slowest of them, which has more energy to leave with.
         inputs = {**inputs, SPEED: np.maximum(inputs[SPEED], self.ranges[SPEED][0])}
-        inside = np.ones(len(refit), dtype=bool)
-        for name, (lower, upper) in self.ranges.items():
-            inside &= (inputs[name] >= lower) & (inputs[name] <= upper)
         values = {name: inputs[name] for name in self.inputs} | dict(zip(SPIN, spin.T, strict=True))
         bound = energy_bound(self.design, self.bed_height, values, len(refit), self.across)
         x = np.column_stack([inputs[name] for name in self.inputs])

@@ -13,6 +13,8 @@ from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
+from lithobrake.pipeline.journeys.journey_model import on_ground
 from lithobrake.pipeline.journeys.resting_attitude import side_down
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
@@ -99,7 +101,7 @@ class Journey:
         self.path_length += math.hypot(along, aside)
         self.contacts += max(1, round(outputs.get("contacts", 1.0)))
         moved = self.origin + along * self.axes[0] + aside * self.axes[1]
-        self.origin = self.model.on_ground(moved)
+        self.origin = on_ground(self.model.body.shape, moved)
 
     @property
     def is_on_ground(self) -> bool:
@@ -142,24 +144,35 @@ class Journey:
 
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
-        from lithobrake.smallbody.hopping import impact_frame
-
-        up = self.model.body.shape.normals[flight.facet]
-        self.axes = impact_frame(flight.velocity, up)[0]
         number = len(self.touchdowns)
         random = np.random.default_rng(hashed_seed(self.model.seed, "touchdowns", self.number, number))
-        x, y, turn = random.random(3).tolist()
+        x, y, turn, *gradient = random.random(5).tolist()
+        incidence = self._meet_ground(flight, gradient)
         azimuth = 360.0 * turn
         arrival = {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - self.time,
-            **impact_inputs(float(flight.impact_speed[0]), float(flight.incidence[0])),
+            **impact_inputs(float(flight.impact_speed[0]), incidence),
             "impact.azimuth_deg": azimuth,
             **attitude_inputs(self.axes, azimuth, attitude, spin),
             **dict(zip(PLACE, self.model.place(x, y, self.row), strict=True)),
             **ground_inputs(self.axes @ self._felt(), azimuth, friction_of(self.row)),
         }
+        if MEAN_INCIDENCE in self.row:
+            arrival[MEAN_INCIDENCE] = math.degrees(float(flight.incidence[0]))
         self.row = {**self.row, **arrival}
+
+    def _meet_ground(self, flight: "Flights", gradient: list[float]) -> float:
+        """Lay the frame of the next touchdown, by two uniform numbers; gives the incidence in it [rad]."""
+        from lithobrake.smallbody import incidence_on, met_normals
+        from lithobrake.smallbody.hopping import impact_frame
+
+        up, incidence = self.model.body.shape.normals[flight.facet], flight.incidence
+        if self.model.roughness:
+            up = met_normals(flight.velocity, up, self.model.roughness, np.array([gradient]))
+            incidence = incidence_on(flight.velocity, up)
+        self.axes = impact_frame(flight.velocity, up)[0]
+        return float(incidence[0])
 
     def _note_flight(self, velocity: np.ndarray, time: float) -> None:
         begin = self.time

@@ -9,11 +9,12 @@ import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.free_rotation import lander_inertia
+from lithobrake.pipeline.design.rough_ground import roughness
 from lithobrake.pipeline.site import Site
 from lithobrake.study.touchdown_model import PLACE
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Body, Flights
+    from lithobrake.smallbody import Body, Flights, Shape
 
 # Steps toward the nearest ground: each leaves at most the sine of the angle between two facets of the way.
 PROJECTIONS = 8
@@ -45,6 +46,11 @@ class JourneyModel:
     def seed(self) -> int:
         """Of the study."""
         return self.design.study.seed
+
+    @property
+    def roughness(self) -> float:
+        """Root mean square slope of the ground at the lander's scale [rad]."""
+        return roughness(self.design.study)
 
     @property
     def duration(self) -> float:
@@ -79,13 +85,14 @@ class JourneyModel:
             mass=np.array([mass]), spin_period=np.array([spin_period]), threads=1,
         )  # fmt: skip
 
-    def on_ground(self, point: np.ndarray) -> np.ndarray:
-        """The place on the ground [m], [3], nearest to a point beside it."""
-        shape, place = self.body.shape, point
-        for _ in range(PROJECTIONS):
-            height, facet = shape.nearest(place)
-            place = place - height * shape.normals[facet]
-        if shape.height(place) >= 0.0:
-            return place
-        # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
-        return shape.surface_point(*shape.latitude_longitude(point))
+
+def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
+    """The place on the ground [m], [3], nearest to a point beside it."""
+    place = point
+    for _ in range(PROJECTIONS):
+        height, facet = shape.nearest(place)
+        place = place - height * shape.normals[facet]
+    if shape.height(place) >= 0.0:
+        return place
+    # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
+    return shape.surface_point(*shape.latitude_longitude(point))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
+from lithobrake.pipeline.design.rough_ground import first_axes
 from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.fly.flights import write_shape
 from lithobrake.pipeline.job import Job
@@ -54,7 +55,8 @@ def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> 
     """Journeys, numbered from `first` on, whose first touchdowns have these inputs."""
     site = model.site
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
-    origin, axes = site.frames(columns)
+    origin, mean_axes = site.frames(columns)
+    axes = first_axes(site.study, mean_axes, rows)
     numbers = zip(
         *(one.tolist() for one in (site.clock(columns), columns["mass"], columns["spin_period"])), strict=True
     )

@@ -8,6 +8,7 @@ from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedBoulders, PlannedGrains, PlannedTile
+from lithobrake.pipeline.planning.planned_ground import PlannedGround
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.runs_a_bed import RunsABed
 
@@ -36,6 +37,7 @@ class Plan:
     boulders        of the beds; None where there are none
     tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
+    ground          of the first touchdowns of journeys; None for other studies
     delivery        how landers that are delivered as states reach the ground, in a sentence; None for others
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
@@ -58,6 +60,7 @@ class Plan:
     grains: PlannedGrains | None = None
     boulders: PlannedBoulders | None = None
     tile: PlannedTile | None = None
+    ground: PlannedGround | None = None
     delivery: str | None = None
     inference: ExpectedInference | None = None
 

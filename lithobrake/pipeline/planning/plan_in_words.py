@@ -27,6 +27,7 @@ def plan_lines(plan: Plan) -> list[str]:
         lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
         lines += [f"  {plan.basis}"]
     lines += [_site(plan.site_slope_deg)]
+    lines += [plan.ground.line()] if plan.ground else []
     lines += [plan.delivery] if plan.delivery else []
     lines += [plan.tile.line()] if plan.tile else []
     lines += [plan.grains.line()] if plan.grains else []

@@ -93,11 +93,13 @@ class PlannedGrains:
 
 @dataclass(frozen=True)
 class PlannedBoulders:
-    """How many a bed has in the mean, their diameters [m], and the part of the ground under them."""
+    """How many a bed has in the mean, their diameters [m], the median of the largest one in all beds [m], and the part
+    of the ground under them."""
 
     count: float
     smallest: float
     largest: float
+    likely_largest: float
     coverage: float
 
     def line(self) -> str:
@@ -105,7 +107,7 @@ class PlannedBoulders:
         sizes = f"{self.smallest:.3g} to {self.largest:.3g}" if self.smallest < self.largest else f"{self.largest:.3g}"
         return (
             f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {100.0 * self.coverage:.3g} % "
-            "of the ground."
+            f"of the ground; the largest of all beds is likely {self.likely_largest:.2g} m."
         )
 
 
@@ -115,7 +117,10 @@ def planned_boulders(study: Study) -> PlannedBoulders | None:
     if rocks is None:
         return None
     count = rocks.mean_count(math.prod(study.bed.width))
-    return PlannedBoulders(count, rocks.sizes.lower, rocks.sizes.upper, rocks.coverage)
+    # Of so many draws half have no boulder beyond this part of the sizes.
+    part = 0.5 ** (1.0 / max(count * study.bed_count, 1.0))
+    likely = float(rocks.sizes.draw(np.array([part]))[0])
+    return PlannedBoulders(count, rocks.sizes.lower, rocks.sizes.upper, likely, rocks.coverage)
 
 
 def planned_grains(study: Study) -> PlannedGrains | None:

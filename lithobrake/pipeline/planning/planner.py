@@ -26,6 +26,7 @@ from lithobrake.pipeline.planning.planned_beds import (
     planned_grains,
     planned_tile,
 )
+from lithobrake.pipeline.planning.planned_ground import planned_ground
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
@@ -109,6 +110,7 @@ def plan_of(
         grains=planned_grains(study),
         boulders=planned_boulders(study),
         tile=planned_tile(study),
+        ground=planned_ground(design),
         delivery=_delivery(design),
     )
 

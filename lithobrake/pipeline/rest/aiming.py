@@ -87,6 +87,6 @@ def ways_from_aims(body: "Body", site: Mapping[str, np.ndarray], there: np.ndarr
     """
     latitude, longitude = site["latitude_deg"], site["longitude_deg"]
     aims, inverse = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
-    radius = np.array([np.linalg.norm(body.shape.surface_point(*one)) for one in aims.tolist()])
+    radius = np.linalg.norm(body.shape.surface_point(*aims.T), axis=1)
     ways: np.ndarray = radius[inverse.ravel()] * angles(directions(latitude, longitude), there)
     return ways

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.rough_ground import roughness
 from lithobrake.pipeline.emulate.outgoing import VELOCITY
 from lithobrake.pipeline.emulate.samples import CAPTURED, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.fly.flights import write_table
@@ -122,7 +123,7 @@ def on_soil(
 
     spin, bounce = soil(job, samples)
     first = Rebounds(first_velocity(samples), spin, samples.outcome == CAPTURED, ~samples.known)
-    return first, slow_arrivals(job.design, samples, bounce)
+    return first, on_rough(job.study, slow_arrivals(job.design, samples, bounce))
 
 
 def sliding_friction(design: DrawnDesign, samples: Samples, ground: str) -> np.ndarray:
@@ -144,9 +145,16 @@ def sliding_friction(design: DrawnDesign, samples: Samples, ground: str) -> np.n
 
 def on_hard_ground(study: Study, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
     """What hard ground says of the first impact, and of all that follow."""
-    bounce = hard_surface(study)
-    # Hard ground has no scatter, so no random number is drawn.
-    return bounce(_first_impacts(study, sites), np.random.default_rng(0)), bounce
+    bounce = on_rough(study, hard_surface(study))
+    random = np.random.default_rng(sampling_seed(study, "hard ground"))
+    return bounce(_first_impacts(study, sites), random), bounce
+
+
+def on_rough(study: Study, bounce: "Bounce") -> "Bounce":
+    """A bounce off the ground of a study, which may be rough."""
+    from lithobrake.smallbody import RoughGround
+
+    return RoughGround(bounce, roughness(study)) if study.site.roughness_deg else bounce
 
 
 def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce"]:
@@ -154,8 +162,8 @@ def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce
     study = job.study
     table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "drawn"))
     table.save(job.folder / RESTITUTION)
-    random = np.random.default_rng(sampling_seed(study, "equivalent ground"))
-    return table(_first_impacts(study, sites), random), table
+    random, bounce = np.random.default_rng(sampling_seed(study, "equivalent ground")), on_rough(study, table)
+    return bounce(_first_impacts(study, sites), random), bounce
 
 
 def _first_impacts(study: Study, sites: "Sites") -> "Impacts":

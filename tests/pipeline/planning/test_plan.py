@@ -34,6 +34,7 @@ from lithobrake.pipeline.planning.expected_time import (
 )
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planned_beds import planned_boulders, planned_grains, planned_tile
+from lithobrake.pipeline.planning.planned_ground import planned_ground
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
@@ -66,6 +67,12 @@ def soft(**changes: dict[str, Any]) -> Study:
     for section, keys in changes.items():
         tables[section] = tables.get(section, {}) | keys
     return check_tables(tables, SCENARIOS)
+
+
+def journeys(roughness_deg: float) -> Study:
+    """The quick study on ground of this roughness."""
+    tables = load_tables(SCENARIOS / "quick.toml")
+    return check_tables(tables | {"site": tables["site"] | {"roughness_deg": roughness_deg}}, SCENARIOS)
 
 
 def plan_for(study: Study, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False) -> Plan:
@@ -122,8 +129,40 @@ def test_the_plan_says_how_many_boulders_a_bed_has() -> None:
     rocks = {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1}
     found = planned_boulders(soft(bed={"boulders": rocks, "width": [1.0, 1.0]}))
     assert found is not None
-    assert found.line() == "Boulders: 3.18 in a bed in the mean, 0.2 m in diameter, on 10 % of the ground."
+    assert found.line() == (
+        "Boulders: 3.18 in a bed in the mean, 0.2 m in diameter, on 10 % of the ground; the largest of all beds is "
+        "likely 0.2 m."
+    )
     assert planned_boulders(soft()) is None
+
+
+def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
+    """Of N boulders half of all studies have none above D where N(>D) / N is 1 - 0.5^(1/N): here a power of -2."""
+    sizes = {"distribution": "power_law", "cumulative_exponent": 2.0, "lower": 0.2, "upper": 2.0}
+    study = soft(bed={"boulders": {"diameter": sizes, "coverage": 0.1}, "width": [10.0, 10.0], "bed_count": 7})
+    found = planned_boulders(study)
+    assert found is not None
+    beyond = 1.0 - 0.5 ** (1.0 / (7.0 * found.count))
+    square = 1.0 / (beyond * (0.2**-2 - 2.0**-2) + 2.0**-2)
+    assert found.likely_largest == pytest.approx(square**0.5, rel=1e-9)
+    assert 0.2 < found.likely_largest < 2.0
+
+
+def test_the_plan_says_how_the_ground_of_the_first_touchdowns_lies() -> None:
+    """Smooth ground slopes as the partner pulls; rough ground by what was asked for, as far as soil holds it."""
+    smooth, rough = (planned_ground(DrawnDesign(with_site_gravity(journeys(angle)))) for angle in (0.0, 30.0))
+    assert smooth is not None
+    assert rough is not None
+    assert max(smooth.slope_deg) < 12.0
+    assert smooth.steeper == 0.0
+    # The median of a Rayleigh law whose rms is tan(30 deg).
+    median = math.degrees(math.atan(math.tan(math.radians(30.0)) * math.sqrt(math.log(2.0))))
+    assert rough.slope_deg[0] == pytest.approx(median, abs=4.0)
+    assert rough.slope_deg[1] == pytest.approx(35.0)
+    assert 0.1 < rough.steeper < 0.5
+    assert "with a roughness of 30 deg rms; " in rough.line()
+    assert smooth.line().startswith("First touchdowns: ")
+    assert planned_ground(DrawnDesign(soft())) is None
 
 
 def test_planning_makes_and_changes_nothing(tmp_path: Path) -> None:

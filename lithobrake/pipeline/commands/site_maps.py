@@ -1,0 +1,146 @@
+"""A map of sites: one delivery to a grid of cells over the body, by the emulator of a finished study of journeys."""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+
+from lithobrake.analysis import EqualAreaCells
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.files.atomic import atomic_path
+from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.answer.shares_over_refits import Refits
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
+from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
+from lithobrake.pipeline.emulated.touchdown_emulator import why_no_emulator
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.solver import Model
+from lithobrake.pipeline.sequential_sampling import grown
+from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.sites.site_agreement import first_places, site_agreement
+from lithobrake.pipeline.sites.site_cells import all_at_rest, site_cells
+from lithobrake.pipeline.sites.site_ground import SiteGround
+from lithobrake.pipeline.sites.site_landers import follow_sites
+from lithobrake.pipeline.sites.site_words import with_words
+from lithobrake.pipeline.study_run import run_study
+from lithobrake.results.json_values import to_json
+from lithobrake.results.site_map import SiteMap
+from lithobrake.study import Study, StudySource
+from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
+
+# The stage whose emulator is asked.
+UNTIL = "emulated"
+MOST_LANDERS = 2_000_000
+
+
+def map_sites(
+    source: StudySource,
+    out: Path,
+    *,
+    cell_count: int = 120,
+    lander_count: int = 200,
+    worker_count: int | None = None,
+    scheduler: str | None = None,
+    model: Model | None = None,
+    shown: Progress | None = None,
+) -> SiteMap:
+    """Say what becomes of landers that a study of journeys delivers to each of so many sites over its body.
+
+    cell_count: sites, cells of equal area; lander_count: landers of each, a multiple of the refits of the emulator, at
+    least two of each; all else: as for `run_study`, which makes the journeys and their emulator first. Raises
+    ValueError for a study without journeys or emulator, one whose landers are delivered as states, and for what
+    `run_study` refuses.
+    """
+    shown = shown or Silent()
+    cells = EqualAreaCells.of(cell_count)
+    _refuse(source.study, cell_count, lander_count)
+    run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
+    study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
+    why = why_no_emulator(folder.read_json(EMULATOR))
+    if why is not None:
+        raise ValueError(f"{out} has nothing to follow landers by. {why} Follow more journeys (journey.count).")
+    with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
+        design = grown(DrawnDesign(study), folder)
+        job = Job(design, Site(study), source.tables, folder, executor, shown, model)
+        shown.begin("map of sites", 1, 1)
+        return _mapped(job, source.stem, cells, lander_count)
+
+
+def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
+    """Raise ValueError for a study that has no landers to deliver elsewhere, and for counts that make no map."""
+    if study.journey is None:
+        raise ValueError("sites follows landers to rest, and the study has no [journey]; add it")
+    if study.delivery is not None and study.delivery.is_flown:
+        raise ValueError(
+            "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
+            "say instead how they arrive there (delivery.speed, delivery.incidence_deg)"
+        )
+    if lander_count < 2 * REFIT_COUNT or lander_count % REFIT_COUNT:
+        raise ValueError(
+            f"--landers is {lander_count}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 200"
+        )
+    if cell_count * lander_count > MOST_LANDERS:
+        raise ValueError(
+            f"--cells {cell_count} with --landers {lander_count} makes {cell_count * lander_count} landers; allowed: "
+            f"up to {MOST_LANDERS}; take fewer of either"
+        )
+
+
+def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> SiteMap:
+    """The map of a study whose emulator is there."""
+    study, runs = job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN)
+    fitted = Refits(len(np.unique(runs.inputs["bed"])), runs.run_count, why_no_interval(study))
+    ground, landers = SiteGround.of(job, cells), follow_sites(job, cells, lander_count)
+    latitude, longitude = (one[np.isfinite(one)] for one in first_places(job))
+    journeys = np.bincount(cells.cell_of(latitude, longitude), minlength=cells.total)
+    shape = job.site.body.shape
+    found = SiteMap(
+        title=study.title or stem,
+        body=study.site.name or Path(study.site.body).stem.capitalize(),
+        statement="",
+        of="",
+        level=LEVEL,
+        why=fitted.why,
+        duration_s=study.journey.duration if study.journey else 0.0,
+        landers=lander_count,
+        refits=REFIT_COUNT,
+        beds=fitted.bed_count,
+        touchdowns=fitted.run_count,
+        area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
+        at_rest=all_at_rest(landers, fitted),
+        cells=site_cells(cells, landers, ground, fitted, journeys),
+        agreement=site_agreement(job),
+    )
+    return with_words(found)
+
+
+def site_map_files(place: Path) -> tuple[Path, Path, Path]:
+    """The files of a map of sites in a folder: its page, its numbers, and its cells as a table."""
+    return place / "index.html", place / "sites.json", place / "sites.csv"
+
+
+def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Path, Path, Path]:
+    """Write page, figures, sites.json and sites.csv of a map into a folder, which is made; returns the files."""
+    from lithobrake.report import write_sites
+
+    page, numbers, table = site_map_files(place)
+    write_sites(site_map, study_text, place)
+    with atomic_path(numbers) as draft:
+        draft.write_text(json.dumps(to_json(site_map), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    rows = [cell.row for cell in site_map.cells]
+    with atomic_path(table) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    return page, numbers, table
+
+
+def site_lines(site_map: SiteMap) -> list[str]:
+    """A map of sites for a terminal: what it says, and over which landers."""
+    return [site_map.statement, site_map.of]

@@ -1,0 +1,69 @@
+"""First touchdowns on ground that is rough: the frame of the ground that a lander meets, and its touchdown in there."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame
+from lithobrake.pipeline.design.arrival import SPIN, attitude_inputs, impact_inputs
+from lithobrake.study import Study
+from lithobrake.study.touchdown_model import ORIENTATION
+
+Row = dict[str, float]
+AZIMUTH, INCIDENCE, SPEED = "impact.azimuth_deg", "impact.incidence_deg", "impact.speed"
+# Angle of an impact from the normal of the shape's facet, where the ground that is met faces another way.
+MEAN_INCIDENCE = "impact.mean_incidence_deg"
+
+
+def roughness(study: Study) -> float:
+    """Root mean square slope of the ground at the lander's scale [rad]."""
+    return math.radians(study.site.roughness_deg or 0.0)
+
+
+def first_axes(study: Study, axes: np.ndarray, rows: Sequence[Row]) -> np.ndarray:
+    """Axes of first touchdowns in rows, [count, 3, 3], from those on the facets of the shape.
+
+    rows: inputs of the touchdowns, by which journeys have the same ground whoever asks.
+    """
+    if not study.site.roughness_deg or not len(rows):
+        return axes
+    from lithobrake.smallbody import met_normals
+    from lithobrake.smallbody.hopping import impact_frame
+
+    angle = np.radians([row.get(MEAN_INCIDENCE, row[INCIDENCE]) for row in rows])
+    incoming = np.sin(angle)[:, None] * axes[:, 0] - np.cos(angle)[:, None] * axes[:, 2]
+    uniforms = np.array([first_uniforms(study, int(row["journey"])) for row in rows])
+    return impact_frame(incoming, met_normals(incoming, axes[:, 2], roughness(study), uniforms))
+
+
+def first_uniforms(study: Study, journey: int) -> np.ndarray:
+    """What draws the ground of the first touchdown of a journey, two numbers between 0 and 1."""
+    return np.random.default_rng(hashed_seed(study.seed, "roughness", journey)).random(2)
+
+
+def on_rough_ground(study: Study, rows: Sequence[Row], axes: np.ndarray, met: np.ndarray) -> list[Row]:
+    """First touchdowns in the frames of the ground that they meet, from those on the facets of the shape.
+
+    axes, met: of both frames, in rows, [count, 3, 3]. The lander arrives as it did: speed, attitude and spin stay, seen
+    from other axes. Touchdowns that are in their frames already are left as they are.
+    """
+    if not study.site.roughness_deg:
+        return list(rows)
+    each = zip(rows, axes, met, strict=True)
+    return [row if MEAN_INCIDENCE in row else _seen_from(row, *frames) for row, *frames in each]
+
+
+def _seen_from(row: Row, axes: np.ndarray, met: np.ndarray) -> Row:
+    angle, into_frame = math.radians(row[INCIDENCE]), about_z(-math.radians(row[AZIMUTH]))
+    incoming = math.sin(angle) * axes[0] - math.cos(angle) * axes[2]
+    attitude = from_frame(axes) * into_frame * attitude_of(row, ORIENTATION)
+    spin = (from_frame(axes) * into_frame).apply([row[name] for name in SPIN])
+    incidence = math.acos(min(max(-float(incoming @ met[2]), 0.0), 1.0))
+    return {
+        **row,
+        **impact_inputs(row[SPEED], incidence),
+        MEAN_INCIDENCE: row[INCIDENCE],
+        **attitude_inputs(met, row[AZIMUTH], attitude, spin),
+    }

@@ -1,0 +1,166 @@
+"""The page of a map of sites."""
+
+from pathlib import Path
+
+from lithobrake.files.atomic import atomic_path
+from lithobrake.report.content import Content, PageTable, Plot, Tile
+from lithobrake.report.figures.sites_figure import agreement_figure, sites_figure
+from lithobrake.report.pages.html import page
+from lithobrake.report.study_report import drawn_panels
+from lithobrake.report.words.numbers import number
+from lithobrake.results.shares import Estimate
+from lithobrake.results.site_map import SiteCell, SiteMap, SiteSpread
+from lithobrake.vocabulary.percentages import BoundedShare, percent, with_interval
+
+HOUR = 3600.0
+# Sites of the short table.
+BEST = 12
+
+
+def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
+    """Write index.html and its figures into a folder, which is made; returns the page."""
+    plots = [Plot("sites", "Sites", _caption(site_map), lambda: sites_figure(site_map))]
+    if site_map.agreement:
+        plots += [
+            Plot(
+                *("agreement", "Emulator and landings", _agreement_caption(site_map)),
+                lambda: agreement_figure(site_map.agreement, site_map.level),
+                tables=[_agreement(site_map)],
+            )
+        ]
+    panels = drawn_panels(place, plots, lambda done, total: None)
+    tables = [_best(site_map), _table(site_map, site_map.cells, "All sites")]
+    content = Content(site_map.statement, _warnings(site_map), _tiles(site_map), plots, tables)
+    files = {"The study file": study_text}
+    text = page(site_map.title, site_map.of, content, panels, [_provenance()], files, kind="Map of sites")
+    path = place / "index.html"
+    with atomic_path(path) as draft:
+        draft.write_text(text, encoding="utf-8")
+    return path
+
+
+def _warnings(site_map: SiteMap) -> list[str]:
+    """What to beware of."""
+    found = [site_map.why] if site_map.why else []
+    lacking = len(site_map.cells) - site_map.answered
+    if lacking:
+        found += [
+            f"{lacking} of {len(site_map.cells)} sites are not answered: more than one in ten of their landers meets "
+            "an impact unlike those of the study's journeys. A study that is delivered all over the body answers them."
+        ]
+    if site_map.agreement and site_map.agreement[0].agrees is False:
+        found += ["Emulator and landings do not agree on the landers at rest: follow more journeys (journey.count)."]
+    return found
+
+
+def _tiles(site_map: SiteMap) -> list[Tile]:
+    shares = [cell.ends.at_rest.share for cell in site_map.cells if cell.ends is not None]
+    if not shares or site_map.at_rest is None:
+        return []
+    best = sum(cell.not_worse for cell in site_map.cells)
+    hours = site_map.duration_s / HOUR
+    return [
+        Tile(percent(site_map.at_rest.share).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
+        Tile(f"{100 * min(shares):.0f} to {100 * max(shares):.0f}", "%", "at rest, from site to site"),
+        Tile(str(best), f"of {len(site_map.cells)}", "sites cannot be told from the best"),
+        Tile(str(site_map.answered), f"of {len(site_map.cells)}", "sites are answered"),
+    ]
+
+
+def _caption(site_map: SiteMap) -> str:
+    light = "; light is the mean over a day and the seasons of the study" if site_map.cells[0].light else ""
+    return (
+        f"Landers that are delivered in one way to each of {len(site_map.cells)} sites of {site_map.body}, in "
+        f"Hammer's equal-area projection about longitude 0. Slopes are those of the facets{light}. Intervals stand "
+        "in the table of all sites."
+    )
+
+
+def _agreement_caption(site_map: SiteMap) -> str:
+    return (
+        "The study's own journeys, by the landings that were simulated for them and by refits of the emulator that "
+        "have not seen their beds: all of them (filled), and those with their first touchdown in each region of an "
+        f"eighth of the body, with {percent(site_map.level)} intervals."
+    )
+
+
+def _agreement(site_map: SiteMap) -> PageTable:
+    columns = ["region about", "journeys", "at rest by landings", "by the emulator", "difference [points]", "agree"]
+    rows = []
+    for one in site_map.agreement:
+        where = "whole body"
+        if one.latitude_deg is not None and one.longitude_deg is not None:
+            where = f"{one.latitude_deg:.0f}, {one.longitude_deg:.0f} deg"
+        off = one.difference
+        bounds = (
+            "" if off.lower is None or off.upper is None else f" ({100 * off.lower:+.0f} to {100 * off.upper:+.0f})"
+        )
+        verdict = {True: "yes", False: "no", None: ""}[one.agrees]
+        shares = with_interval(one.landings), with_interval(one.emulator)
+        rows.append([where, str(one.journeys), *shares, f"{100 * off.share:+.0f}{bounds}", verdict])
+    note = "The same landers both times, so that the difference is better known than either fraction."
+    return PageTable("Emulator and landings", columns, rows, note, numbers=frozenset(columns[1:2]))
+
+
+def _best(site_map: SiteMap) -> PageTable:
+    answered = [cell for cell in site_map.cells if cell.ends is not None]
+    order = sorted(answered, key=_least, reverse=True)[:BEST]
+    return _table(site_map, order, f"The {len(order)} sites with the highest lower end of the interval")
+
+
+def _least(cell: SiteCell) -> tuple[float, float]:
+    assert cell.ends is not None
+    rests = cell.ends.at_rest
+    return (rests.share if rests.lower is None else rests.lower), rests.share
+
+
+def _table(site_map: SiteMap, cells: "tuple[SiteCell, ...] | list[SiteCell]", title: str) -> PageTable:
+    names = tuple(site_map.cells[0].light)
+    words = {"sun": "sunlight [% of day]", "earth": "Earth [% of day]"}
+    columns = [
+        *("latitude", "longitude", "at rest [%]", "on the partner [%]", "escaped [%]", "time to rest [h]"),
+        *("distance [m]", "slope [deg]", *(words.get(name, name) for name in names), "like the best", "journeys"),
+    ]
+    note = (
+        f"Middle of each site [deg]. Fractions and medians with {percent(site_map.level)} intervals; slope and light "
+        "as the mean, and the span of nine places in ten, over the site. Journeys: of the study, with their first "
+        "touchdown there."
+    )
+    rows = [_row(cell, names) for cell in cells]
+    return PageTable(title, columns, rows, note, numbers=frozenset((*columns[:2], columns[-1])))
+
+
+def _row(cell: SiteCell, names: tuple[str, ...]) -> list[str]:
+    ends = cell.ends
+    if ends is None:
+        of_landers = [f"not answered ({cell.beyond})", "", "", "", ""]
+    else:
+        shares = [_share(one) for one in (ends.at_rest, ends.partner, ends.escaped)]
+        of_landers = [*shares, _estimate(ends.time_s, HOUR), _estimate(ends.distance_m, 1.0)]
+    light = [_spread(cell.light[name], 100.0) for name in names]
+    ground = [_spread(cell.slope_deg, 1.0), *light, "yes" if cell.not_worse else ""]
+    return [f"{cell.latitude_deg:.0f}", f"{cell.longitude_deg:.0f}", *of_landers, *ground, str(cell.journeys)]
+
+
+def _share(share: BoundedShare) -> str:
+    return with_interval(share).replace(" %", "")
+
+
+def _estimate(found: Estimate | None, unit: float) -> str:
+    if found is None:
+        return ""
+    value = number(found.value / unit, 2)
+    if found.lower is None or found.upper is None:
+        return value
+    return f"{value} ({number(found.lower / unit, 2)} to {number(found.upper / unit, 2)})"
+
+
+def _spread(found: SiteSpread, times: float) -> str:
+    low, mean, high = (times * one for one in (found.low, found.mean, found.high))
+    return f"{mean:.0f}" if round(low) == round(high) else f"{mean:.0f} ({low:.0f} to {high:.0f})"
+
+
+def _provenance() -> PageTable:
+    rows = [["sites.json", "every number of the map"], ["sites.csv", "a row for each site"]]
+    rows += [["figure_*.svg, figure_*.png", "the figures"]]
+    return PageTable("Files", ["file", "what it holds"], rows, "In the folder of this page.")

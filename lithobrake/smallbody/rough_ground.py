@@ -1,0 +1,122 @@
+"""Ground that is rough at the scale of a lander: which way the ground faces that it meets, and bounces off such ground.
+
+The gradient of the ground against the facets of a shape has two components that are normal and independent, so its size
+has a Rayleigh distribution and its direction is any. Seen along a velocity, ground that faces the lander covers more of
+the view than its share of the map: a gradient is met with a probability that goes with 1 + (gradient along the way)
+tan(incidence), and ground that faces away is not met. What stands in the way farther off is left out.
+Source: [Shepard-2001] (rms slope, and that it belongs to a scale).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lithobrake.smallbody.bounce import Bounce, Impacts, Rebounds
+from lithobrake.smallbody.hopping import impact_frame
+from lithobrake.vocabulary.given_numbers import finite_number
+
+Array = NDArray[np.float64]
+# Standard deviations within which a gradient lies, and halvings of their width down to the last bit.
+FARTHEST, HALVINGS = 9.0, 60
+# How often a lander meets ground before it leaves that about it; then it is held where it is.
+MOST_TOUCHES = 100
+
+
+def met_normals(velocity: Array, up: Array, roughness: float, uniforms: Array) -> Array:
+    """Unit normals of the ground that landers meet, [count, 3], in the axes of the velocities.
+
+    velocity [m/s] and up, unit normals of the ground without roughness, both [count, 3]; roughness: the angle [rad]
+    whose tangent is the root mean square of the gradient, from 0 to below a right angle; uniforms [count, 2]: numbers
+    between 0 and 1 that draw the gradient.
+    """
+    finite_number("roughness", roughness, at_least=0.0, below=0.5 * math.pi)
+    if roughness == 0.0 or not len(velocity):
+        return up
+    from scipy.special import ndtri
+
+    axes = impact_frame(velocity, up)
+    along, down = ((axes[:, which] * velocity).sum(axis=1) for which in (0, 2))
+    std = math.tan(roughness) / math.sqrt(2.0)
+    # A lander that comes in along the ground, or from below it for rounding, meets what rises before it.
+    steepness = np.maximum(std * along / np.maximum(-down, 1e-12 * np.linalg.norm(velocity, axis=1)), 0.0)
+    first, second = np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53).T
+    rise, aside = std * _met(steepness, first), std * ndtri(second)
+    normal = axes[:, 2] - rise[:, None] * axes[:, 0] - aside[:, None] * axes[:, 1]
+    found: Array = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+    return found
+
+
+def _met(steepness: Array, uniform: Array) -> Array:
+    """Numbers x [count] of a density that goes with (1 + steepness x) exp(-x**2 / 2) where that is above 0."""
+    from scipy.special import ndtr
+
+    with np.errstate(divide="ignore"):
+        low = np.maximum(-1.0 / steepness, -FARTHEST)
+    high = np.full_like(low, FARTHEST)
+
+    def below(x: Array) -> Array:
+        density = np.exp(-0.5 * x**2) / math.sqrt(2.0 * math.pi)
+        found: Array = ndtr(x) - steepness * density
+        return found
+
+    least, most = below(low), below(high)
+    wanted = least + uniform * (most - least)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        is_less = below(middle) < wanted
+        low, high = np.where(is_less, middle, low), np.where(is_less, high, middle)
+    return 0.5 * (low + high)
+
+
+def incidence_on(velocity: Array, up: Array) -> Array:
+    """Angles of velocities from the inward normals [rad], [count], of velocities and unit normals [count, 3]."""
+    down = -(velocity * up).sum(axis=1) / np.linalg.norm(velocity, axis=1)
+    found: Array = np.arccos(np.clip(down, -1.0, 1.0))
+    return found
+
+
+@dataclass(frozen=True)
+class RoughGround:
+    """A bounce off ground that is rough, each time with a gradient of its own.
+
+    bounce     off the ground that is met
+    roughness  as in met_normals [rad]
+    A lander that leaves the ground that it has met toward that about it meets ground again at once, up to a hundred
+    times; then it is captured. Of the acceleration only the part along the mean normal is known; along the normal of
+    the ground that is met its share of that acts.
+    """
+
+    bounce: Bounce
+    roughness: float
+
+    def __call__(self, impacts: Impacts, random: np.random.Generator) -> Rebounds:
+        """Bounce until each lander leaves the ground, is captured, or the bounce does not know its impact."""
+        count, mean_up = len(impacts.speed), np.array([0.0, 0.0, 1.0])
+        along, down = np.sin(impacts.incidence), np.cos(impacts.incidence)
+        velocity = impacts.speed[:, None] * np.stack([along, np.zeros(count), -down], axis=1)
+        spin = np.array(impacts.spin)
+        captured, outside = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        going = np.arange(count)
+        for _ in range(MOST_TOUCHES):
+            up = np.tile(mean_up, (len(going), 1))
+            normal = met_normals(velocity[going], up, self.roughness, random.random((len(going), 2)))
+            axes = impact_frame(velocity[going], normal)
+            met = Impacts(
+                speed=np.linalg.norm(velocity[going], axis=1),
+                incidence=incidence_on(velocity[going], normal),
+                spin=np.einsum("nij,nj->ni", axes, spin[going]),
+                effective_acceleration=impacts.effective_acceleration[going] * normal[:, 2],
+                lander=impacts.lander[going],
+            )
+            result = self.bounce(met, random)
+            velocity[going], spin[going] = (
+                np.einsum("nji,nj->ni", axes, one) for one in (result.velocity, result.spin)
+            )
+            captured[going], outside[going] = result.captured, result.outside
+            going = going[~result.captured & ~result.outside & (velocity[going, 2] <= 0.0)]
+            if not len(going):
+                break
+        captured[going] = True
+        return Rebounds(velocity, spin, captured, outside)
