@@ -150,16 +150,28 @@ def film(
 Kinds = Annotated[
     list[str],
     typer.Option(
-        "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
+        "--to",
+        metavar="KIND",
+        help="oem, aem, spk, czml, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated.",
     ),
 ]
 Samples = Annotated[
-    list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+    list[int] | None,
+    typer.Option("--flight", metavar="SAMPLE", help="oem, aem, spk, czml: a sample to follow; may be repeated."),
 ]
-Frame = Annotated[str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")]
-Epoch = Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")]
+Frame = Annotated[
+    str, typer.Option("--frame", metavar="inertial|fixed|icrf", help="oem, aem: axes; icrf: by the study's pole.")
+]
+Epoch = Annotated[
+    str | None,
+    typer.Option("--epoch", metavar="UTC", help="When all first touchdowns are; default: each at its own, if known."),
+]
 Step = Annotated[
-    float | None, typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest.")
+    float | None,
+    typer.Option("--step", metavar="SECONDS", help="Between states; default: 1 % of the longest; aem: 10 degrees."),
+]
+BodyNumber = Annotated[
+    int | None, typer.Option("--body-number", metavar="N", help="spk: number of the body in SPICE, if it is a mesh.")
 ]
 Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
 Again = Annotated[
@@ -177,6 +189,7 @@ def export(
     epoch: Epoch = None,
     step: Step = None,
     resolution: Resolution = 1.0,
+    body_number: BodyNumber = None,
     run: Again = None,
     force: Force = False,
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
@@ -193,7 +206,7 @@ def export(
 
         with shown_progress("export") as progress:
             again = None if run is None else _run_of(run)
-            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress)
+            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
             written = export_study(results, place, to, choices)
     if json:
         tell_json({"files": [str(path.resolve()) for path in written]})

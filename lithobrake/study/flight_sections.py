@@ -42,7 +42,8 @@ class SiteSection(Section):
     pole_declination_deg: Annotated[float, Number("deg", at_least=-90, at_most=90)] | None = None
     """Declination of that pole."""
     meridian_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
-    """Angle W of longitude 0 at delivery.epoch, from the node of the body's equator on that of ICRF, eastward."""
+    """Angle W of longitude 0 at delivery.epoch, or, without one, at the epoch of an export, from the node of the body's
+    equator on that of ICRF, eastward."""
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0
