@@ -9,8 +9,9 @@ from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
 from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.sky import day_directions, seen_over_a_day
-from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
+from lithobrake.smallbody.sky import Screen, circle_places, day_directions, seen_from
+from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_places, read_spin
+from lithobrake.smallbody.sun_and_earth import HeliocentricOrbit, latitudes_over
 from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
@@ -21,6 +22,7 @@ __all__ = [
     "FlightStatus",
     "Flights",
     "HardSurface",
+    "HeliocentricOrbit",
     "Impacts",
     "JourneyStatus",
     "Journeys",
@@ -29,15 +31,19 @@ __all__ = [
     "PartnerPlace",
     "Rebounds",
     "RestitutionTable",
+    "Screen",
     "Shape",
     "SpinState",
+    "circle_places",
     "day_directions",
     "didymos",
     "dimorphos",
     "fly",
     "hop",
+    "latitudes_over",
     "read_partner",
+    "read_places",
     "read_spin",
-    "seen_over_a_day",
+    "seen_from",
     "tumble",
 ]  # fmt: skip
