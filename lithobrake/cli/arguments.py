@@ -79,3 +79,8 @@ def refuse_written(path: Path, force: bool) -> None:
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
+
+
+def run_of(text: str) -> str | int:
+    """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text
