@@ -88,3 +88,8 @@ def scheduler_of(executor: str, scheduler: str | None) -> str | None:
     if (executor == "dask") != (scheduler is not None):
         leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
     return scheduler
+
+
+def run_of(text: str) -> str | int:
+    """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text

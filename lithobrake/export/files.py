@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from lithobrake.export.aem import attitude_name, write_attitudes
+from lithobrake.export.czml import write_czml
 from lithobrake.export.ephemerides import flight_names, write_ephemerides
-from lithobrake.export.maps import RESOLUTION_DEG, write_geojson, write_geotiff, write_rest_geojson
+from lithobrake.export.maps import RESOLUTION_DEG, map_name, write_geojson, write_geotiff, write_rest_geojson
 from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, write_plates
+from lithobrake.export.spk import CONSTANTS, FLIGHTS, write_spk
 from lithobrake.files.atomic import refuse_existing
 from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
@@ -20,7 +23,7 @@ class ExportOptions:
 
     run: whose landing is made again, by its row in `runs`, its key, or how that begins; None: the one that the study
     keeps. replaces: write over files that exist. progress: told the fraction that is done of such a landing, or of the
-    flights, and what is being done.
+    flights, and what is being done. body_number: of the body in SPICE.
     """
 
     samples: Sequence[int] = ()
@@ -31,6 +34,7 @@ class ExportOptions:
     run: str | int | None = None
     replaces: bool = False
     progress: Progress = silent
+    body_number: int | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,27 @@ def _oem(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
         epoch=chosen.epoch,
         step=chosen.step,
         progress=chosen.progress,
+    )
+
+
+def _spk(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    # SPICE takes its own axes alone, whatever the other files are in.
+    write_spk(
+        *(results, folder, chosen.samples),
+        epoch=chosen.epoch,
+        step=chosen.step,
+        body_number=chosen.body_number,
+        progress=chosen.progress,
+    )
+
+
+def _aem(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    write_attitudes(results, folder, chosen.samples, frame=chosen.frame, epoch=chosen.epoch, step=chosen.step)
+
+
+def _czml(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
+    write_czml(
+        *(results, folder / CZML, chosen.samples), epoch=chosen.epoch, step=chosen.step, progress=chosen.progress
     )
 
 
@@ -87,18 +112,23 @@ def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
     contact_sheet(_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.png")
 
 
-IMPACTS, REST = "impacts.geojson", "rest.geojson"
+IMPACTS, REST, CZML = "impacts.geojson", "rest.geojson", "landers.czml"
 KINDS = {
     "oem": Kind(lambda results, chosen: [f"{name}.oem" for name in flight_names(chosen.samples)], _oem),
+    "aem": Kind(
+        lambda results, chosen: [f"{attitude_name(sample)}.aem" for sample in dict.fromkeys(chosen.samples)], _aem
+    ),
+    "spk": Kind(lambda results, chosen: [FLIGHTS, CONSTANTS], _spk),
+    "czml": Kind(lambda results, chosen: [CZML], _czml),
     "plates": Kind(
         lambda results, chosen: ["body.plates.txt"],
         lambda results, folder, chosen: write_plates(results, folder / "body.plates.txt"),
     ),
     "facets": Kind(lambda results, chosen: ["facets.csv", "facets.fits"], _facets),
     "geotiff": Kind(
-        lambda results, chosen: ["impacts.tif"],
+        lambda results, chosen: [map_name(results)],
         lambda results, folder, chosen: write_geotiff(
-            results, folder / "impacts.tif", resolution_deg=chosen.resolution_deg
+            results, folder / map_name(results), resolution_deg=chosen.resolution_deg
         ),
     ),
     "geojson": Kind(lambda results, chosen: [IMPACTS, *([REST] if _has_rest(results) else [])], _geojson),

@@ -27,7 +27,7 @@ USER_DEFINED, GEOGRAPHIC, PIXEL_IS_AREA, DEGREE = 32767, 2, 1, 9102
 GDAL_NODATA = 42113
 # Finer cells than the second would take gigabytes of memory, and are smaller than what any study knows of a place.
 RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
-BAND, BAND_UNIT = "impact density", "1/m2"
+BAND_UNIT = "1/m2"
 WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"
 # Of each impact and of each place of rest, and what those columns hold that are no floats.
 PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
@@ -86,11 +86,16 @@ def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = 
             f"resolution is {resolution_deg} deg; allowed: {FINEST_DEG} to 180 deg, a whole part of 180 deg"
         )
     frame = MapFrame.of(results)
-    what = "landers that rest" if has_journeys(results) else "flights that end"
+    band, what = ("rest", "landers that rest") if has_journeys(results) else ("impact", "flights that end")
     quantity = f"share of all {what} in the cell, over its area"
     image = Image.fromarray(impact_density(results, frame.radius, cells).astype(np.float32))
     with atomic_path(path) as draft:
-        image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells, quantity))
+        image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells, f"{band} density", quantity))
+
+
+def map_name(results: StudyResults) -> str:
+    """Name of the file of that map."""
+    return "rest.tif" if has_journeys(results) else "impacts.tif"
 
 
 def impact_density(results: StudyResults, radius: float, cells: int) -> np.ndarray:
@@ -114,7 +119,7 @@ def _ends_on_ground(results: StudyResults) -> tuple[Table, np.ndarray]:
     return results.flights, results.flights["status"] == FlightStatus.IMPACT
 
 
-def _tags(frame: MapFrame, resolution_deg: float, quantity: str) -> "ImageFileDirectory_v2":
+def _tags(frame: MapFrame, resolution_deg: float, band: str, quantity: str) -> "ImageFileDirectory_v2":
     """What the file says of its cells, of their frame, and of the quantity in them."""
     from PIL.TiffImagePlugin import ImageFileDirectory_v2
 
@@ -127,7 +132,7 @@ def _tags(frame: MapFrame, resolution_deg: float, quantity: str) -> "ImageFileDi
     ]  # fmt: skip
     items = {"QUANTITY": quantity, "UNIT": BAND_UNIT, "FRAME": WORDS}
     metadata = "".join(f'<Item name="{name}">{words}</Item>' for name, words in items.items())
-    of_band = {"DESCRIPTION": BAND, "UNITTYPE": BAND_UNIT}
+    of_band = {"DESCRIPTION": band, "UNITTYPE": BAND_UNIT}
     metadata += "".join(
         f'<Item name="{name}" sample="0" role="{name.lower()}">{words}</Item>' for name, words in of_band.items()
     )
@@ -195,6 +200,7 @@ def _write_points(results: StudyResults, path: Path, what: str, table: Table, na
         "name": f"{what} on {frame.body}",
         "crs": {"type": "name", "properties": {"name": frame.wkt}},
         "note": f"{WORDS}; coordinates in degrees, longitude first",
+        "units": {name: table.columns[name].units for name in names},
         "features": features,
     }
     with atomic_path(path) as draft:

@@ -57,24 +57,34 @@ def parsed_epoch(text: str) -> datetime:
 
 def write_oem(path: Path, segments: Iterable[Segment], epoch: datetime, comments: Sequence[str] = ()) -> None:
     """Write segments whose times count from an epoch [UTC]; lengths in km, as the standard has them."""
-    made = datetime.now(UTC).replace(tzinfo=None, microsecond=0)
-    lines = [f"CCSDS_OEM_VERS = {VERSION}", *_comments(comments)]
-    lines += [f"CREATION_DATE = {made.isoformat()}", "ORIGINATOR = LITHOBRAKE", ""]
+    lines = header_lines(f"CCSDS_OEM_VERS = {VERSION}", comments)
     for segment in segments:
         lines += _segment_lines(segment, epoch)
     with atomic_path(path) as draft:
         draft.write_text("\n".join(lines), encoding="ascii")
 
 
+def header_lines(version: str, comments: Sequence[str]) -> list[str]:
+    """The first lines of a message."""
+    made = datetime.now(UTC).replace(tzinfo=None, microsecond=0)
+    return [version, *comment_lines(comments), f"CREATION_DATE = {made.isoformat()}", "ORIGINATOR = LITHOBRAKE", ""]
+
+
+def epoch_texts(epoch: datetime, time: NDArray[np.float64]) -> list[str]:
+    """Dates and times [UTC] so many seconds after an epoch, in whole microseconds."""
+    return [(epoch + timedelta(seconds=one)).isoformat(timespec="microseconds") for one in time.tolist()]
+
+
 def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
-    times = [(epoch + timedelta(seconds=time)).isoformat(timespec="microseconds") for time in segment.time.tolist()]
+    times = epoch_texts(epoch, segment.time)
     yield "META_START"
-    yield from _comments(segment.comments)
+    yield from comment_lines(segment.comments)
     yield f"OBJECT_NAME = {segment.object_name}"
     yield f"OBJECT_ID = {segment.object_name}"
     yield f"CENTER_NAME = {segment.center_name}"
     yield f"REF_FRAME = {segment.frame}"
-    yield f"REF_FRAME_EPOCH = {epoch.isoformat(timespec='microseconds')}"
+    if segment.frame != "ICRF":
+        yield f"REF_FRAME_EPOCH = {epoch.isoformat(timespec='microseconds')}"
     yield "TIME_SYSTEM = UTC"
     yield f"START_TIME = {times[0]}"
     yield f"STOP_TIME = {times[-1]}"
@@ -83,21 +93,22 @@ def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
         yield f"INTERPOLATION_DEGREE = {segment.interpolation_degree}"
     yield from ("META_STOP", "")
     for time, state in zip(times, segment.state * 1e-3, strict=True):
-        yield f"{time} {_numbers(state)}"
+        yield f"{time} {number_texts(state)}"
     yield ""
     if segment.covariance is not None:
         yield "COVARIANCE_START"
         for time, covariance in zip(times, segment.covariance * 1e-6, strict=True):
             yield f"EPOCH = {time}"
-            yield from (_numbers(covariance[row, : row + 1]) for row in range(6))
+            yield from (number_texts(covariance[row, : row + 1]) for row in range(6))
         yield from ("COVARIANCE_STOP", "")
 
 
-def _comments(sentences: Sequence[str]) -> Iterator[str]:
+def comment_lines(sentences: Sequence[str]) -> Iterator[str]:
+    """Sentences as comments of a message."""
     for sentence in sentences:
         yield from (f"COMMENT {line}" for line in wrap(sentence, LINE - len("COMMENT ")))
 
 
-def _numbers(values: NDArray[np.float64]) -> str:
+def number_texts(values: NDArray[np.float64]) -> str:
     """Numbers with all their digits."""
     return " ".join(f"{value:.16e}" for value in values.tolist())

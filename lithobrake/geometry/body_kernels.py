@@ -54,6 +54,18 @@ def partner(
     return distance, latitude, math.degrees(math.atan2(fixed[1], fixed[0])), 2.0 * math.pi / rate
 
 
+def places(kernels: Sequence[str], body: str | int, target: str, times: Sequence[str]) -> list[np.ndarray]:
+    """Body-fixed places of a target [m], [time_count, 3], at UTC times; raises ValueError as `read_places` does."""
+    with _loaded(kernels) as loaded:
+        number = _number(loaded, body)
+        found = []
+        for text in times:
+            time = loaded.str2et(text)
+            place = np.array(loaded.spkezp(_number(loaded, target), time, "J2000", "NONE", number)[0])
+            found.append(1e3 * (np.array(loaded.tipbod("J2000", number, time)) @ place))
+    return [np.array(found)]
+
+
 @contextmanager
 def _loaded(kernels: Sequence[str]) -> Iterator[Any]:
     """SPICE with these kernels, as long as this lasts; what it refuses becomes a ValueError."""

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from lithobrake.campaign import Record
     from lithobrake.touchdown import Outcome
 
+# Keys of [site] that name the body and its files.
+OF_FILES = ("body", "name", "unit", "gravity_facets", "partner", "kernels", "kernel_body", "epoch")
+
 
 def land_again(
     folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
@@ -39,7 +42,7 @@ def land_again(
     beds = tuple(folder / f"beds/bed_{number}.h5" for number in range(round(record.inputs["bed"]) + 1))
     if not beds[-1].is_file():
         raise ValueError(f"{beds[-1]}, the bed of {name}, is not there; make it again with: {again}")
-    outcome = TouchdownModel(_study(folder), beds, engine_hash()).land(record.inputs, frame_count, progress)
+    outcome = TouchdownModel(landing_study(folder), beds, engine_hash()).land(record.inputs, frame_count, progress)
     _refuse_another_landing(name, record, outcome, again)
     return outcome
 
@@ -48,15 +51,21 @@ def bodies_again(
     folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
 ) -> MovingBodies:  # fmt: skip
     """Land as land_again does, and return the hulls with their frames; the lander is the last of them."""
-    outcome, study = land_again(folder, record, frame_count, progress), _study(folder)
+    outcome, study = land_again(folder, record, frame_count, progress), landing_study(folder)
     bed = stored_bed(folder / f"beds/bed_{round(record.inputs['bed'])}.h5")
     return MovingBodies.of_landing(outcome, bed, lander(study, record.inputs), landing(study, record.inputs))
 
 
-def _study(folder: Path) -> Study:
+def landing_study(folder: Path) -> Study:
     """The study of a folder, as far as a landing reads it."""
-    # Nothing of a landing follows from the site, whose mesh need not be where this folder was taken.
-    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key != "site"}
+    # Nothing of a landing follows from the shape of the body, from the states from which landers were flown to the
+    # ground, or from the sky; no file of these need be where this folder was taken.
+    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key != "sky"}
+    site, delivery = (tables.get(name, {}) for name in ("site", "delivery"))
+    tables["site"] = {key: value for key, value in site.items() if key not in OF_FILES}
+    if "states" in delivery:
+        still = {"position": [0.0, 0.0, 0.0], "velocity": [0.0, 0.0, 0.0]}
+        tables["delivery"] = {key: value for key, value in delivery.items() if key != "states"} | {"release": still}
     noted = {"file": ""}
     if (folder / "keys.json").is_file():
         noted = read_json(folder / "keys.json", {"study": {"file": str}}, "put a copy of it back")["study"]

@@ -1,4 +1,4 @@
-"""What landers at rest see of a body far away."""
+"""What landers at rest see of the Sun, of Earth and of an orbiter."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,17 +7,39 @@ from lithobrake.results.journey_results import EndShare, RestQuantile
 
 
 @dataclass(frozen=True)
+class Probability:
+    """A mean over the landers at rest of a fraction of the time: the probability for one of them at any time."""
+
+    share: float
+    """of 1"""
+    lower: float | None
+    """lower bound of its 90 % interval, over beds not in the study; null where there is none"""
+    upper: float | None
+    """upper bound likewise"""
+    why: str | None = None
+    """why there is no interval, in a sentence"""
+
+
+@dataclass(frozen=True)
 class SkyResults:
-    """What the landers at rest see of the Sun or of Earth over a day of the small body (sky.csv)."""
+    """What the landers at rest see of the Sun, of Earth or of the orbiter (sky.csv); times are those of a day of the
+    small body, of a span of dates, or of the orbiter's places."""
 
     day_fraction: RestQuantile
-    """median over the landers at rest of the fraction of a day in which they see it, of 1"""
+    """median over the landers at rest of the fraction of the time in which they see it, of 1"""
     day_fraction_q05: RestQuantile
     """5th percentile of it"""
+    least_day_fraction: RestQuantile
+    """median over the landers at rest of that of their worst day in a span of dates"""
+    probability: Probability
+    """that a lander at rest sees it at any time"""
     never: EndShare
     """landers at rest that never see it"""
     sides: Mapping[str, RestQuantile]
-    """by the side of the lander, by its own axes: median fraction of a day in which it is seen and that side faces it;
-    empty for a ball"""
+    """by the side of the lander, by its own axes: median fraction of the time in which it is seen and that side faces
+    it; empty for a ball"""
+    side_probabilities: Mapping[str, Probability]
+    """by the side: that it is seen and that side faces it at any time, as a panel is lit, or an antenna sees the
+    orbiter; empty for a ball"""
     dark_sides: Mapping[str, EndShare]
     """by the side: landers at rest on which it never faces the body while that is seen; empty for a ball"""

@@ -12,8 +12,9 @@ from lithobrake.smallbody.restitution_table import RestitutionTable
 from lithobrake.smallbody.rotation_history import rotation_history
 from lithobrake.smallbody.rough_ground import RoughGround, incidence_on, met_normals
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.sky import day_directions, seen_over_a_day
-from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_spin
+from lithobrake.smallbody.sky import Screen, circle_places, day_directions, seen_from
+from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_places, read_spin
+from lithobrake.smallbody.sun_and_earth import HeliocentricOrbit, latitudes_over
 from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
@@ -25,6 +26,7 @@ __all__ = [
     "FlightStatus",
     "Flights",
     "HardSurface",
+    "HeliocentricOrbit",
     "Impacts",
     "JourneyStatus",
     "Journeys",
@@ -34,18 +36,22 @@ __all__ = [
     "Rebounds",
     "RestitutionTable",
     "RoughGround",
+    "Screen",
     "Shape",
     "SpinState",
+    "circle_places",
     "day_directions",
     "didymos",
     "dimorphos",
     "fly",
     "hop",
     "incidence_on",
+    "latitudes_over",
     "met_normals",
     "read_partner",
+    "read_places",
     "read_spin",
     "rotation_history",
-    "seen_over_a_day",
+    "seen_from",
     "tumble",
 ]  # fmt: skip

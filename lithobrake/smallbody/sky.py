@@ -1,4 +1,6 @@
-"""What a place on the ground sees of a body far away, over a day of the small body: the Sun, Earth."""
+"""What a place on the ground sees of the sky: bodies far away over a day of the small body, and an orbiter."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,8 +13,24 @@ from lithobrake.vocabulary.given_numbers import numbers
 
 # Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.
 DIRECTIONS = 144
+# Places of an orbiter on its circle.
+PLACES = 720
 # Part of the radius by which an eye stands above its own facet, so that it does not hide itself.
 EYE = 1e-6
+# Multiples of it, less the whole turns, fill the circle evenly however many are taken: the golden ratio.
+EVEN = 0.5 * (1.0 + 5.0**0.5)
+
+
+class Screen(NamedTuple):
+    """A body that hides what is behind it, as a spheroid about an axis along z.
+
+    centre      at each of the directions [m], body-fixed, [direction_count, 3]
+    equatorial  semi-axis [m], and polar
+    """
+
+    centre: NDArray[np.float64]
+    equatorial: float
+    polar: float
 
 
 def day_directions(latitude_deg: ArrayLike) -> NDArray[np.float64]:
@@ -27,25 +45,63 @@ def day_directions(latitude_deg: ArrayLike) -> NDArray[np.float64]:
     return np.stack([along * np.cos(longitude), along * np.sin(longitude), up], axis=-1)
 
 
-def seen_over_a_day(
-    shape: Shape, points: ArrayLike, up: ArrayLike, latitude_deg: ArrayLike, mask_deg: float = 0.0
-) -> NDArray[np.bool_]:
-    """Whether a body far away is seen from places on the ground at each of its directions, [count, DIRECTIONS].
+def circle_places(radius: float, inclination_deg: float) -> NDArray[np.float64]:
+    """Places on a circular orbit [m], body-fixed, [PLACES, 3]: any phase of it with any longitude of its node alike.
 
-    points [m] and outward normals up of the ground, [count, 3]; latitude_deg over which the body stands at each,
-    [count]. It is seen where it stands higher above the plane of the ground than mask_deg, and no facet hides it.
+    So a long time is, over which the body turns below the orbit. radius [m]; inclination to the body's equator [deg].
     """
-    place, normal = numbers("points", points), numbers("up", up)
-    directions = day_directions(latitude_deg)
-    height = np.einsum("pdi,pi->pd", directions, normal)
+    phase, inclination = 2.0 * np.pi * (np.arange(PLACES) + 0.5) / PLACES, np.radians(inclination_deg)
+    x, across = np.cos(phase), np.sin(phase)
+    node = 2.0 * np.pi * (np.arange(PLACES) * EVEN % 1.0)
+    y, z = across * np.cos(inclination), across * np.sin(inclination)
+    return radius * np.stack([x * np.cos(node) - y * np.sin(node), x * np.sin(node) + y * np.cos(node), z], axis=1)
+
+
+def seen_from(
+    shape: Shape,
+    points: ArrayLike,
+    up: ArrayLike,
+    directions: ArrayLike,
+    mask_deg: float = 0.0,
+    *,
+    distance: ArrayLike = np.inf,
+    screen: Screen | None = None,
+) -> NDArray[np.bool_]:
+    """Whether something is seen from places on the ground in each of its directions, [count, direction_count].
+
+    points [m] and outward normals up of the ground, [count, 3]; directions: unit vectors from each place, body-fixed,
+    [count, direction_count, 3]; distance: how far away it is there [m], a number or [count, direction_count]. It is
+    seen where it stands higher above the plane of the ground than mask_deg, and neither a facet nor the screen is
+    before it.
+    """
+    place, normal, along = numbers("points", points), numbers("up", up), numbers("directions", directions)
+    height = np.einsum("pdi,pi->pd", along, normal)
     seen = height > np.sin(np.radians(mask_deg))
     eyes = place + EYE * shape.radius * normal
-    _take_out_hidden(shape.corners, np.ascontiguousarray(eyes), np.ascontiguousarray(normal), directions, seen)
-    return seen
+    far = np.ascontiguousarray(np.broadcast_to(np.asarray(distance, dtype=np.float64), seen.shape))
+    _take_out_hidden(
+        shape.corners, np.ascontiguousarray(eyes), np.ascontiguousarray(normal), np.ascontiguousarray(along), far, seen
+    )
+    return seen if screen is None else seen & ~_behind(screen, eyes, along, far)
+
+
+def _behind(screen: Screen, eyes: Floats, directions: Floats, distance: Floats) -> NDArray[np.bool_]:
+    """Whether the screen stands before what is so far away, [count, direction_count]."""
+    # Where the spheroid is a ball of its equatorial radius, lines stay lines, and how far along them stays, too.
+    stretched = np.array([1.0, 1.0, screen.equatorial / screen.polar])
+    way, along = (screen.centre[None] - eyes[:, None]) * stretched, directions * stretched
+    square = (along**2).sum(axis=-1)
+    nearest = (way * along).sum(axis=-1) / square
+    inside = screen.equatorial**2 - ((way - nearest[..., None] * along) ** 2).sum(axis=-1)
+    first = nearest - np.sqrt(np.maximum(inside, 0.0) / square)
+    hidden: NDArray[np.bool_] = (inside > 0.0) & (first > 0.0) & (first < distance)
+    return hidden
 
 
 @compiled
-def _take_out_hidden(corner: Floats, eyes: Floats, up: Floats, directions: Floats, seen: NDArray[np.bool_]) -> None:
+def _take_out_hidden(
+    corner: Floats, eyes: Floats, up: Floats, directions: Floats, distance: Floats, seen: NDArray[np.bool_]
+) -> None:
     """Write False where a facet stands in the way; only facets that rise above the plane of the ground can."""
     for p in range(len(eyes)):
         for f in range(len(corner)):
@@ -60,5 +116,5 @@ def _take_out_hidden(corner: Floats, eyes: Floats, up: Floats, directions: Float
             for d in range(directions.shape[1]):
                 if seen[p, d]:
                     t, _ = intersect_facet(corner, f, eyes[p], directions[p, d])
-                    if t > 0.0:
+                    if 0.0 < t < distance[p, d]:
                         seen[p, d] = False

@@ -5,6 +5,9 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lithobrake.geometry import body_kernels
 from lithobrake.geometry.kernel_process import Reply, read_apart
 
@@ -48,6 +51,19 @@ def read_partner(
     return PartnerPlace(*_numbers(body_kernels.partner, kernels, body, partner, epoch))
 
 
+def read_places(
+    kernels: Sequence[str | os.PathLike[str]], body: str | int, target: str, times: Sequence[str]
+) -> NDArray[np.float64]:
+    """Places of a target, the Sun, Earth or a spacecraft, in the axes of a body [m], [time_count, 3], at UTC times.
+
+    kernels: ephemerides (SPK) of both, constants (PCK) of the body, and leap seconds (LSK).
+    Raises ValueError where these lack what is asked for.
+    """
+    paths = tuple(os.fspath(kernel) for kernel in kernels)
+    reply = _reply(body_kernels.places, paths, tuple(_stamp(path) for path in paths), body, target, tuple(times))
+    return np.array(reply.unpacked()[0])
+
+
 def _numbers(
     function: Callable[..., Any], kernels: Sequence[str | os.PathLike[str]], *arguments: str | int
 ) -> list[float]:
@@ -59,7 +75,10 @@ def _numbers(
 # A study asks for the same numbers many times, and each time another process would start.
 @lru_cache(maxsize=32)
 def _reply(
-    function: Callable[..., Any], paths: tuple[str, ...], _stamps: tuple[Any, ...], *arguments: str | int
+    function: Callable[..., Any],
+    paths: tuple[str, ...],
+    _stamps: tuple[Any, ...],
+    *arguments: str | int | tuple[str, ...],
 ) -> Reply:
     return read_apart(function, paths, *arguments, kernels=paths)
 

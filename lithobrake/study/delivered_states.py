@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.ephemeris_message import MessageState, is_message, message_states
-from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.study.flight_sections import BUILT_IN_BODIES, SiteSection
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.plain_text import closest, show
 
@@ -91,9 +91,24 @@ def states_of(study: "Study") -> DeliveredStates:
     assert delivery is not None
     assert delivery.states is not None
     assert delivery.frame is not None
+    return read_states(Path(delivery.states), delivery.frame, delivery.epoch, _names(site))
+
+
+def orbiter_states(study: "Study") -> DeliveredStates:
+    """The body-fixed states of the orbiter that a study names, in time. Raises ValueError as read_states does."""
+    orbiter = study.sky.orbiter
+    assert orbiter is not None
+    assert orbiter.states is not None
+    found = read_states(Path(orbiter.states), "body_fixed", None, _names(study.site))
+    order = np.argsort(found.time, kind="stable")
+    columns = (found.time, found.position, found.velocity)
+    return DeliveredStates([found.source[row] for row in order], *(one[order] for one in columns))
+
+
+def _names(site: SiteSection) -> list[str]:
+    """Names of the body as a message may have them."""
     own = site.body if site.body in BUILT_IN_BODIES else site.name
-    names = [re.sub(r"\W+", "_", name).upper() for name in (own, site.kernel_body) if name]
-    return read_states(Path(delivery.states), delivery.frame, delivery.epoch, names)
+    return [re.sub(r"\W+", "_", name).upper() for name in (own, site.kernel_body) if name]
 
 
 def _of_message(

@@ -19,8 +19,8 @@ BUILT_IN_BODIES = ("didymos", "dimorphos")
 
 
 class RotationSection(Section):
-    """How a body turns that does not keep one face to its partner, as Dimorphos may since the impact of DART: its start,
-    after which Euler's equations of a rigid body under the partner's torque hold."""
+    """How a body turns that does not keep one face to its partner, as Dimorphos may since the impact of DART: its
+    start, after which Euler's equations of a rigid body under the partner's torque hold."""
 
     yaw_deg: Annotated[float, Number("deg", at_least=-180, at_most=180)] = Field(0.0, examples=["30.0"])
     """Turn about z, the axis of the orbit, at the start, away from the attitude that keeps one face to the partner."""
@@ -74,7 +74,8 @@ class SiteSection(Section):
     pole_declination_deg: Annotated[float, Number("deg", at_least=-90, at_most=90)] | None = None
     """Declination of that pole."""
     meridian_deg: Annotated[float, Number("deg", at_least=-360, at_most=360)] | None = None
-    """Angle W of longitude 0 at delivery.epoch, from the node of the body's equator on that of ICRF, eastward."""
+    """Angle W of longitude 0 at delivery.epoch, or, without one, at the epoch of an export, from the node of the body's
+    equator on that of ICRF, eastward."""
     roughness_deg: Annotated[float, Number("deg", at_least=0, at_most=60)] | None = None
     """Rms slope of the ground at the lander's scale against the facets of the body's shape: the angle whose tangent is
     the rms gradient. Each touchdown of a journey draws its gradient, in any direction; without [journey] so does each

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from lithobrake.study.delivery_checks import delivery_problems
+from lithobrake.study.sky_checks import sky_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -10,16 +11,13 @@ from lithobrake.vocabulary.plain_text import show
 def journey_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong."""
     yield from delivery_problems(study)
-    if study.sky.mask_deg > 0.0 and study.sky.earth_latitude_deg is None:
-        yield "sky.mask_deg is the mask of Earth, and sky.earth_latitude_deg is absent; leave it out, or ask for Earth"
+    yield from sky_problems(study)
     if study.journey is None:
         if study.site.roughness_deg and not study.rest.count:
             yield (
                 f"site.roughness_deg is {study.site.roughness_deg:g}, and no impact of the study reads it: there is no "
                 "[journey] and rest.count is 0; leave it out, or tilt the landings by surface.slope_deg"
             )
-        if study.sky.bodies:
-            yield "[sky] asks what landers at rest see, and there is no [journey]; leave one out or add the other"
         return
     design = study.design
     if design.method != "drawn":

@@ -125,6 +125,10 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), list):
             table[key] = [str(folder / name) if isinstance(name, str) else name for name in table[key]]
+    sky = result.get("sky")
+    if isinstance(sky, dict) and isinstance(orbiter := sky.get("orbiter"), Mapping):
+        states = orbiter.get("states")
+        sky["orbiter"] = {**orbiter, **({"states": str(folder / states)} if isinstance(states, str) else {})}
     solver = result.get("solver")
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
         from lithobrake.campaign import absolute_words

@@ -147,15 +147,16 @@ JOURNEY = {
     },
     "reason": Quantity("", "why the journey failed"),
 }
-# Of a body far away as a lander at rest sees it.
+# Of a body in the sky as a lander at rest sees it.
 SKY_FILE = "sky.csv"
 SKY = {
     "journey": JOURNEY["journey"],
-    "body": Quantity("", "sun or earth"),
-    "latitude_deg": Quantity("deg", "latitude over which it stands", FIXED),
-    "day_fraction": Quantity("", "fraction of a day of the small body in which it is seen"),
+    "body": Quantity("", "sun, earth or orbiter"),
+    "latitude_deg": Quantity("deg", "latitude over which it stands, the mean over a span of dates", FIXED),
+    "day_fraction": Quantity("", "fraction of the time in which it is seen, over a day, a span of days, or an orbit"),
+    "least_day_fraction": Quantity("", "the same over the worst day of a span"),
     **{
-        f"side_{side}": Quantity("", f"fraction of a day in which it is seen and the side {side} faces it")
+        f"side_{side}": Quantity("", f"fraction of the time in which it is seen and the side {side} faces it")
         for side in ("+x", "-x", "+y", "-y", "+z", "-z")
     },
 }

@@ -12,6 +12,9 @@ import export_models
 import lithobrake
 from lithobrake.results import StudyResults
 
+from ..pipeline.journeys.bouncing_lander import bounce
+from .delivered import delivered_tables
+
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
@@ -27,3 +30,13 @@ def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     out = tmp_path_factory.mktemp("bounces") / "out"
     lithobrake.run(export_models.study_with_bounces(), out, workers=1, model=export_models.bounce, report=False)
     return lithobrake.open_study(out)
+
+
+@pytest.fixture(scope="session")
+def delivered(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """Those of a study of journeys from states along ICRF."""
+    home = tmp_path_factory.mktemp("delivered")
+    lithobrake.run(delivered_tables(home), home / "out", workers=1, model=bounce, report=False)
+    # Nothing that is passed on needs the file of the states.
+    (home / "states.csv").unlink()
+    return lithobrake.open_study(home / "out")

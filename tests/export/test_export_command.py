@@ -15,15 +15,29 @@ RUNNER = CliRunner()
 
 def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> None:
     # A study whose solver is its own has no landing to show.
-    shown = [kind for kind in KINDS if kind not in ("vtkhdf", "sheet")]
+    # Attitudes are known of journeys alone, and this study has no pole.
+    shown = [kind for kind in KINDS if kind not in ("vtkhdf", "sheet", "aem", "spk")]
     kinds = [word for kind in [*shown, "plates"] for word in ("--to", kind)]
     sample = int(results.flights["sample"][0])
     found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, "--flight", str(sample), "--out", str(tmp_path)])
     assert found.exit_code == 0, found.output
-    written = ["flight_mean.oem", f"flight_{sample}.oem", "body.plates.txt", "facets.csv", "facets.fits"]
-    written += ["impacts.tif", "impacts.geojson", "rest.geojson"]
+    written = ["flight_mean.oem", f"flight_{sample}.oem", "landers.czml", "body.plates.txt", "facets.csv"]
+    written += ["facets.fits", "impacts.tif", "impacts.geojson", "rest.geojson"]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(written)
     assert found.stdout.splitlines() == [f"Wrote {tmp_path / name}" for name in written]
+
+
+def test_journeys_have_attitudes_and_kernels(delivered: StudyResults, tmp_path: Path) -> None:
+    pytest.importorskip("spiceypy")
+    words = [word for kind in ("aem", "spk") for word in ("--to", kind)]
+    place = ["--flight", "1", "--flight", "2", "--out", str(tmp_path)]
+    found = RUNNER.invoke(app, ["export", str(delivered.folder), *words, *place, "--frame", "icrf"])
+    assert found.exit_code == 0, found.output
+    written = ["attitude_1.aem", "attitude_2.aem", "flights.bsp", "body.tpc"]
+    assert found.stdout.splitlines() == [f"Wrote {tmp_path / name}" for name in written]
+    none = RUNNER.invoke(app, ["export", str(delivered.folder), *words, "--out", str(tmp_path), "--force"])
+    assert none.exit_code == 2
+    assert "name some with --flight" in none.stderr
 
 
 def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(results: StudyResults) -> None:
@@ -64,7 +78,10 @@ def test_what_is_wrong_is_said_in_one_sentence(results: StudyResults, tmp_path: 
     for path in (taken, film):
         path.write_text("mine")
     for words, said in (
-        (["export", str(results.folder), "--to", "kml"], "allowed: oem, plates, facets, geotiff, geojson"),
+        (
+            ["export", str(results.folder), "--to", "kml"],
+            "allowed: oem, aem, spk, czml, plates, facets",
+        ),
         (["export", str(tmp_path), "--to", "oem"], "holds no results of a study"),
         (
             ["export", str(results.folder), "--to", "oem", "--out", str(taken)],

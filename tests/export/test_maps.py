@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.export import write_geojson, write_geotiff, write_rest_geojson
-from lithobrake.export.maps import MapFrame
+from lithobrake.export.maps import MapFrame, map_name
 from lithobrake.results import StudyResults
 
 
@@ -66,6 +66,37 @@ def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResu
         place = [results.rest["longitude_deg"][row], results.rest["latitude_deg"][row]]
         assert point["geometry"]["coordinates"] == place
         assert set(point["properties"]) == {"sample", "ground", "time_s", "rebounds", "path_length"}
+    assert found["units"] == {"sample": "", "ground": "", "time_s": "s", "rebounds": "", "path_length": "m"}
+
+
+def test_places_of_rest_of_journeys_are_read_back_with_frame_nodata_and_units(
+    delivered: StudyResults, tmp_path: Path
+) -> None:
+    """The cell, the point and the table have one place; a swap of latitude and longitude puts them apart."""
+    geojson, rasterio = pytest.importorskip("geojson"), pytest.importorskip("rasterio")
+    write_rest_geojson(delivered, tmp_path / "rest.geojson")
+    found = geojson.loads((tmp_path / "rest.geojson").read_text())
+    journeys, radius = delivered.journeys, MapFrame.of(delivered).radius
+    assert found.is_valid
+    assert found["units"]["path_length"] == "m"
+    numbers = [point["properties"]["journey"] for point in found["features"]]
+    assert numbers == np.flatnonzero(journeys["end"] == "at_rest").tolist()
+    assert map_name(delivered) == "rest.tif"
+    write_geotiff(delivered, tmp_path / "rest.tif", resolution_deg=1.0)
+    with rasterio.open(tmp_path / "rest.tif") as file:
+        density = file.read(1)
+        assert (file.descriptions, file.units) == (("rest density",), ("1/m2",))
+        assert np.isnan(file.nodata)
+        for number, point in zip(numbers, found["features"], strict=True):
+            east, north = point["geometry"]["coordinates"]
+            assert [north, east] == pytest.approx(
+                [journeys["latitude_deg"][number], journeys["longitude_deg"][number]], abs=1e-6
+            )
+            row, column = file.index(east, north)
+            strip = np.diff(np.sin(np.radians([89.0 - row, 90.0 - row])))[0]
+            share = density[row, column] * radius**2 * np.radians(1.0) * strip
+            assert share * 8 == pytest.approx(round(share * 8), abs=1e-5)
+            assert round(share * 8) >= 1
 
 
 @pytest.mark.parametrize("resolution", [0.0, -1.0, 0.7, 1e-320, 0.01, float("nan")])

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from lithobrake.geometry.body_axes import axes_in_icrf
 from lithobrake.study.flight_sections import SiteSection
 
 Array = np.ndarray
@@ -10,23 +11,15 @@ Array = np.ndarray
 def icrf_to_body(site: SiteSection, time: Array, spin_period: Array) -> Array:
     """Rotations that turn components along ICRF into those along axes fixed to the body, [count, 3, 3].
 
-    time [s] since site.meridian_deg held and spin_period [s], both [count]. Source: [Archinal-2018], Fig 1.
+    time [s] since site.meridian_deg held and spin_period [s], both [count].
     """
-    given = (site.pole_right_ascension_deg, site.pole_declination_deg, site.meridian_deg)
-    right_ascension, declination, meridian = (np.radians(one) for one in given if one is not None)
-    node = np.array([-np.sin(right_ascension), np.cos(right_ascension), 0.0])
-    pole = np.array(
-        [
-            np.cos(declination) * np.cos(right_ascension),
-            np.cos(declination) * np.sin(right_ascension),
-            np.sin(declination),
-        ]
-    )
-    ahead = np.cross(pole, node)
-    angle = (meridian + 2.0 * np.pi * time / spin_period)[:, None]
-    x = np.cos(angle) * node + np.sin(angle) * ahead
-    y = np.cos(angle) * ahead - np.sin(angle) * node
-    return np.stack([x, y, np.broadcast_to(pole, x.shape)], axis=1)
+    right_ascension, declination, meridian = (
+        site.pole_right_ascension_deg, site.pole_declination_deg, site.meridian_deg
+    )  # fmt: skip
+    assert right_ascension is not None
+    assert declination is not None
+    assert meridian is not None
+    return axes_in_icrf(right_ascension, declination, np.radians(meridian) + 2.0 * np.pi * time / spin_period)
 
 
 def turned(rotations: Array, vectors: Array) -> Array:

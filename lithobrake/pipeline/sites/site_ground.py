@@ -9,7 +9,9 @@ from lithobrake.analysis import EqualAreaCells
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.local_ground import felt
 from lithobrake.pipeline.job import Job
-from lithobrake.study.quantity import Scalar, Uncertain
+from lithobrake.pipeline.sky.seen_from_rest import views
+from lithobrake.pipeline.sky.where_they_stand import Days, where_it_stands
+from lithobrake.study.sky_section import SkyBody
 
 # Places of each cell that are looked at.
 PLACES = 24
@@ -35,14 +37,11 @@ class SiteGround:
         shape = job.site.body.shape
         points, facets = shape.locate(places[:, 0], places[:, 1])
         up, columns = shape.normals[facets], job.site.columns(len(points))
-        time = job.site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
+        time = job.site.clock(columns)
         here = felt(job.site.body, points, time, columns["mass"], columns["spin_period"])
         strength = np.linalg.norm(here, axis=1)
         slope = np.degrees(np.arccos(np.clip(-(here * up).sum(axis=1) / strength, -1.0, 1.0)))
-        light = {
-            name: _seen(job, name, latitude, points, up, random).reshape(-1, PLACES)
-            for name, latitude in job.study.sky.bodies.items()
-        }
+        light = {name: _seen(job, name, points, up, random).reshape(-1, PLACES) for name in job.study.sky.bodies}
         return cls(slope.reshape(-1, PLACES), strength.reshape(-1, PLACES), light)
 
 
@@ -53,18 +52,23 @@ def _spread(random: np.random.Generator) -> np.ndarray:
     return found
 
 
-def _seen(
-    job: Job, name: str, latitude: Scalar, points: np.ndarray, up: np.ndarray, random: np.random.Generator
-) -> np.ndarray:
-    """Fraction of a day in which a body far away is seen from points [count, 3], each on a day of its own, [count]."""
-    from lithobrake.smallbody import seen_over_a_day
+def _seen(job: Job, name: SkyBody, points: np.ndarray, up: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Fraction of the time in which a body is seen from points [count, 3], [count]; one far away, on a day of each."""
+    from lithobrake.smallbody import seen_from
 
-    shape, mask = job.site.body.shape, job.study.sky.mask_of(name)
-    days = (np.argsort(random.random((len(points) // PLACES, PLACES)), axis=1) + 0.5).ravel() / PLACES
-    over = latitude.to_chaos().ppf(days) if isinstance(latitude, Uncertain) else np.full(len(points), latitude)
+    body, mask, stands = job.site.body, job.study.sky.mask_of(name), where_it_stands(job.study, job.site, name)
+    if isinstance(stands, Days):
+        days = (np.argsort(random.random((len(points) // PLACES, PLACES)), axis=1) + 0.5).ravel() / PLACES
+        stands = Days(np.quantile(stands.latitude, days)[:, None])
     found = np.empty(len(points))
     for first in range(0, len(points), PLACES):
         job.progress(first, len(points), f"{name} over the sites")
-        part = slice(first, first + PLACES)
-        found[part] = seen_over_a_day(shape, points[part], up[part], over[part], mask).mean(axis=1)
+        here = np.arange(first, first + PLACES)
+        found[here] = sum(
+            seen_from(
+                *(body.shape, points[here], up[here], view.directions, mask), distance=view.distance, screen=view.screen
+            )
+            @ view.weight
+            for view in views(body, points[here], here, stands)
+        )
     return found

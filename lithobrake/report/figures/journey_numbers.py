@@ -10,8 +10,9 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.map_figure import Share, draw_shares
-from lithobrake.report.figures.style import END_COLOURS, INK, QUIET
+from lithobrake.report.figures.style import INK, QUIET
 from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 Array = NDArray[np.float64]

@@ -11,8 +11,9 @@ from lithobrake.report.figures.close_view import draw_bar, frame_view, view_arou
 from lithobrake.report.figures.density import WHOLE, Window, near
 from lithobrake.report.figures.map_figure import draw_relief
 from lithobrake.report.figures.map_marks import SITE_STYLE, mark_site
-from lithobrake.report.figures.style import END_COLOURS, LANDER
+from lithobrake.report.figures.style import LANDER
 from lithobrake.results import JourneyTrack
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 
 SIZE = (9.2, 5.2)
 RIM = [Stroke(linewidth=2.6, foreground="white"), Normal()]

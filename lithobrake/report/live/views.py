@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_density
 from lithobrake.report.figures.hulls import Scene, scene
-from lithobrake.report.figures.style import END_COLOURS, FATE_COLOURS
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
 from lithobrake.report.words.numbers import number
+from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 
 Array = NDArray[np.float64]

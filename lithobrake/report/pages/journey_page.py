@@ -10,7 +10,6 @@ from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.map_figure import Share
-from lithobrake.report.figures.style import END_COLOURS
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.touchdown_explorer import touchdown_sections
 from lithobrake.report.live.views import view_sections
@@ -21,6 +20,7 @@ from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results.journey_results import EndShare
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 

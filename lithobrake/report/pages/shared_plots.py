@@ -10,12 +10,12 @@ from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.map_figure import Share, map_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
-from lithobrake.report.figures.style import FATE_COLOURS
 from lithobrake.report.page_data import PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.results.dispersion import RestResults
 from lithobrake.results.shares import CountedShare
+from lithobrake.vocabulary.fate_colours import FATE_COLOURS
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
 if TYPE_CHECKING:

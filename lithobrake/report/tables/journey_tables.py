@@ -66,23 +66,28 @@ def _regions(data: JourneyPage) -> PageTable:
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
 
 
+# Of a body in the sky by its name.
+SKY_WORDS = {"sun": "the Sun", "earth": "Earth", "orbiter": "the orbiter"}
+
+
 def _sky(data: JourneyPage) -> PageTable:
-    """What the landers at rest see of the Sun and of Earth."""
-    columns = ["seen over a day of the body", "median [%]", "5 % of the landers see less than [%]", "never seen by"]
-    columns += ["sides that face it longest, median [%]", "side that most often never faces it"]
+    """What the landers at rest see of the Sun, of Earth and of the orbiter."""
+    columns = ["seen", "median part of the time [%]", "5 % of the landers see less than [%]", "probability at any time"]
+    columns += ["never seen by", "sides that face it most, probability", "side that most often never faces it"]
     rows = []
     for name, one in data.results.sky.items():
-        best = sorted(one.sides.items(), key=lambda item: -(item[1].value or 0.0))[:2]
+        best = sorted(one.side_probabilities.items(), key=lambda item: -item[1].share)[:2]
         dark = max(one.dark_sides.items(), key=lambda item: item[1].share, default=None)
         rows.append([
-            {"sun": "the Sun", "earth": "Earth"}[name], quantile_words(one.day_fraction, 0.01),
-            quantile_words(one.day_fraction_q05, 0.01), with_interval(one.never),
-            ", ".join(f"{side} {quantile_words(value, 0.01)}" for side, value in best),
+            SKY_WORDS[name], quantile_words(one.day_fraction, 0.01), quantile_words(one.day_fraction_q05, 0.01),
+            with_interval(one.probability), with_interval(one.never),
+            "; ".join(f"{side} {with_interval(value)}" for side, value in best),
             f"{dark[0]} on {with_interval(dark[1])}" if dark else "",
         ])  # fmt: skip
     note = (
-        "Of the landers at rest, over the latitudes of the study; hidden by the ground and by the rest of the shape, "
-        f"not by a partner. In brackets {percent(LEVEL)} intervals."
+        "Of the landers at rest, over a day of the body, over the dates of the study, or over the places of the "
+        f"orbiter; hidden by the ground, by the rest of the shape and by a partner. In brackets {percent(LEVEL)} "
+        "intervals."
     )
     return PageTable("What they see from there", columns, rows, note, frozenset(columns[1:]))
 

@@ -22,7 +22,7 @@ from lithobrake.report.figures.map_marks import draw_ellipses, fitting, outline
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
-from lithobrake.report.figures.style import FATE_COLOURS, INK, figure_style
+from lithobrake.report.figures.style import INK, figure_style
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_map, draw_rest
 from lithobrake.report.words.chance import follows_gaussian
@@ -32,6 +32,7 @@ from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.results.dispersion import EllipseShare, LandingEllipses
 from lithobrake.results.expansions import OutputErrors
 from lithobrake.results.shares import Estimate, ShareInterval
+from lithobrake.vocabulary.fate_colours import FATE_COLOURS
 
 
 def ellipse(share: float, long: float, short: float) -> EllipseShare:

@@ -1,0 +1,57 @@
+"""Where Sun and Earth stand, against closed forms and another library."""
+
+import math
+from datetime import datetime, timedelta
+
+import numpy as np
+import pytest
+
+from lithobrake.smallbody import HeliocentricOrbit, latitudes_over
+from lithobrake.smallbody.sun_and_earth import earth_place
+
+pytest.importorskip("spiceypy")
+pytest.importorskip("erfa")
+
+EPOCH = datetime(2027, 4, 20)
+OBLIQUITY = math.radians(84381.448 / 3600.0)
+# A circle in the ecliptic, at the equinox at the epoch.
+CIRCLE = HeliocentricOrbit(2.0, 0.0, 0.0, 0.0, 0.0, 0.0, EPOCH)
+YEAR = timedelta(days=365.2568983 * 2.0**1.5)
+
+
+def test_the_sun_goes_to_and_fro_over_a_circle_by_the_tilt_of_the_pole() -> None:
+    """With the pole of ICRF: from 0 by -arcsin(sin(obliquity) sin(angle)), to the other side of the body's place."""
+    dates = [EPOCH + YEAR * part for part in (0.0, 0.125, 0.25, 0.75)]
+    found = latitudes_over(CIRCLE, 0.0, 90.0, dates)["sun"]
+    angles = 2.0 * np.pi * np.array([0.0, 0.125, 0.25, 0.75])
+    assert found == pytest.approx(-np.degrees(np.arcsin(np.sin(OBLIQUITY) * np.sin(angles))), abs=1e-4)
+
+
+def test_an_ellipse_has_its_perihelion_where_its_elements_say() -> None:
+    orbit = HeliocentricOrbit(1.6, 0.4, 90.0, 30.0, 90.0, 0.0, EPOCH)
+    near, far = orbit.place([EPOCH, EPOCH + timedelta(days=0.5 * 365.2568983 * 1.6**1.5)])
+    # At right angles to the node in an orbit across the ecliptic, perihelion is at the ecliptic's north pole.
+    north = np.array([0.0, -math.sin(OBLIQUITY), math.cos(OBLIQUITY)])
+    assert near == pytest.approx(0.96 * north, abs=1e-9)
+    assert far == pytest.approx(-2.24 * north, abs=1e-3)
+
+
+def test_earth_is_where_another_library_has_it() -> None:
+    coordinates, time = pytest.importorskip("astropy.coordinates"), pytest.importorskip("astropy.time")
+    dates = [EPOCH, EPOCH + timedelta(days=200)]
+    for date, found in zip(dates, earth_place(dates), strict=True):
+        at = time.Time(date, scale="utc")
+        earth, sun = (
+            coordinates.get_body_barycentric(name, at, ephemeris="builtin").xyz.to_value("AU")
+            for name in ("earth", "sun")
+        )
+        assert found == pytest.approx(earth - sun, abs=5e-5)
+
+
+def test_latitudes_are_those_of_the_ways_from_the_body() -> None:
+    """With the pole at the equinox, where the body is 2 AU from the Sun: over one pole the Sun, and Earth beside it."""
+    found = latitudes_over(CIRCLE, 0.0, 0.0, [EPOCH])
+    assert found["sun"] == pytest.approx([-90.0])
+    way = earth_place([EPOCH])[0] - [2.0, 0.0, 0.0]
+    assert found["earth"] == pytest.approx([math.degrees(math.asin(way[0] / np.linalg.norm(way)))])
+    assert -80.0 < found["earth"][0] < -70.0
