@@ -1,4 +1,4 @@
-"""Commands that show the results of a study and write them as files of other programs."""
+"""Commands that show the results of a study."""
 
 import shutil
 import sys
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.arguments import LOOK, Force, Json, StudyDirectory, app, given_folder, refuse_written
 from lithobrake.cli.one_journey import refuse_journey_file, show_touchdowns
 from lithobrake.cli.terminal import (
     BAD_INPUT,
@@ -41,7 +41,7 @@ TOLD = {
 LISTED = 100
 
 
-@app.command(epilog="Example: lithobrake report runs/study")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake report runs/study")
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again from its files."""
     with one_sentence():
@@ -51,7 +51,7 @@ def report(folder: StudyDirectory) -> None:
     tell(study_headline(folder))
 
 
-@app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
     folder: StudyDirectory,
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
@@ -82,7 +82,7 @@ def runs(
     tell(run_lines(records, units, width, TOLD))
 
 
-@app.command(epilog="Example: lithobrake view runs/study")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake view runs/study")
 def view(
     folder: StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
@@ -112,7 +112,7 @@ def view(
     _open(page)
 
 
-@app.command(epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
 def film(
     folder: StudyDirectory,
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
@@ -147,113 +147,7 @@ def film(
     tell([f"Film: {path.resolve()}"])
 
 
-Kinds = Annotated[
-    list[str],
-    typer.Option(
-        "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
-    ),
-]
-Samples = Annotated[
-    list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
-]
-Frame = Annotated[str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")]
-Epoch = Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")]
-Step = Annotated[
-    float | None, typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest.")
-]
-Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
-Again = Annotated[
-    str | None,
-    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
-]
-
-
-@app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
-def export(
-    folder: StudyDirectory,
-    to: Kinds,
-    flight: Samples = None,
-    frame: Frame = "inertial",
-    epoch: Epoch = None,
-    step: Step = None,
-    resolution: Resolution = 1.0,
-    run: Again = None,
-    force: Force = False,
-    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
-    json: Json = False,
-) -> None:
-    """Write results of a study as files of other programs: flights, shape, numbers per facet, map, motions."""
-    place = folder / "export" if out is None else given_folder(out)
-    with one_sentence():
-        from lithobrake.results import open_study
-
-        # A folder that is no study is refused before numbers are loaded.
-        results = open_study(folder)
-        from lithobrake.export import ExportOptions, export_study
-
-        with shown_progress("export") as progress:
-            again = None if run is None else _run_of(run)
-            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress)
-            written = export_study(results, place, to, choices)
-    if json:
-        tell_json({"files": [str(path.resolve()) for path in written]})
-    else:
-        tell(f"Wrote {path}" for path in written)
-
-
-@app.command(epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv")
-def push(
-    folder: StudyDirectory,
-    speed: Annotated[float, typer.Option(help="Change of velocity [m/s].", show_default=False)],
-    elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground [deg].")] = 45.0,
-    heading: Annotated[float, typer.Option(help="Its direction, from north toward east [deg].")] = 0.0,
-    speed_std: Annotated[float, typer.Option(help="Standard deviation of the speed [m/s].")] = 0.0,
-    direction_std: Annotated[float, typer.Option(help="Of the direction, along either axis across it [deg].")] = 0.0,
-    spin: Annotated[float, typer.Option(help="Angular velocity that the push leaves [rad/s].")] = 0.0,
-    seed: Annotated[int, typer.Option(help="Of the errors.")] = 1,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="A table for delivery.states.")] = Path("push.csv"),
-    force: Force = False,
-) -> None:
-    """Write the states of the landers at rest just after a push, as the delivery of the next study."""
-    with one_sentence():
-        from lithobrake.results import open_study
-
-        results = open_study(folder)
-        refuse_written(out, force)
-        from lithobrake.export import Push, write_push
-
-        count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
-    tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
-
-
-@app.command(epilog="Example: lithobrake infer results --bounce bounces.csv")
-def infer(
-    folder: StudyDirectory,
-    bounce: Annotated[
-        Path | None,
-        typer.Option(
-            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
-        ),
-    ] = None,
-) -> None:
-    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
-    with one_sentence():
-        from lithobrake.pipeline import InferredStudy, infer_study
-
-        study = InferredStudy.open(folder)
-        with shown_progress("inference") as progress:
-            progress(0.0, "what bounces can say")
-            plan = study.plan().lines()
-            if bounce is not None:
-                progress(0.5, "what these bounces say")
-            found = None if bounce is None else infer_study(folder, bounce)
-    tell(plan)
-    if found is not None:
-        written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
-        tell([line for line in (found["statement"], found["beds"], written) if line])
-
-
-@app.command(epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(metavar="B", help="The folder of another.", show_default=False)],
@@ -326,9 +220,9 @@ def _landing(results: "StudyResults", run: str | None, progress: Progress = sile
     """The landing of a run, made again, or the one that the study keeps."""
     if run is None:
         return results.median_landing
-    return results.landing_bodies(_run_of(run), progress=progress)
+    return results.landing_bodies(run_of(run), progress=progress)
 
 
-def _run_of(text: str) -> str | int:
+def run_of(text: str) -> str | int:
     """A row among the runs, or the key of one or how that begins, from what was written for either."""
     return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text

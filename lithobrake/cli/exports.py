@@ -1,0 +1,94 @@
+"""Commands that write results of a study as files of other programs, and as the beginning of another study."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lithobrake.cli.arguments import EXPORT, Force, Json, StudyDirectory, app, given_folder, refuse_written
+from lithobrake.cli.results import run_of
+from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
+
+Kinds = Annotated[
+    list[str],
+    typer.Option(
+        "--to", metavar="KIND", help="oem, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated."
+    ),
+]
+Samples = Annotated[
+    list[int] | None, typer.Option("--flight", metavar="SAMPLE", help="oem: a sample to follow; may be repeated.")
+]
+Frame = Annotated[str, typer.Option("--frame", metavar="inertial|fixed", help="oem: axes of the states.")]
+Epoch = Annotated[str | None, typer.Option("--epoch", metavar="UTC", help="oem: when all flights start.")]
+Step = Annotated[
+    float | None, typer.Option("--step", metavar="SECONDS", help="oem: between states; default: 1 % of the longest.")
+]
+Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
+Again = Annotated[
+    str | None,
+    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
+]
+
+
+@app.command(
+    rich_help_panel=EXPORT,
+    epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00",
+)
+def export(
+    folder: StudyDirectory,
+    to: Kinds,
+    flight: Samples = None,
+    frame: Frame = "inertial",
+    epoch: Epoch = None,
+    step: Step = None,
+    resolution: Resolution = 1.0,
+    run: Again = None,
+    force: Force = False,
+    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+    json: Json = False,
+) -> None:
+    """Write results of a study as files of other programs: flights, shape, numbers per facet, map, motions."""
+    place = folder / "export" if out is None else given_folder(out)
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        # A folder that is no study is refused before numbers are loaded.
+        results = open_study(folder)
+        from lithobrake.export import ExportOptions, export_study
+
+        with shown_progress("export") as progress:
+            again = None if run is None else run_of(run)
+            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress)
+            written = export_study(results, place, to, choices)
+    if json:
+        tell_json({"files": [str(path.resolve()) for path in written]})
+    else:
+        tell(f"Wrote {path}" for path in written)
+
+
+@app.command(
+    rich_help_panel=EXPORT,
+    epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv",
+)
+def push(
+    folder: StudyDirectory,
+    speed: Annotated[float, typer.Option(help="Change of velocity [m/s].", show_default=False)],
+    elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground [deg].")] = 45.0,
+    heading: Annotated[float, typer.Option(help="Its direction, from north toward east [deg].")] = 0.0,
+    speed_std: Annotated[float, typer.Option(help="Standard deviation of the speed [m/s].")] = 0.0,
+    direction_std: Annotated[float, typer.Option(help="Of the direction, along either axis across it [deg].")] = 0.0,
+    spin: Annotated[float, typer.Option(help="Angular velocity that the push leaves [rad/s].")] = 0.0,
+    seed: Annotated[int, typer.Option(help="Of the errors.")] = 1,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="A table for delivery.states.")] = Path("push.csv"),
+    force: Force = False,
+) -> None:
+    """Write the states of the landers at rest just after a push, as the delivery of the next study."""
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        results = open_study(folder)
+        refuse_written(out, force)
+        from lithobrake.export import Push, write_push
+
+        count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
+    tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
