@@ -26,6 +26,7 @@ from lithobrake.vocabulary.quantities import (
     Quantity,
     quantity,
 )
+from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     import numpy as np
@@ -457,7 +458,7 @@ class StudyResults:
             given = self.summary.get("results")
             sentences = given.get("answer") if isinstance(given, dict) else None
             answer = sentences[0] if isinstance(sentences, list) and sentences else "no answer in the summary"
-        return f"StudyResults of {self.folder}: {answer}"
+        return in_lines(f"StudyResults of {self.folder}: {answer}", "  ")
 
     def _repr_html_(self) -> str:
         """The most telling numbers, and what can be asked for, for a notebook."""
