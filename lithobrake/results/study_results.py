@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
+    from lithobrake.report.study_plots import StudyPlots
     from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.journey_again import StudyJourney
     from lithobrake.results.limit_state_results import RareLimitState
@@ -363,6 +364,16 @@ class StudyResults:
     def run_flights(self) -> "Table":
         """How the flights of each run of a drawn study ended, from many sites, and which share of them returns."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
+
+    @cached_property
+    def plot(self) -> "StudyPlots":
+        """Figures one by one, on axes of matplotlib: `plot.map()`, `plot.ends(ax=axes)`, `plot.variance()` and others.
+
+        Needs a study that has run to its end.
+        """
+        from lithobrake.report.study_plots import StudyPlots
+
+        return StudyPlots(self)
 
     def _refuse_drawn(self, name: str, what: str) -> None:
         """Say that a study whose runs were drawn has no such thing, where this is one."""
