@@ -69,19 +69,26 @@ class ProgressBars:
         self._progress.update(
             self._stages, description=f"stage: {title}", completed=number - 1, total=count, count=f"{number}/{count}"
         )
+        # A bar that swings, until the stage says how far its work is: many fit and sum up for long without a measure.
+        self.progress(0.0, 1.0, title)
 
     def say(self, sentence: str) -> None:
         """Write a sentence that stays."""
         self._progress.console.print(Text(plain(sentence)))
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Show how far the work of the stage is, and more about it; a change of `what` starts a new bar."""
-        count = counted(done, total)
+        """Show how far the work of the stage is, and more about it; a change of `what` starts a new bar.
+
+        The bar of work that is one thing, of which nothing is done, swings from side to side.
+        """
+        has_measure = done > 0.0 or total > 1.0
+        count = counted(done, total) if has_measure else ""
         if self._work is not None and self._progress.tasks[-1].description != f"  {what}":
             self._end_work()
         if self._work is None:
-            self._work = self._progress.add_task(f"  {what}", total=total, count=count, tells_time_left=not detail)
-        self._progress.update(self._work, completed=done, total=total, count=count)
+            self._work = self._progress.add_task(f"  {what}", total=None, count=count, tells_time_left=False)
+        length, tells_time_left = (total if has_measure else None), has_measure and not detail
+        self._progress.update(self._work, completed=done, total=length, count=count, tells_time_left=tells_time_left)
         self._progress.detail = detail
 
     def _end_work(self) -> None:

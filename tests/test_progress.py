@@ -34,6 +34,23 @@ def test_a_terminal_shows_the_bars_and_more_below_them() -> None:
     assert "20 of 61 runs were known and are reused" in shown
 
 
+def test_a_bar_swings_until_the_work_has_a_measure() -> None:
+    lines = ProgressBars(Console(file=io.StringIO(), force_terminal=True, width=100))
+    with lines:
+        lines.begin("fit", 3, 9)
+        for what in ("fit", "chances of the outcomes"):
+            lines.progress(0, 1, what)
+            stage, work = lines._progress.tasks
+            assert (stage.completed, stage.total) == (2, 9)
+            assert (work.description, work.total, work.fields["count"]) == (f"  {what}", None, "")
+        lines.progress(0.25, 1, "chances of the outcomes")
+        work = lines._progress.tasks[-1]
+        assert (work.completed, work.total, work.fields["count"]) == (0.25, 1, "25 %")
+        assert work.fields["tells_time_left"]
+        lines.progress(0, 61, "runs")
+        assert (lines._progress.tasks[-1].total, lines._progress.tasks[-1].fields["count"]) == (61, "0/61")
+
+
 def test_words_of_a_program_are_shown_as_they_are_and_command_nothing() -> None:
     shown = shown_on_a_terminal(ODD, ODD)
     assert shown.count("its last words: [/red] [2024-01-01] red") == 2

@@ -8,6 +8,10 @@ import typer
 from lithobrake import __version__
 from lithobrake.cli.terminal import BAD_INPUT, leave
 
+# Groups of commands in the help, in this order.
+START, RUN, LOOK = "Start", "Run a study", "Look at results"
+EXPORT, EXPERT = "Pass results on", "Expert: single stages and special questions"
+
 app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -32,7 +36,14 @@ def main(
 
 # More processes than any machine runs at once.
 MOST_WORKERS = 10_000
-StudyPath = Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study file.", show_default=False)]
+StudyPath = Annotated[
+    Path,
+    typer.Argument(
+        metavar="STUDY.toml",
+        help="The study file, or the name of a study that comes with the package (lithobrake examples).",
+        show_default=False,
+    ),
+]
 OutPath = Annotated[
     str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
 ]

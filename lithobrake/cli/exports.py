@@ -1,11 +1,11 @@
-"""Commands that write results of a study as files of other programs, and as the delivery of the next study."""
+"""Commands that write results of a study as files of other programs, and as the beginning of another study."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
+from lithobrake.cli.arguments import EXPORT, Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
 from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 
 Kinds = Annotated[
@@ -41,7 +41,10 @@ Again = Annotated[
 ]
 
 
-@app.command(epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
+@app.command(
+    rich_help_panel=EXPORT,
+    epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00",
+)
 def export(
     folder: StudyDirectory,
     to: Kinds,
@@ -75,7 +78,10 @@ def export(
         tell(f"Wrote {path}" for path in written)
 
 
-@app.command(epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv")
+@app.command(
+    rich_help_panel=EXPORT,
+    epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv",
+)
 def push(
     folder: StudyDirectory,
     speed: Annotated[float, typer.Option(help="Change of velocity [m/s].", show_default=False)],

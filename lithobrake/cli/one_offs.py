@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lithobrake.cli.arguments import Force, Json, OutPath, StudyPath, app, refuse_written, study_folder
+from lithobrake.cli.arguments import (
+    EXPORT,
+    RUN,
+    START,
+    Force,
+    Json,
+    OutPath,
+    StudyPath,
+    app,
+    refuse_written,
+    study_folder,
+)
 from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 
@@ -19,7 +30,9 @@ if TYPE_CHECKING:
 INCOMPLETE = 1
 
 
-@app.command(epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5")
+@app.command(
+    rich_help_panel=RUN, epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5"
+)
 def land(
     study: StudyPath,
     change: Annotated[
@@ -57,7 +70,7 @@ def land(
         tell(lines)
 
 
-@app.command(epilog="Example: lithobrake serve study.toml --out results --port 4242")
+@app.command(rich_help_panel=EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242")
 def serve(
     study: StudyPath,
     out: OutPath = None,
@@ -98,7 +111,7 @@ def serve(
             server.serve_forever()
 
 
-@app.command(epilog="Example: lithobrake doctor --json > doctor.json")
+@app.command(rich_help_panel=START, epilog="Example: lithobrake doctor --json > doctor.json")
 def doctor(
     quick: Annotated[bool, typer.Option("--quick", help="Measure no speeds.")] = False, json: Json = False
 ) -> None:

@@ -1,4 +1,4 @@
-"""Commands that show the results of a study, compare them with others and infer from them."""
+"""Commands that show the results of a study."""
 
 import shutil
 import sys
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
+from lithobrake.cli.arguments import LOOK, Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
 from lithobrake.cli.one_journey import refuse_journey_file, show_touchdowns
 from lithobrake.cli.terminal import (
     BAD_INPUT,
@@ -41,7 +41,7 @@ TOLD = {
 LISTED = 100
 
 
-@app.command(epilog="Example: lithobrake report runs/study")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake report runs/study")
 def report(folder: StudyDirectory) -> None:
     """Write the report of a study again from its files."""
     with one_sentence():
@@ -51,7 +51,7 @@ def report(folder: StudyDirectory) -> None:
     tell(study_headline(folder))
 
 
-@app.command(epilog="Example: lithobrake runs runs/study --csv > runs.csv")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
     folder: StudyDirectory,
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
@@ -82,7 +82,7 @@ def runs(
     tell(run_lines(records, units, width, TOLD))
 
 
-@app.command(epilog="Example: lithobrake view runs/study")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake view runs/study")
 def view(
     folder: StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
@@ -112,7 +112,7 @@ def view(
     _open(page)
 
 
-@app.command(epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
 def film(
     folder: StudyDirectory,
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
@@ -147,34 +147,7 @@ def film(
     tell([f"Film: {path.resolve()}"])
 
 
-@app.command(epilog="Example: lithobrake infer results --bounce bounces.csv")
-def infer(
-    folder: StudyDirectory,
-    bounce: Annotated[
-        Path | None,
-        typer.Option(
-            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
-        ),
-    ] = None,
-) -> None:
-    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
-    with one_sentence():
-        from lithobrake.pipeline import InferredStudy, infer_study
-
-        study = InferredStudy.open(folder)
-        with shown_progress("inference") as progress:
-            progress(0.0, "what bounces can say")
-            plan = study.plan().lines()
-            if bounce is not None:
-                progress(0.5, "what these bounces say")
-            found = None if bounce is None else infer_study(folder, bounce)
-    tell(plan)
-    if found is not None:
-        written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
-        tell([line for line in (found["statement"], found["beds"], written) if line])
-
-
-@app.command(epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(metavar="B", help="The folder of another.", show_default=False)],

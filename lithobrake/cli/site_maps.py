@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from lithobrake.cli.arguments import (
+    LOOK,
     ExecutorName,
     Force,
     Json,
@@ -19,7 +20,7 @@ from lithobrake.cli.arguments import (
 from lithobrake.cli.terminal import one_sentence, tell, tell_json
 
 
-@app.command(epilog="Example: lithobrake sites study.toml --cells 200")
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
 def sites(
     study: StudyPath,
     cells: Annotated[int, typer.Option("--cells", metavar="N", help="Sites: cells of equal area.")] = 120,

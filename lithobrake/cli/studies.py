@@ -1,11 +1,14 @@
-"""Commands that begin, make, plan and watch a study."""
+"""Commands that begin, plan, make and watch a study."""
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from lithobrake.cli.arguments import (
+    RUN,
+    START,
     ExecutorName,
     Json,
     Logs,
@@ -20,10 +23,15 @@ from lithobrake.cli.arguments import (
 )
 from lithobrake.cli.terminal import command_line, one_sentence, study_headline, tell, tell_json
 
+if TYPE_CHECKING:
+    from lithobrake.study.shipped import Shipped
+
 BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
+# Width of the column of names in the list of examples.
+NAMES = 26
 
 
-@app.command(epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120")
+@app.command(rich_help_panel=START, epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
     body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = BODY,
@@ -75,8 +83,37 @@ def _write_new(path: Path, text: str) -> None:
         raise ValueError(f"{path} cannot be written ({reason}); choose another name or an existing folder") from error
 
 
-def _study_command(name: str, what: str, until: str | None = None) -> None:
-    """Add the command that runs a study up to a stage."""
+@app.command(rich_help_panel=START, epilog="Example: lithobrake examples notebook_one_landing")
+def examples(
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Which one to copy; absent: list them.", show_default=False)
+    ] = None,
+) -> None:
+    """List the studies and examples that come with the package, or copy one to the current folder."""
+    with one_sentence():
+        from lithobrake.study.shipped import shipped, shipped_by_name
+
+        if name is None:
+            tell(_listed(shipped().values()))
+            return
+        found = shipped_by_name(name)
+        first, *beside = found.write(Path())
+    others = f", with {' and '.join(map(str, beside))}" if beside else ""
+    command = command_line("run", first) if found.is_study else f"python {first}"
+    tell([f"Wrote {first}{others}. Run it with: {command}"])
+
+
+def _listed(known: Iterable["Shipped"]) -> list[str]:
+    """Studies and examples in two blocks, each on a line."""
+    lines = ["Studies; run one with `lithobrake run NAME`, or copy it here with `lithobrake examples NAME`:"]
+    known = list(known)
+    lines += [f"  {one.name:<{NAMES}}{one.title}" for one in known if one.is_study]
+    lines += ["Programs and notebooks; copy one here with `lithobrake examples NAME`:"]
+    return lines + [f"  {one.name:<{NAMES}}{one.title}" for one in known if not one.is_study]
+
+
+def study_command(name: str, what: str, group: str, until: str | None = None) -> None:
+    """Add the command that runs a study up to a stage to a group of the help."""
     last = until or name
 
     def command(
@@ -91,23 +128,12 @@ def _study_command(name: str, what: str, until: str | None = None) -> None:
         _make(study, folder, last, workers, scheduler_of(executor, scheduler), logs)
         tell(study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
-    app.command(name, help=what, epilog=f"Example: lithobrake {name} study.toml --out results --workers 4")(command)
+    epilog = f"Example: lithobrake {name} study.toml --out results --workers 4"
+    full = f"{what} Reuses what its folder already has, and runs any earlier stage whose output is missing."
+    app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)(command)
 
 
-BEFORE = "Runs any earlier stage whose output is missing."
-_study_command(
-    "run", "Run a study from its file to its report. Reuses whatever its folder already has.", until="report"
-)
-_study_command("bed", f"Pour and settle the beds, and make one landing to look at. {BEFORE}", until="landing")
-_study_command("screen", f"Run the screening design and fit an expansion in all inputs. {BEFORE}")
-_study_command("refine", f"Run the refined design and fit an expansion in the inputs that matter. {BEFORE}")
-_study_command("test", f"Run the test points and score the expansions on them. {BEFORE}")
-_study_command("sample", f"Draw Monte Carlo samples from the refined expansion. {BEFORE}")
-_study_command("fly", f"Fly the samples that leave the surface to their next impact. {BEFORE}")
-_study_command("rest", f"Follow samples from bounce to bounce until they come to rest. {BEFORE}")
-
-
-@app.command(epilog="Example: lithobrake plan study.toml")
+@app.command(rich_help_panel=RUN, epilog="Example: lithobrake plan study.toml")
 def plan(
     study: StudyPath,
     out: OutPath = None,
@@ -130,33 +156,10 @@ def plan(
         tell(plan_lines(found))
 
 
-@app.command(epilog="Example: lithobrake rare study.toml fast --landings 500")
-def rare(
-    study: StudyPath,
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of \\[limit_states].", show_default=False)],
-    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
-    out: OutPath = None,
-    workers: Workers = None,
-    executor: ExecutorName = "local",
-    scheduler: Scheduler = None,
-) -> None:
-    """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
-    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
-    with one_sentence():
-        from lithobrake.study import StudySource
-
-        source = StudySource.read(study)
-        from lithobrake.pipeline import rare_failure
-        from lithobrake.progress import study_progress
-
-        with study_progress() as shown:
-            found = rare_failure(
-                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
-            )
-    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
+study_command("run", "Run a study from its file to its report.", RUN, until="report")
 
 
-@app.command(epilog="Example: lithobrake status runs/study")
+@app.command(rich_help_panel=RUN, epilog="Example: lithobrake status runs/study")
 def status(folder: StudyDirectory, json: Json = False) -> None:
     """Show the progress of a study. Works from any terminal, even while the study runs."""
     with one_sentence():

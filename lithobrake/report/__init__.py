@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from lithobrake.report.comparison_report import write_comparison as write_comparison
     from lithobrake.report.figures.corner_figure import write_corner as write_corner
     from lithobrake.report.site_report import write_sites as write_sites
+    from lithobrake.report.study_plots import StudyPlots as StudyPlots
     from lithobrake.report.study_report import write_report as write_report
 else:
     __getattr__, __dir__ = lazy_names(__name__)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from lithobrake.results.shares import Estimate, ShareInterval
 from lithobrake.study.question_sections import SIDE
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class AimResults:
     """the best option and how sure it is, in sentences"""
     sides: tuple[str, ...] = ()
     """with aim.sides: the sides to choose from in words, of which the values of that name are places"""
+    __repr__ = short_repr
 
     def value_words(self, name: str, value: float) -> str:
         """A value of a name in words; a side by its name."""

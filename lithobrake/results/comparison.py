@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from lithobrake.vocabulary.screen import short_repr
+
 
 @dataclass(frozen=True)
 class ComparedNumber:
@@ -57,3 +59,4 @@ class StudyComparison:
     """what makes the pairs less alike than they could be, in a sentence; null where nothing does"""
     why: str | None
     """why there are no intervals, in a sentence; null where there are"""
+    __repr__ = short_repr

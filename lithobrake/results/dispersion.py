@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from lithobrake.results.json_values import INLINE
 from lithobrake.results.shares import CountedShare, Level, SampleShares
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,7 @@ class FlightResults:
 
     impacts: ImpactNumbers = field(metadata=INLINE)
     checks: FlightChecks | None = field(metadata=INLINE)
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,7 @@ class GroundResults:
     of the study"""
     interval: Level | None = field(metadata=INLINE)
     """of the shares; none on the equivalent ground, and on the soil of a paper study"""
+    __repr__ = short_repr
 
     @property
     def counts(self) -> dict[str, CountedShare]:
@@ -174,6 +177,7 @@ class RestResults:
     soil: GroundResults | None
     hard: GroundResults | None
     equivalent: GroundResults | None
+    __repr__ = short_repr
 
     @property
     def grounds(self) -> dict[str, GroundResults]:

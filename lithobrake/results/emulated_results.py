@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lithobrake.results.journey_results import EndShare
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -41,3 +42,4 @@ class EmulatedJourneys:
     """null where the emulator predicts nothing of the ends"""
     statement: str
     """whether the two agree, in a sentence; empty where no landers were followed"""
+    __repr__ = short_repr

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lithobrake.results.json_values import INLINE
+from lithobrake.vocabulary.screen import short_repr
 
 Ends = tuple[float | None, float | None]
 ByInput = Mapping[str, float]
@@ -85,6 +86,7 @@ class ExpansionResults:
     """its 95 % interval, by drawing residuals of the runs with replacement: lower, upper"""
     sobol_total_interval: Mapping[str, IntervalByInput]
     """likewise"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,3 +146,4 @@ class ExpansionSamples(MonteCarlo):
 
     outputs: Mapping[str, SampledOutput]
     """by output; empty where no sample leaves"""
+    __repr__ = short_repr

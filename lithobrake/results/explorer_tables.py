@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.reading import reading
+from lithobrake.vocabulary.screen import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -50,6 +51,7 @@ class ExplorerTables:
     interval_reach: float
     bound: dict[str, float]
     attitude: ExplorerAttitude | None = None
+    __repr__ = short_repr
 
     @property
     def attitude_inputs(self) -> tuple[str, ...]:

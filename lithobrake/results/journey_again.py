@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.results.journey_track import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     import numpy as np
@@ -59,7 +60,7 @@ class StudyJourney:
 
     def __repr__(self) -> str:
         """Its touchdowns and its end, in lines."""
-        return "\n".join([f"Journey {self.track.number}", *self.track.lines()])
+        return "\n".join([f"Journey {self.track.number}", *map(in_lines, self.track.lines())])
 
 
 def track_of(

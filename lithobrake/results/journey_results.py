@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lithobrake.results.dispersion import GroundResults, LandingEllipses
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class RestRegion:
     """largest distance between two of its points"""
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     """latitude and east longitude [deg] along its edges"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,7 @@ class DeliveryResults:
     """smallest regions (highest density) that hold 50 and 95 % of them; empty where why_no_regions says why"""
     why_no_regions: str | None = None
     """why there are no regions, in a sentence"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -102,6 +105,7 @@ class JourneyRest:
     """angle between that side's axis and the plumb line [deg]; null for a ball"""
     why_no_regions: str | None = None
     """why there are no regions, in a sentence"""
+    __repr__ = short_repr
 
     @property
     def grounds(self) -> dict[str, GroundResults]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.screen import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -107,6 +108,7 @@ class JourneyTrack:
     aim: tuple[float, float]
     radius: float
     vertices: "NDArray[np.float64]"
+    __repr__ = short_repr
 
     @property
     def number(self) -> int:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lithobrake.results.shares import ShareInterval
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,7 @@ class LimitStateResult:
     """by input; empty where no run meets it, or all came down on one bed"""
     statement: str
     """all of it in a sentence"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -109,3 +111,4 @@ class RareLimitState:
     """beds that they came down on"""
     statement: str
     """all of it in a sentence"""
+    __repr__ = short_repr

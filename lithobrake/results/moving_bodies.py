@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import reading
+from lithobrake.vocabulary.screen import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,6 +38,7 @@ class MovingBodies:
     attributes: dict[str, Any]
     history: "dict[str, Array]"
     force: "Array | None" = None
+    __repr__ = short_repr
 
     @classmethod
     def read(cls, path: Path, remedy: str) -> "MovingBodies":

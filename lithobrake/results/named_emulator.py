@@ -10,6 +10,7 @@ from lithobrake.results.table import Table
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 from lithobrake.vocabulary.html_table import html_table
 from lithobrake.vocabulary.quantities import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
+from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -57,7 +58,7 @@ class NamedEmulator:
 
     def __repr__(self) -> str:
         """Say what it takes and gives, and what the inputs are worth."""
-        return (
+        return in_lines(
             f"NamedEmulator of {', '.join(self._modelled)} at {self._shown(self.inputs)}. "
             f"{self.model.statement_on('beds')} Sample it with .sample({{name: value, ...}}, count)."
         )

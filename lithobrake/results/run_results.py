@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from lithobrake.results.shares import Estimate
 from lithobrake.vocabulary.percentages import part
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -145,6 +146,7 @@ class VarianceParts:
     """what twins differ in; null without auxiliary runs"""
     of: str
     """which landings it describes, in words"""
+    __repr__ = short_repr
 
     @property
     def parts(self) -> dict[str, VariancePart]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from lithobrake.results.json_values import INLINE
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,7 @@ class SampleShares:
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
     why: str | None = None
     """why the shares have no interval, in a sentence"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -146,3 +148,4 @@ class LandingShares(RunShares):
 
     emulator: EmulatorShares | None
     """null for a study of journeys, which has no emulator of single landings"""
+    __repr__ = short_repr

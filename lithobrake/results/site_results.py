@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from lithobrake.vocabulary.screen import short_repr
+
 
 @dataclass(frozen=True)
 class BedNumbers:
@@ -90,6 +92,7 @@ class SiteResults:
     """what the site does to landers that lie there, in a sentence; null where it holds them"""
     gravity_warning: str | None
     """how touchdowns and site differ in acceleration, in a sentence; null where alike"""
+    __repr__ = short_repr
 
     @property
     def holds(self) -> bool:

@@ -26,12 +26,14 @@ from lithobrake.vocabulary.quantities import (
     Quantity,
     quantity,
 )
+from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
+    from lithobrake.report.study_plots import StudyPlots
     from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.journey_again import StudyJourney
     from lithobrake.results.limit_state_results import RareLimitState
@@ -363,6 +365,16 @@ class StudyResults:
         """How the flights of each run of a drawn study ended, from many sites, and which share of them returns."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
 
+    @cached_property
+    def plot(self) -> "StudyPlots":
+        """Figures one by one, on axes of matplotlib: `plot.map()`, `plot.ends(ax=axes)`, `plot.variance()` and others.
+
+        Needs a study that has run to its end.
+        """
+        from lithobrake.report.study_plots import StudyPlots
+
+        return StudyPlots(self)
+
     def _refuse_drawn(self, name: str, what: str) -> None:
         """Say that a study whose runs were drawn has no such thing, where this is one."""
         if (self.folder / "emulator.json").is_file() and not (self.folder / "refined.json").is_file():
@@ -457,7 +469,7 @@ class StudyResults:
             given = self.summary.get("results")
             sentences = given.get("answer") if isinstance(given, dict) else None
             answer = sentences[0] if isinstance(sentences, list) and sentences else "no answer in the summary"
-        return f"StudyResults of {self.folder}: {answer}"
+        return in_lines(f"StudyResults of {self.folder}: {answer}", "  ")
 
     def _repr_html_(self) -> str:
         """The most telling numbers, and what can be asked for, for a notebook."""

@@ -26,6 +26,7 @@ from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, 
 from lithobrake.results.side_results import SideResults
 from lithobrake.results.site_results import BedNumbers, SiteResults
 from lithobrake.results.sky_results import SkyResults
+from lithobrake.vocabulary.screen import short_repr
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,7 @@ class Estimates:
     outputs: Mapping[str, OutputEstimate | OutputDirection]
     runs: RunResults
     sides: Mapping[str, SideResults]
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,7 @@ class DrawnResults:
     """by sun and earth what the landers at rest see of it; empty where the study does not ask"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
+    __repr__ = short_repr
 
     @property
     def spreads(self) -> dict[str, OutputEstimate]:
@@ -138,6 +141,7 @@ class PaperResults:
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the most informative numbers, in sentences"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -177,3 +181,4 @@ class Provenance:
     wall_s: Mapping[str, float]
     """wall time of each stage when its files were made"""
     runs: RunTimes
+    __repr__ = short_repr

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.vocabulary.quantities import Quantity
+from lithobrake.vocabulary.screen import names_in_lines, short_repr
 
 if TYPE_CHECKING:
     import pandas
@@ -30,6 +31,7 @@ class Column:
     units: str = ""
     long_name: str = ""
     frame: str = ""
+    __repr__ = short_repr
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -98,8 +100,8 @@ class Table(Mapping[str, np.ndarray]):
 
     def __repr__(self) -> str:
         """Say how large the table is and what its columns are."""
-        names = ", ".join(_title(name, column) for name, column in self.columns.items())
-        return f"Table of {self.row_count} rows ({self.row}): {names}"
+        titles = (_title(name, column) for name, column in self.columns.items())
+        return names_in_lines(f"Table of {self.row_count} rows ({self.row}): ", titles)
 
     def _repr_html_(self) -> str:
         """The first rows, for a notebook."""

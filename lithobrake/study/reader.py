@@ -12,7 +12,9 @@ from pydantic import BaseModel, ValidationError
 from lithobrake.study.checks import problems
 from lithobrake.study.flight_sections import BUILT_IN_BODIES
 from lithobrake.study.refusals import sentences
+from lithobrake.study.shipped import shipped_studies, study_path
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest
 
 
 class StudyError(ValueError):
@@ -25,10 +27,11 @@ class StudyError(ValueError):
 
 
 def read_study(path: Path) -> Study:
-    """Read and check a study file; paths of meshes in it become absolute.
+    """Read and check a study file, or the shipped study of a name; paths of meshes in it become absolute.
 
     Raises StudyError with one sentence for each problem.
     """
+    path = study_path(path)
     return check_tables(load_tables(path), folder=path.resolve().parent, name=path.name)
 
 
@@ -42,7 +45,12 @@ def read_bytes(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise StudyError([f"{path}: the study file cannot be read ({error}); name an existing TOML file"]) from error
+        reason, remedy = f"the study file cannot be read ({error.strerror or error})", "name an existing TOML file"
+        if not path.suffix:
+            known = shipped_studies()
+            reason += closest(path.name, known)
+            remedy += f", or a study that comes with the package: {', '.join(known)}"
+        raise StudyError([f"{path}: {reason}; {remedy}"]) from error
 
 
 def parse_tables(path: Path, content: bytes) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.study.reader import StudyError, check_tables, parse_tables, read_bytes
+from lithobrake.study.shipped import study_path
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -27,10 +28,13 @@ class StudySource:
 
     @classmethod
     def read(cls, path: Path, function: str | None = None) -> "StudySource":
-        """Read a study file; function: identity of a Python function that makes the touchdowns in place of the soil.
+        """Read a study file, or the shipped study of a name.
+
+        function: identity of a Python function that makes the touchdowns in place of the soil.
 
         Raises StudyError with one sentence for each problem.
         """
+        path = study_path(path)
         content = read_bytes(path)
         tables = parse_tables(path, content)
         return cls(check_tables(tables, path.resolve().parent, path.name, function), tables, content, path)

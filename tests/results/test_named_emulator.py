@@ -122,8 +122,10 @@ def test_counts_and_seeds_are_checked() -> None:
 
 def test_it_shows_itself_on_one_screen() -> None:
     assert NAMED.inputs == {"grain.friction": "", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
-    assert "grain.young_modulus [Pa]" in repr(NAMED)
-    assert NAMED.model.statement_on("beds") in repr(NAMED)
+    said = " ".join(repr(NAMED).split())
+    assert "grain.young_modulus [Pa]" in said
+    assert NAMED.model.statement_on("beds") in said
+    assert max(map(len, repr(NAMED).split("\n"))) < 80
     assert max(len(repr(one)) for one in (NAMED, NAMED.model)) < 800
     assert "array(" not in repr(NAMED.model)
     shown = NAMED._repr_html_()

@@ -59,7 +59,7 @@ def journey_map(
     the body [m], shape [vertex, 3]; delivery: ellipses of the first impacts.
     """
     # In inches from below: the axis of the bars, a row for each bar, the axis of the map, the map.
-    window = _window(places, regions, aim, delivery)
+    window = map_window(places, regions, aim, delivery)
     bars, map_height, gap = 0.2 * len(shares), 4.4, 0.75 if window else 1.35
     height = 0.5 + bars + gap + map_height + 0.1
     figure = Figure(figsize=(9.2, height))
@@ -71,7 +71,7 @@ def journey_map(
         axes = figure.add_axes((0.07, bottom, map_height / 9.2, map_height / height))
         side = figure.add_axes((0.625, bottom + 1.9 / height, 0.355, 1.65 / height))
         whole_body(side, window, vertices)
-    _draw_places(axes, places, regions, aim, window or WHOLE)
+    draw_places(axes, places, regions, aim, window or WHOLE)
     draw_ellipses(axes, delivery, window or WHOLE, DELIVERY)
     if window is not None:
         draw_bar(axes, window, radius)
@@ -81,7 +81,7 @@ def journey_map(
     return figure
 
 
-def _window(
+def map_window(
     places: Sequence[EndPlaces],
     regions: Sequence[RestRegion],
     aim: tuple[float, float],
@@ -100,7 +100,7 @@ def _window(
     return view_around(latitude, longitude, aim)
 
 
-def _draw_places(
+def draw_places(
     axes: Axes, places: Sequence[EndPlaces], regions: Sequence[RestRegion], aim: tuple[float, float], window: Window
 ) -> None:
     """Landers as dots over their regions, and the aim point."""
@@ -142,6 +142,17 @@ def _draw_legend(
     delivery: Sequence[EllipseShare],
 ) -> None:
     """Say what dots, lines and mark are."""
+    columns = 1 if corner[0] > 0.5 else 3
+    figure.legend(
+        handles=map_handles(places, regions, delivery), loc="lower left", bbox_to_anchor=corner, ncols=columns,
+        borderpad=0.0, labelspacing=0.7,
+    )  # fmt: skip
+
+
+def map_handles(
+    places: Sequence[EndPlaces], regions: Sequence[RestRegion], delivery: Sequence[EllipseShare]
+) -> list[Line2D]:
+    """The legend: landers, regions, ellipses of the delivery that are drawn, and the aim point."""
     handles = [
         Line2D([], [], linestyle="none", marker="o", markersize=5, color=one.colour, label=f"{one.words} ({count})")
         for one in places
@@ -155,10 +166,7 @@ def _draw_legend(
         words, style = f"ellipse with {percent(one.share)} of the first impacts", ellipse_style(one.share)
         handles.append(Line2D([], [], linestyle=style, color=DELIVERY, linewidth=1.2, label=words))
     handles.append(Line2D([], [], linestyle="none", label="aim point", **SITE_STYLE))
-    columns = 1 if corner[0] > 0.5 else 3
-    figure.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=corner, ncols=columns, borderpad=0.0, labelspacing=0.7
-    )
+    return handles
 
 
 def places_by_end(

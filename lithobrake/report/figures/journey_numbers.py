@@ -76,7 +76,7 @@ def counts_figure(counts: Mapping[str, Array], end: NDArray[np.str_], words: Map
     figure = Figure(figsize=(9.2, 2.9))
     for place, (label, values) in enumerate(counts.items()):
         axes = figure.add_axes((0.075 + 0.5 * place, 0.18, 0.4, 0.68))
-        _draw_counts(axes, values, end, words)
+        draw_counts(axes, values, end, words)
         axes.set_xlabel(label)
         axes.set_ylabel("journeys" if place == 0 else "")
     handles, labels = figure.axes[0].get_legend_handles_labels()
@@ -84,7 +84,8 @@ def counts_figure(counts: Mapping[str, Array], end: NDArray[np.str_], words: Map
     return figure
 
 
-def _draw_counts(axes: Axes, values: Array, end: NDArray[np.str_], words: Mapping[str, str]) -> None:
+def draw_counts(axes: Axes, values: Array, end: NDArray[np.str_], words: Mapping[str, str]) -> None:
+    """Bars of how many journeys have a number, in parts by how they ended; words: of the ends."""
     most, least = int(values.max()), int(values.min())
     step = max(1, int(np.ceil((most - least + 1) / MOST_BARS)))
     edges = np.arange(least, most + step + 1, step) - 0.5

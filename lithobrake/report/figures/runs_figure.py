@@ -63,7 +63,7 @@ def runs_figure(landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, f
     figure = Figure(figsize=(9.2, height))
     left, right = figure.subplots(1, 2)
     figure.subplots_adjust(left=0.07, right=0.985, top=1 - 0.42 / height, bottom=0.65 / height, wspace=0.33)
-    _speeds_and_elevations(left, landings, quantiles)
+    draw_rebounds(left, landings, quantiles)
     _bed_by_bed(right, landings, bed_count)
     speed = quantiles.get("speed_out", {})
     for level, value in speed.items():
@@ -81,7 +81,7 @@ def runs_figure(landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, f
     return figure
 
 
-def _speeds_and_elevations(axes: Axes, landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, float]]) -> None:
+def draw_rebounds(axes: Axes, landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, float]]) -> None:
     """Every lander that left, by speed and elevation, with the quantiles of the elevation."""
     shown, left = output("elevation_out"), landings.has_speed
     elevation = shown.factor * landings.elevation

@@ -55,8 +55,7 @@ def variance_figure(shares: Mapping[str, VarianceParts | None], words: Mapping[s
     shares: by output, None where the runs cannot tell; words: title of the row of an output; level: of the intervals.
     """
     records = [record for record in shares.values() if record]
-    names = tuple(dict.fromkeys(name for record in records for name in record.soil_by_input))
-    colours, handles = input_colours(names), _handles(names, records)
+    handles = part_handles(records)
     # In inches from below: the legend, the axis, a row for each output, the title.
     legend, rows = 0.1 + 0.175 * -(-len(handles) // 4), ROW_HEIGHT * len(shares)
     height = legend + 0.55 + rows + 0.3
@@ -64,17 +63,29 @@ def variance_figure(shares: Mapping[str, VarianceParts | None], words: Mapping[s
     bottom, share = (legend + 0.55) / height, rows / height
     bars = figure.add_axes((0.13, bottom, 0.38, share))
     whiskers = figure.add_axes((0.655, bottom, 0.2, share))
+    draw_parts(bars, shares, words)
     for row, record in enumerate(shares.values()):
-        if record is None:
-            bars.text(0.02, row, "these runs cannot tell", va="center", color=QUIET)
-            continue
-        _bar(bars, row, pieces(record, colours))
-        _intervals(whiskers, row, record)
-    bars.set_yticks(range(len(shares)), [words.get(name) or _row(name) for name in shares])
-    for axes, title in ((bars, "parts of the variance"), (whiskers, f"parts and {percent(level)} intervals")):
-        _dress(axes, title, len(shares))
+        if record is not None:
+            _intervals(whiskers, row, record)
+    _dress(whiskers, f"parts and {percent(level)} intervals", len(shares))
     figure.legend(handles=handles, loc="lower center", ncols=4, handlelength=1.2, handleheight=1.0, columnspacing=1.4)
     return figure
+
+
+def draw_parts(axes: Axes, shares: Mapping[str, VarianceParts | None], words: Mapping[str, str]) -> None:
+    """Draw a bar for each output, stacked of the parts of its variance; see variance_figure."""
+    colours = input_colours(_soil_inputs([record for record in shares.values() if record]))
+    for row, record in enumerate(shares.values()):
+        if record is None:
+            axes.text(0.02, row, "these runs cannot tell", va="center", color=QUIET)
+        else:
+            _bar(axes, row, pieces(record, colours))
+    axes.set_yticks(range(len(shares)), [words.get(name) or _row(name) for name in shares])
+    _dress(axes, "parts of the variance", len(shares))
+
+
+def _soil_inputs(records: Sequence[VarianceParts]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for record in records for name in record.soil_by_input))
 
 
 def _row(name: str) -> str:
@@ -82,9 +93,10 @@ def _row(name: str) -> str:
     return f"{shown.words}\n{shown.symbol}".strip()
 
 
-def _handles(names: Sequence[str], records: Sequence[VarianceParts]) -> list[Patch]:
+def part_handles(records: Sequence[VarianceParts]) -> list[Patch]:
     """The legend: soil inputs, then the parts that some output has."""
-    colours = input_colours(tuple(names))
+    names = _soil_inputs(records)
+    colours = input_colours(names)
     handles = [Patch(facecolor=colours[name], label=input_label(name)) for name in names]
     if names:
         handles.append(Patch(facecolor="white", edgecolor=QUIET, hatch="....", label="soil inputs together"))

@@ -67,21 +67,29 @@ def landing_plots(data: RunsPage) -> list[Plot]:
 
 
 def _runs(data: RunsPage) -> "Figure":
+    return runs_figure(landings_of_runs(data), quantiles_of_runs(data))
+
+
+def landings_of_runs(data: RunsPage) -> LandingsOfRuns:
+    """The landings of the study as they ended."""
     runs = data.runs
     nan = np.full(len(runs["key"]), np.nan)
     column = {name: runs.get(name, nan) for name in ("speed_out", "elevation_out", OVER_RIM, "bed")}
-    landings = LandingsOfRuns(
+    return LandingsOfRuns(
         column["speed_out"],
         column["elevation_out"],
         runs["outcome"],
         column[OVER_RIM] == 1.0,
         np.nan_to_num(column["bed"]).astype(np.int64),
     )
-    quantiles = {
+
+
+def quantiles_of_runs(data: RunsPage) -> dict[str, dict[str, float]]:
+    """Quantiles of the outputs [SI], by output and level."""
+    return {
         name: {level: one.value for level, one in spread.quantiles.items()}
         for name, spread in data.results.spreads.items()
     }
-    return runs_figure(landings, quantiles)
 
 
 def _variance(data: RunsPage) -> "Figure | None":

@@ -100,26 +100,34 @@ def _sentence(plot: Plot) -> str:
 def _draw_map(data: JourneyPage) -> "Figure":
     table, site = data.journeys, data.results.site
     places = places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
-    shares = [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
     radius = float(np.linalg.norm(site.place_m))
     aim, regions = (site.latitude_deg, site.longitude_deg), data.at_rest.regions
     delivery = None if data.results.delivery is None else data.results.delivery.ellipse
-    return journey_map(places, regions, aim, radius, shares, "all journeys", data.body_vertices, delivery)
+    return journey_map(places, regions, aim, radius, end_shares(data), "all journeys", data.body_vertices, delivery)
 
 
 def _share(name: str, one: EndShare, colour: str) -> Share:
     return Share(name, one.share, one.lower, one.upper, LEVEL, colour)
 
 
+def end_shares(data: JourneyPage) -> list[Share]:
+    """How the journeys end, as bars have it."""
+    return [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
+
+
 def _draw_times(data: JourneyPage) -> "Figure":
+    return spreads_figure([time_spread(data), distance_spread(data)])
+
+
+def time_spread(data: JourneyPage) -> RestSpread:
+    """The time to rest, in minutes or hours."""
     size, unit = words.time_unit(data)
-    rest = data.at_rest
-    return spreads_figure(
-        [
-            RestSpread(f"time to rest [{unit}]", _of_rest(data, "time_s") / size, rest.time_s, 1.0 / size),
-            RestSpread("distance from the aim point [m]", _of_rest(data, "distance"), rest.distance_m),
-        ]
-    )
+    return RestSpread(f"time to rest [{unit}]", _of_rest(data, "time_s") / size, data.at_rest.time_s, 1.0 / size)
+
+
+def distance_spread(data: JourneyPage) -> RestSpread:
+    """The distance from the aim point."""
+    return RestSpread("distance from the aim point [m]", _of_rest(data, "distance"), data.at_rest.distance_m)
 
 
 def _draw_counts(data: JourneyPage) -> "Figure":
@@ -129,13 +137,20 @@ def _draw_counts(data: JourneyPage) -> "Figure":
 
 
 def _draw_attitude(data: JourneyPage) -> "Figure | None":
-    rest = data.at_rest
-    if rest.tilt_deg is None:
-        return None
-    colour = END_COLOURS[JourneyEnd.AT_REST]
-    sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
-    tilt = RestSpread("tilt of the side that is down [deg]", _of_rest(data, "tilt_deg"), rest.tilt_deg)
-    return attitude_figure([_share(name, one, colour) for name, one in sides], "those at rest", tilt)
+    tilt = tilt_spread(data)
+    return None if tilt is None else attitude_figure(side_shares(data), "those at rest", tilt)
+
+
+def side_shares(data: JourneyPage) -> list[Share]:
+    """The sides that are down, the most frequent first; none for a ball."""
+    sides = sorted(data.at_rest.faces.items(), key=lambda one: -one[1].share)
+    return [_share(name, one, END_COLOURS[JourneyEnd.AT_REST]) for name, one in sides]
+
+
+def tilt_spread(data: JourneyPage) -> RestSpread | None:
+    """The tilt of the side that is down; None for a ball."""
+    tilt = data.at_rest.tilt_deg
+    return None if tilt is None else RestSpread("tilt of the side that is down [deg]", _of_rest(data, "tilt_deg"), tilt)
 
 
 def _of_rest(data: JourneyPage, name: str) -> np.ndarray:

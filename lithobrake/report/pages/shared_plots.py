@@ -53,12 +53,16 @@ def draw_landing(data: PageData) -> "Figure | None":
 
 
 def draw_map(data: SampledPage) -> "Figure":
-    table, site, limit = data.results.shares, data.results.site, hours(data.study["flight"]["duration"])
-    words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
-    shares = [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
+    site, shares, ellipses = data.results.site, impact_shares(data), data.results.ellipses
     where = (site.latitude_deg, site.longitude_deg)
-    ellipses = data.results.ellipses
-    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, _whole(data))
+    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, whole_words(data))
+
+
+def impact_shares(data: SampledPage) -> list[Share]:
+    """What becomes of the landings after the first bounce, as bars have it."""
+    table, limit = data.results.shares, hours(data.study["flight"]["duration"])
+    words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
+    return [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
 
 
 def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> Share:
@@ -68,7 +72,7 @@ def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> Sha
     return Share(words, entry.share, lower, upper, data.level, FATE_COLOURS[fate], data.digits)
 
 
-def _whole(data: SampledPage) -> str:
+def whole_words(data: SampledPage) -> str:
     """What the shares of the flights are shares of."""
     if not isinstance(data, PaperPage):
         return "all landings"

@@ -1,0 +1,83 @@
+"""Commands for experts: soil from bounces, probabilities of rare outcomes, and single stages of a study."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lithobrake.cli.arguments import (
+    EXPERT,
+    ExecutorName,
+    OutPath,
+    Scheduler,
+    StudyDirectory,
+    StudyPath,
+    Workers,
+    app,
+    scheduler_of,
+    study_folder,
+)
+from lithobrake.cli.studies import study_command
+from lithobrake.cli.terminal import one_sentence, shown_progress, tell
+
+
+@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500")
+def rare(
+    study: StudyPath,
+    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of \\[limit_states].", show_default=False)],
+    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+) -> None:
+    """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
+    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        source = StudySource.read(study)
+        from lithobrake.pipeline import rare_failure
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
+            found = rare_failure(
+                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
+            )
+    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
+
+
+@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake infer results --bounce bounces.csv")
+def infer(
+    folder: StudyDirectory,
+    bounce: Annotated[
+        Path | None,
+        typer.Option(
+            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
+        ),
+    ] = None,
+) -> None:
+    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
+    with one_sentence():
+        from lithobrake.pipeline import InferredStudy, infer_study
+
+        study = InferredStudy.open(folder)
+        with shown_progress("inference") as progress:
+            progress(0.0, "what bounces can say")
+            plan = study.plan().lines()
+            if bounce is not None:
+                progress(0.5, "what these bounces say")
+            found = None if bounce is None else infer_study(folder, bounce)
+    tell(plan)
+    if found is not None:
+        written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
+        tell([line for line in (found["statement"], found["beds"], written) if line])
+
+
+study_command("bed", "Pour and settle the beds, and make one landing to look at.", EXPERT, until="landing")
+study_command("screen", "Run the screening design and fit an expansion in all inputs.", EXPERT)
+study_command("refine", "Run the refined design and fit an expansion in the inputs that matter.", EXPERT)
+study_command("test", "Run the test points and score the expansions on them.", EXPERT)
+study_command("sample", "Draw Monte Carlo samples from the refined expansion.", EXPERT)
+study_command("fly", "Fly the samples that leave the surface to their next impact.", EXPERT)
+study_command("rest", "Follow samples from bounce to bounce until they come to rest.", EXPERT)
