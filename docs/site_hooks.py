@@ -34,7 +34,9 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Let links to the showcase lead to its pictures within the site."""
+    """Keep decisions out of the search, and let links to the showcase lead to its pictures within the site."""
+    if page.file.src_uri.startswith("decisions/"):
+        page.meta["search"] = {"exclude": True}
     return markdown.replace("](../showcase/", "](showcase/") if "/" not in page.file.src_uri else markdown
 
 

@@ -45,3 +45,10 @@ def test_pictures_of_the_showcase_are_part_of_the_site(hooks: dict[str, Any]) ->
     linked = hooks["on_page_markdown"]("![map](../showcase/mission/figures/figure_1_ends.png)", page=page)
     assert linked == "![map](showcase/mission/figures/figure_1_ends.png)"
     assert (ROOT / "showcase/mission/figures/figure_1_ends.png").is_file()
+
+
+@pytest.mark.parametrize(("name", "is_left_out"), [("decisions/dem.md", True), ("method.md", False)])
+def test_decisions_are_not_searched(name: str, is_left_out: bool, hooks: dict[str, Any]) -> None:
+    page = SimpleNamespace(file=SimpleNamespace(src_uri=name), meta={})
+    assert hooks["on_page_markdown"]("text", page=page) == "text"
+    assert page.meta == ({"search": {"exclude": True}} if is_left_out else {})
