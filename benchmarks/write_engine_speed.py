@@ -1,4 +1,4 @@
-"""Write docs/decisions/engine_speed.md from grains_speed.json, step_parts.json and engine_switches.json beside this script.
+"""Write docs/decisions/engine_speed.md from grains_speed.json, step_parts.json and engine_switches.json beside it.
 
 python benchmarks/write_engine_speed.py
 """
