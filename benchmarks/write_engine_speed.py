@@ -1,4 +1,4 @@
-"""Write docs/engine_speed.md from grains_speed.json, step_parts.json and engine_switches.json beside this script.
+"""Write docs/decisions/engine_speed.md from grains_speed.json, step_parts.json and engine_switches.json beside it.
 
 python benchmarks/write_engine_speed.py
 """
@@ -105,7 +105,7 @@ def main() -> None:
         *switches(tricks),
     ]  # fmt: skip
     page = [line if line.startswith("|") else wrapped(line) for line in page]
-    (HERE.parent / "docs" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+    (HERE.parent / "docs" / "decisions" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

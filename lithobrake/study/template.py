@@ -74,7 +74,7 @@ def _key(name: str, field: FieldInfo) -> str:
     if allowed is not None:
         notes.append(f"Allowed: {allowed}" + ("; number or table." if isinstance(allowed, MaybeUncertain) else "."))
     if not field.is_required() and field.default is not None:
-        notes.append(f"Default: {_toml(field.default)}.")
+        notes.append(f"Default: {toml_value(field.default)}.")
     inner = table(field)
     if inner and any(one.examples for one in inner.model_fields.values()):
         return _inner_table(name, inner)
@@ -84,7 +84,7 @@ def _key(name: str, field: FieldInfo) -> str:
     elif field.examples:
         line = f"{name} = {field.examples[0]}"
     else:
-        line = f"# {name} = {_toml(field.default)}" if field.default is not None else f"# {name} ="
+        line = f"# {name} = {toml_value(field.default)}" if field.default is not None else f"# {name} ="
     return f"{_comment(' '.join(notes))}{line}\n"
 
 
@@ -104,9 +104,10 @@ def _comment(text: str) -> str:
     return textwrap.fill(" ".join(text.split()), width=110, initial_indent="# ", subsequent_indent="# ") + "\n"
 
 
-def _toml(value: Any) -> str:
+def toml_value(value: Any) -> str:
+    """A value as a study file has it."""
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(entry) for entry in value) + "]"
+        return "[" + ", ".join(toml_value(entry) for entry in value) + "]"
     return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -21,9 +21,9 @@ from typer.testing import CliRunner
 from lithobrake.cli import app
 from lithobrake.study import known_keys
 
-LANGUAGES = {"python", "sh", "toml", "json", "text"}
+LANGUAGES = {"python", "sh", "toml", "json", "text", "math"}
 # Blocks that say why they are not run: one that takes minutes, the rest other people's programs, kernels, a cluster.
-LEFT_OUT = 8
+LEFT_OUT = 9
 PAGES_WITH_PYTHON = [page for page in PAGES if any(block.language == "python" for block in blocks(page))]
 COMMANDS = typer.main.get_command(app)
 

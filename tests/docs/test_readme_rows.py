@@ -28,3 +28,4 @@ def test_the_count_of_agreements_is_that_of_the_page() -> None:
     count = re.search(r"\d+ of \d+ quantities agree", page)
     assert count is not None
     assert count.group().removesuffix(" agree") in README
+    assert count.group() in (ROOT / "docs" / "how_it_works.md").read_text(encoding="utf-8")
