@@ -120,7 +120,7 @@ def draw(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> None:
             for cell, one in swept.items():
                 if cell.ground == name:
                     colour, label = INPUT_COLOURS[SWEPT.index(cell.kept)], cell.kept if cell.bed == 0 else None
-                    axis.plot(one.part, 100.0 * one.speed, "osd"[cell.bed], ms=2.5, color=colour, label=label)
+                    axis.plot(one.part, 100.0 * one.speed, "osd^"[cell.bed], ms=2.5, color=colour, label=label)
             axis.set_title(f"{HOW[name].grain}s, {HOW[name].ratio:g}")
             axis.set_ylim(0.0, 1.1 * axis.get_ylim()[1])
         axes[0].legend(loc="lower right")
@@ -244,7 +244,7 @@ such errors reached?
 
 ![Sweeps and errors](expansion_accuracy.png)
 
-Above, each marker is a bed (circles 0, squares 1, diamonds 2); below, errors on fresh points.
+Above, each marker is a bed (circles 0, squares 1, diamonds 2, triangles 3); below, errors on fresh points.
 
 ## Method
 

@@ -3,9 +3,9 @@
     python validation/experiments/ball_under_gravities.py --work FOLDER --out FOLDER [--kinds NAME ...]
 
 The beads are of one modulus under every gravity and settle anew under each, so that no similarity makes the answer.
-Stiffer beads repeat the fast drops under Earth's gravity. Froude number: speed at the first touch over sqrt(g D), D the
-ball's diameter. Rows that stand in
-ball_under_gravities.csv are not run again.
+Stiffer beads repeat the fast drops under Earth's gravity. Beads that pull on each other settle under Earth's gravity,
+most of which is then taken off, as in [Murdoch-2017]; two speeds meet them under two gravities. Froude number: speed at
+the first touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not run again.
 
 Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the
 speed and no gravity).
@@ -16,6 +16,7 @@ import math
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from ball_drop import Ball, dropped
@@ -23,7 +24,8 @@ from ball_into_beads import SPREAD
 from result_rows import Row, note, options_of, read_rows
 from sphere_bed import Beads, bulk_density, kept
 
-from lithobrake.dem import Material
+from lithobrake.dem import Material, World
+from lithobrake.touchdown import settling
 
 NAME = "ball_under_gravities.csv"
 EARTH = 9.81  # m/s2
@@ -40,15 +42,59 @@ BED = Beads(
 STIFF = replace(BED, material=replace(GLASS, young_modulus=3e7), walls=False, tiles=2)
 STEPS = 24.0  # in the shortest contact: a ball that lies in the bed has stiffer contacts than one that meets it
 PACE = 0.01  # sqrt(D / g) between looks
-# Beads, and the shares of Earth's gravity and Froude numbers of the drops.
-KINDS = {"plain": (BED, SHARES, FROUDE), "stiffer": (STIFF, (1.0,), (2.5, 6.0))}
+PULL = 300.0  # Pa, of a contact over the square of a bead's diameter
+PULLING = replace(BED, material=replace(GLASS, cohesion_force=PULL * BED.mean_diameter**2), walls=False, tiles=2)
+PATIENCE = 200  # periods of a bead on another
+
+
+class Kind(NamedTuple):
+    """Beads; shares of Earth's gravity and Froude numbers of the drops; whether beads settle under all of it first."""
+
+    beads: Beads
+    cases: tuple[tuple[float, float], ...]
+    eased: bool = False
+
+
+KINDS = {
+    "plain": Kind(BED, tuple(itertools.product(SHARES, FROUDE))),
+    "stiffer": Kind(STIFF, ((1.0, 2.5), (1.0, 6.0))),
+    # 0.157 and 0.626 m/s under both.
+    "pulling": Kind(PULLING, ((0.1, 0.5), (0.1, 2.0), (0.025, 1.0), (0.025, 4.0)), eased=True),
+}
+
+
+def bed(work: Path, kind: str, share: float) -> World:
+    """Return beads of a kind at rest under a share of Earth's gravity, from the work folder where they are there."""
+    beads, path = KINDS[kind].beads, work / f"gravities_{kind}_{share:g}.h5"
+    if not KINDS[kind].eased:
+        return kept(replace(beads, gravity=EARTH * share), work)
+    if not path.exists():
+        eased(kept(beads, work), beads, EARTH * share).save(path)
+    return World.load(path)
+
+
+def eased(world: World, beads: Beads, gravity: float) -> World:
+    """Return beads that were at rest, at rest under a smaller gravity [m/s2].
+
+    Raises ValueError where they are not after their patience.
+    """
+    period = settling.rest_period(beads.material, beads.mean_diameter, gravity)
+    world.drag = settling.contact_drag(period)
+    settling.ramp(world, np.array([0.0, 0.0, -gravity]), period)
+    for _ in range(PATIENCE):
+        settling.run_quietly(world, period)
+        calm = settling.kinetic_ratio(world, beads.mean_diameter, gravity) < settling.KINETIC_RATIO
+        if calm and settling.unbalanced_force(world) < settling.UNBALANCED_FORCE:
+            world.drag = 0.0
+            return world
+    raise ValueError(f"{beads.count} beads were not at rest under {gravity:g} m/s2: raise PATIENCE")
 
 
 def drop(work: Path, kind: str, share: float, froude: float) -> Row:
     """Let the ball meet the bed at a Froude number under a share of Earth's gravity."""
     start = time.process_time()
-    beads = replace(KINDS[kind][0], gravity=EARTH * share)
-    world = kept(beads, work)
+    beads = replace(KINDS[kind].beads, gravity=EARTH * share)
+    world = bed(work, kind, share)
     unit = math.sqrt(DIAMETER / beads.gravity)
     speed = froude * DIAMETER / unit
     bulk = bulk_density(world, beads)
@@ -70,7 +116,7 @@ def main() -> None:
     table = given.out / NAME
     ran = {(row["kind"], row["share"], row["froude"]) for row in read_rows(table)}
     for kind in given.kinds:
-        for share, froude in itertools.product(*KINDS[kind][1:]):
+        for share, froude in KINDS[kind].cases:
             if (kind, share, froude) not in ran:
                 note(table, drop(given.work, kind, share, froude))
 

@@ -7,7 +7,7 @@ import numpy as np
 from draw_low_gravity import of_balls, of_packing
 from fits import Estimate, column, powers
 from result_rows import Row, read_rows
-from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
+from table_lines import FIGURES, HERE, Lines, line, table
 
 # Excess volume over that under Earth's gravity, in parts of it, and the gravity over Earth's.
 KEULEN = {"glass": (0.0425, 0.25 / 9.81), "coarse basalt": (0.122, 0.15 / 9.81)}
@@ -74,7 +74,7 @@ def balls_part() -> tuple[Lines, str]:
     lines = [
         line("ball: exponent of depth over gravity at one Froude number (Sunday)", 0.0, of_gravity, 0.05, "0"),
         line("ball: exponent of duration, in sqrt(D/g), over gravity (Sunday)", 0.0, of_time, 0.05, "0",
-             "ball: stiffer" if len(rows) < len(every) else NOT_SHOWN),
+             "ball: stiffer"),
         line("ball: exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0"),
         line("ball: exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1"),
     ]  # fmt: skip

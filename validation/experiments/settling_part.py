@@ -6,7 +6,7 @@ from draw import of_gravities
 from fits import column, gravity_exponents
 from result_rows import read_rows
 from settling_in_other_gravities import DIAMETER, EARTH, GRAINS
-from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
+from table_lines import FIGURES, HERE, Lines, line, table
 
 BAR = 0.03
 
@@ -15,11 +15,10 @@ def settling_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "settling_in_other_gravities.csv")
     rows = [row for row in every if row["young_modulus"] == GRAINS.young_modulus]
-    cause = "settling: stiffer" if len(rows) < len(every) else NOT_SHOWN
-    found = gravity_exponents(rows)
+    found, cause = gravity_exponents(rows), "settling: stiffer"
     lines = [
         line("settling: exponent of depth over gravity", 0.0, found["depth"], BAR, "0", cause),
-        line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], BAR, "-1/2"),
+        line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], BAR, "-1/2", cause),
         line("settling: exponent of the time to 0.9 of the depth", -0.5, found["time_to_90"], BAR, "-1/2", cause),
     ]
     of_gravities(rows, DIAMETER, FIGURES / "settling_in_other_gravities.png")

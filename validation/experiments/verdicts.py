@@ -8,6 +8,7 @@ from beads_part import SURFACES, causes_of, mean_prefactor, steps_of_diameter
 from fits import (
     column,
     density_exponent,
+    gravity_exponents,
     leaving,
     mean_of,
     powers,
@@ -18,6 +19,7 @@ from plate_part import COHESION, RESISTS, force_exponent
 from rebounds_part import FINEST, JSC, PULLING, rebounds
 from result_rows import Row, read_rows
 from settling_in_other_gravities import DIAMETER, EARTH, GRAINS, SHARES, STIFF
+from settling_part import BAR
 from table_lines import HERE, said
 
 
@@ -81,10 +83,12 @@ def gravity() -> str:
         "a tenth of it. Only the modulus over density, gravity and diameter tells the two apart: "
         f"{GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER):.0f} under Earth's, and ten times as much."
     )
-    if stiff:
-        text += (
-            f" On ten times stiffer grains under Earth's gravity, the same number, it sinks by {deep(stiff)} diameters."
-        )
+    alike = gravity_exponents(stiff + ends[SHARES[-1]])
+    text += (
+        f" On ten times stiffer grains under Earth's gravity, the same number, it sinks by {deep(stiff)} diameters. "
+        f"Between these and a tenth of Earth's gravity the exponent of the depth is {said(alike['depth'])}, that of "
+        f"the time until it stops {said(alike['stopping_time'])}; the bar is {BAR:g}."
+    )
     return text
 
 
@@ -161,17 +165,15 @@ def balls() -> str:
         f"and {said(by_speed)} for speed. Both rules cannot hold for one material that does not pull; why sand "
         "differs, no row here shows."
     )
-    if stiff:
-        swapped = [
-            next((other for other in stiff if (other["share"], other["froude"]) == (row["share"], row["froude"])), row)
-            for row in rows
-        ]  # fmt: skip
-        found = powers(column(swapped, "duration_in_units"), column(swapped, "share"))[0]
-        text += (
-            " Under Earth's gravity the beads are too soft for the fast balls, which bounce. With the two drops on ten "
-            f"times stiffer beads in their place, the exponent of duration is {said(found)}."
-        )
-    return text
+    swapped = [
+        next((other for other in stiff if (other["share"], other["froude"]) == (row["share"], row["froude"])), row)
+        for row in rows
+    ]  # fmt: skip
+    found = powers(column(swapped, "duration_in_units"), column(swapped, "share"))[0]
+    return text + (
+        " Under Earth's gravity the beads are too soft for the fast balls, which bounce. With the two drops on ten "
+        f"times stiffer beads in their place, the exponent of duration is {said(found)}."
+    )
 
 
 def rebound() -> str:
