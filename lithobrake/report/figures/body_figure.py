@@ -9,12 +9,13 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lithobrake.report.figures.hulls import Camera, frame_axes
-from lithobrake.report.figures.map_marks import draw_legend, mark_site
+from lithobrake.report.figures.map_marks import SITE_STYLE, mark_site
 
 Array = NDArray[np.float64]
 Facets = NDArray[np.int64]
@@ -53,7 +54,8 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
             mark_site(axes, *camera.project(site)[0])
         frame_axes(axes, (-1.04 * reach, 1.04 * reach), (-1.04 * reach, 1.04 * reach))
         axes.set_title(title, loc="center", fontsize=9)
-    draw_legend(figure, (), "impacts", (0.01, 0.01))
+    mark = Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11})
+    figure.legend(handles=[mark], loc="lower left", bbox_to_anchor=(0.01, 0.01), borderpad=0.0)
     bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
     # Next to a single decade the ticks between would be named too, and push the label off the figure.
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
@@ -98,4 +100,4 @@ def _paint(axes: Axes, corners: Array, density: Array, norm: LogNorm, camera: Ca
     light = 0.78 + 0.22 * np.clip(turned[order] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, None)
     colours = colours * light[:, None]
     stack: Any = camera.project(corners[order])[0]
-    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3))
+    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3, rasterized=True))

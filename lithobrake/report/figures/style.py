@@ -13,13 +13,13 @@ from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStat
 INK = "#1c2733"
 QUIET = "#66717d"
 RULE = "#c9ced4"
+WASH = "#f5f7f9"
 GRAIN = "#c9b699"
 LANDER = "#3f83c8"
 TRAINING = "#2f6fb0"
 TEST = "#e2a13b"
 TEST_ALL = "#8b8f96"
 SITE = "#c8442b"
-DELIVERY = "#2f6fb0"
 # Okabe and Ito's set in an order that keeps neighbours apart; grey is left to the interactions.
 INPUT_COLOURS = (
     "#2f6fb0",
@@ -34,18 +34,18 @@ INPUT_COLOURS = (
     "#98b06f",
 )
 INTERACTIONS = "#d5d8dc"
-# One fate, one colour, on every page: how a touchdown, a flight or a journey may end.
+# One outcome, one colour, on every page; a test holds that colour-blind readers tell them apart.
 FATE_COLOURS: dict[str, str] = {
-    FlightStatus.IMPACT: "#2f6fb0",
-    FlightStatus.FLYING: "#8b8f96",
+    FlightStatus.IMPACT: "#4a90d9",
+    FlightStatus.FLYING: "#4d5560",
     FlightStatus.ESCAPED: "#e69f00",
-    FlightStatus.PARTNER: "#a8659a",
-    SampleOutcome.CAPTURED: "#98b06f",
-    SampleOutcome.LEFT_SIDEWAYS: "#c8553d",
-    SampleOutcome.TIME_LIMIT: "#d9cb3f",
-    SampleOutcome.OUTSIDE: "#7a5c3e",
-    JourneyStatus.SETTLED: "#1f9e78",
-    JourneyStatus.LOFTED: "#31465a",
+    FlightStatus.PARTNER: "#7b4fa3",
+    SampleOutcome.CAPTURED: "#b5cf6b",
+    SampleOutcome.LEFT_SIDEWAYS: "#b23a2e",
+    SampleOutcome.TIME_LIMIT: "#f0e442",
+    SampleOutcome.OUTSIDE: "#a6845f",
+    JourneyStatus.SETTLED: "#2aa884",
+    JourneyStatus.LOFTED: "#1b2a3a",
     JourneyStatus.SLIDING: "#6fb7e0",
     JourneyStatus.BOUNCING: "#f3c9b5",
 }
@@ -57,6 +57,7 @@ END_COLOURS: dict[str, str] = {
     JourneyEnd.UNDER_WAY: FATE_COLOURS[FlightStatus.FLYING],
     JourneyEnd.FAILED: FATE_COLOURS[SampleOutcome.LEFT_SIDEWAYS],
 }
+OUTCOME_COLOURS = FATE_COLOURS | END_COLOURS
 
 # Any: the names of the settings are a type of their own in some versions of matplotlib and plain words in others.
 STYLE: Any = {
