@@ -93,10 +93,10 @@ def _poles(axes: Axes, ground: GroundMap, panel: Panel | None) -> None:
         east, north = ground.places(*at)
         if ground.facing(*at)[0] < -1e-9 or (panel is not None and not panel.holds(east, north)[0]):
             continue
-        axes.plot(east, north, marker="+", color=INK, markersize=7, markeredgewidth=1.2, zorder=4, clip_on=False)
+        axes.plot(east, north, marker="+", color=INK, markersize=7, markeredgewidth=1.2, zorder=6, clip_on=False)
         axes.annotate(
             name, (float(east[0]), float(north[0])), (4, 2), textcoords="offset points", fontsize=8, weight="bold",
-            path_effects=RIM, zorder=4,
+            path_effects=RIM, zorder=6,
         )  # fmt: skip
 
 

@@ -81,7 +81,7 @@ def local_figure(shown: PlaceMap) -> Figure:
     """Draw the map about the aim point in metres; both halves of the body where places lie too far apart."""
     panel, handles = shown.panel(), _handles(shown)
     many = next((one for one in shown.places if one.are_many), None)
-    rows = ROW * len(handles) + 0.06 + (0.55 if many else 0.0)
+    rows = ROW * len(handles) + 0.06 + (0.62 if many else 0.0)
     height = (0.05 + MAP + BELOW if panel else 0.5 * WIDTH) + rows
     figure = Figure(figsize=(WIDTH, height))
     grounds = (shown.ground,) if panel else (shown.ground, shown.ground.opposite)
@@ -93,7 +93,7 @@ def local_figure(shown: PlaceMap) -> Figure:
         draw_local(axes, shown, panel, norm)
     if many:
         width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
-        bar = figure.add_axes((LEFT / WIDTH, (rows - 0.25) / height, 0.7, 0.1 / height))
+        bar = figure.add_axes((LEFT / WIDTH, (rows - 0.14) / height, 0.7, 0.1 / height))
         draw_scale(figure, bar, many, norm, width)
     figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.03, 0.01), borderpad=0.0, borderaxespad=0.0)
     return figure
@@ -162,7 +162,7 @@ def _halves(figure: Figure, shown: PlaceMap, norm: LogNorm, place: tuple[float, 
     for side, (ground, title) in enumerate(
         ((shown.ground, "the half around the aim point"), (shown.ground.opposite, "the other half"))
     ):
-        axes = figure.add_axes((left + 0.5 * width * side, bottom, 0.5 * width, 0.93 * height))
+        axes = figure.add_axes((left + 0.5 * width * side, bottom, 0.5 * width, 0.91 * height))
         disc = frame_half(axes, ground, title)
         for one in shown.regions:
             draw_edges(axes, one.found, ground, one.colour)

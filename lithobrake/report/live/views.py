@@ -94,18 +94,17 @@ def landing_arrays(scene: Scene) -> tuple[dict[str, np.ndarray], dict[str, Any]]
     still = moving.position[0, :-1]
     middle = 0.5 * (still.min(axis=0) + still.max(axis=0))
     radius = float(np.linalg.norm(still - middle, axis=1).max())
-    floor, step = _floor(scene.ground)
+    floor, step = _floor(scene)
     counts = {"bodyCount": len(scene.bodies), "frameCount": len(moving.time), "grid": step}
     return arrays | floor, {**counts, "shades": shades, "orbit": orbit(middle, radius, -1.1, 0.35)}
 
 
-def _floor(ground: Array) -> tuple[dict[str, np.ndarray], float]:
-    """The floor under the ground and a grid on it, and the width of a mesh of that [m].
-
-    ground: the corners of a tile [m], [4, 2].
-    """
-    low, high = ground.min(axis=0), ground.max(axis=0)
-    step = round_length(0.25 * float((high - low).max()))
+def _floor(scene: Scene) -> tuple[dict[str, np.ndarray], float]:
+    """The floor under the ground of a scene and a grid on it, and the width of a mesh of that [m]."""
+    low, high = scene.ground.min(axis=0), scene.ground.max(axis=0)
+    # Ground without an extent is as wide as its largest body.
+    least = max(float(np.linalg.norm(body.vertices, axis=1).max()) for body in scene.bodies)
+    step = round_length(0.25 * max(float((high - low).max()), 2.0 * least))
     low, high = step * (np.floor(low / step) - 1.0), step * (np.ceil(high / step) + 1.0)
     (left, front), (right, back) = low, high
     corner = [(left, front), (right, front), (right, back), (left, front), (right, back), (left, back)]

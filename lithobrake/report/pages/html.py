@@ -99,8 +99,8 @@ def _warnings(warnings: Sequence[str]) -> str:
 
 
 def _contents(sections: Sequence[Section]) -> str:
-    links = "".join(f'<a href="#{_anchor(one)}">{escape(one.title)}</a>' for one in sections)
-    return f'<nav aria-label="Contents"><a href="#answer">Answer</a>{links}</nav>' if links else ""
+    links = [f'<a href="#{_anchor(one)}">{escape(one.title)}</a>' for one in sections]
+    return f'<nav aria-label="Contents"><a href="#answer">Answer</a> {" ".join(links)}</nav>' if links else ""
 
 
 def _anchor(section: Section) -> str:

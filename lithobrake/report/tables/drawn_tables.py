@@ -27,7 +27,7 @@ from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
 from lithobrake.results.run_results import SideRuns, VarianceParts
 from lithobrake.results.shares import Estimate
-from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import interval_digits, percent, span, with_interval
 
 CENTIMETRES = 100.0
@@ -49,10 +49,6 @@ def tiles(data: DrawnPage) -> list[Tile]:
             ends = " to ".join(number(CENTIMETRES * end) for end in (median.lower, median.upper))
             words += f" ({percent(data.level)} interval {ends})"
         found.append(Tile(number(CENTIMETRES * median.value), "cm/s", words))
-    runs = results.runs
-    left = runs.outcomes.get(TouchdownOutcome.CLEAR, 0)
-    beds = f", on {runs.beds} beds" if runs.beds > 1 else ", all on one bed"
-    found.append(Tile(str(left), f"of {runs.count}", f"landings left the surface{beds}"))
     parts = results.variance_shares["speed_out"]
     if parts is not None:
         value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")

@@ -31,7 +31,8 @@ def tiles(data: JourneyPage) -> list[Tile]:
     if rest.regions:
         large = rest.regions[-1]
         words = f"hold {percent(large.share)} of those at rest; {number(large.largest_extent_m, 2)} m across"
-        found.append(Tile(*area(large.area_m2).rsplit("\N{NO-BREAK SPACE}", 1), words))
+        value, _, unit = area(large.area_m2).rpartition("\N{NO-BREAK SPACE}")
+        found.append(Tile(value, unit, words))
     else:
         found.append(_quantile_tile(rest.contacts, "contacts", "with the ground, in the median"))
     return found
