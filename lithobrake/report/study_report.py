@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.report.content import Content, Panel, Plot, Section
-from lithobrake.report.figures.style import figure_style
+from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import page
@@ -22,6 +22,8 @@ from lithobrake.results import open_study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# Per inch, of what is a picture inside an SVG.
+SVG_DOTS = 140
 # The kinds of files of a figure, and what each must not have of the moment and the program that made it.
 PICTURES: dict[str, dict[str, None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 
@@ -87,5 +89,6 @@ def _saved(figure: "Figure", kind: str) -> bytes:
     """A figure as a picture of this kind, the same bytes every time."""
     memory = io.BytesIO()
     # The picture's own metadata would differ between versions of matplotlib; the page has the provenance.
-    figure.savefig(memory, format=kind, metadata=PICTURES[kind])
+    dots = SVG_DOTS if kind == "svg" else STYLE["savefig.dpi"]
+    figure.savefig(memory, format=kind, metadata=PICTURES[kind], dpi=dots)
     return memory.getvalue()

@@ -105,9 +105,9 @@ def whole_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
     height = max(DISCS, rows + 0.8)
     figure = Figure(figsize=(9.2, height))
     norm = _norm(shown, (shown.ground, shown.ground.opposite), None)
-    _halves(figure, shown, norm, (0.0, 0.0, 0.55, 1.0))
+    _halves(figure, shown, norm, (0.0, 0.0, 0.51, 1.0))
     draw_shares(
-        figure.add_axes((0.685, 0.5 * (1.0 - rows / height) + 0.1 / height, 0.175, rows / height)), shares, whole
+        figure.add_axes((0.735, 0.5 * (1.0 - rows / height) + 0.1 / height, 0.13, rows / height)), shares, whole
     )
     return figure
 

@@ -27,11 +27,11 @@ class RestMap:
 def rest_figure(maps: Sequence[RestMap], aim: tuple[float, float], radius: float) -> Figure:
     """Draw the maps side by side, over one and the same part of the body, and what became of the landers below them.
 
-    aim: latitude and longitude [deg]; radius: of the body there [m]. Where places lie all around the body, the shares
-    alone are drawn.
+    aim: latitude and longitude [deg]; radius: of the body there [m]. Where no lander rests, or places lie all around
+    the body, the shares alone are drawn.
     """
     together = PlaceMap([one.places for one in maps], [one.regions for one in maps], aim, radius)
-    panel = together.panel()
+    panel = together.panel() if any(len(one.places.latitude) for one in maps) else None
     # In inches: the maps, a row for each bar, and the axis below the bars.
     rows, maps_height, row_height, below = max(len(one.shares) for one in maps), 4.5 if panel else 0.35, 0.2, 0.5
     height = maps_height + row_height * rows + below

@@ -3,13 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.colors import LogNorm, to_rgb
+from matplotlib.colors import LogNorm, to_hex, to_rgb
 from numpy.typing import NDArray
 
 from lithobrake.report.content import LiveSection
-from lithobrake.report.figures.body_figure import BARE, colour_ends, facet_density
+from lithobrake.report.figures.body_figure import BARE, COLOURS, colour_ends, facet_density
 from lithobrake.report.figures.style import END_COLOURS, FATE_COLOURS, INK, LANDER, OUTCOME_COLOURS, QUIET
 from lithobrake.report.live.views import geometry, orbit, section, still
 from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
@@ -38,9 +37,10 @@ def body_views(data: SampledPage) -> list[LiveSection]:
         return []
     density = facet_density(data.body_vertices[data.body_faces], data.facet)
     low, high = colour_ends(density)
-    scale = matplotlib.colormaps["viridis"](LogNorm(low, high)(density))[:, :3]
+    scale = COLOURS(LogNorm(low, high)(density))[:, :3]
     arrays, facts = _body(data, np.where(density[:, None] > 0.0, scale, BARE))
     facts["bar"] = {"low": number(low, 2), "high": number(high, 2), "unit": "impacts per hectare"}
+    facts["bar"]["scale"] = ", ".join(to_hex(COLOURS(part)) for part in (0.0, 0.5, 1.0))
     words = "Facets: impacts per hectare as in the figure of the body."
     if len(data.paths[0]):
         arrays |= _lines(*data.paths)

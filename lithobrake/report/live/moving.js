@@ -72,10 +72,11 @@ function player(words, last, changed) {
 
 // A bar of colours with the values at both its ends.
 function colourBar() {
-  const [low, high] = [element("span"), element("span")];
-  const box = element("p", { className: "colours", hidden: true }, low, element("i"), high);
+  const [low, colours, high] = [element("span"), element("i"), element("span")];
+  const box = element("p", { className: "colours", hidden: true }, low, colours, high);
   const show = (shade) => {
     box.hidden = !shade;
+    if (shade?.scale) colours.style.setProperty("--scale", shade.scale);
     if (shade) [low.textContent, high.textContent] = [shade.low, `${shade.high} ${shade.unit}`];
   };
   return { box, show };

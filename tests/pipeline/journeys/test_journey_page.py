@@ -20,6 +20,8 @@ from lithobrake.results.journey_results import EndShare
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
+from ...report.browser import browser_page, needs_browser
+
 
 @pytest.fixture
 def data(journeys: StudyResults) -> JourneyPage:
@@ -100,3 +102,12 @@ def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyP
     flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
     assert sum(flights) == len(ways)
     assert len(flights) == len(np.unique(data.path_times[1]))
+
+
+@needs_browser
+def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp_path: Path) -> None:
+    path = write_report(journeys_folder)
+    with browser_page(tmp_path) as page:
+        page.open(path, 1280)
+        assert 2 <= page.sheets() <= 3
+        assert page.complaints == []
