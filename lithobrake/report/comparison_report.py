@@ -29,7 +29,7 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
     warnings = [words for words in (comparison.note, comparison.why) if words]
     first = sentence(comparison, next(iter(comparison.answers)))
     sections = [
-        Section("Answers", tables=[_table(comparison)]),
+        Section("Answers", [plot], [_table(comparison)]),
         Section(
             "Study files",
             tables=[_settings(comparison)],
@@ -37,7 +37,7 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
             texts={f"The study file of {letter}": text for letter, text in zip("AB", texts, strict=True)},
         ),
     ]
-    content = Content(first, warnings, _tiles(comparison), plot, sections)
+    content = Content(first, warnings, _tiles(comparison), None, sections)
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(title, facts, content, panels, kind="Comparison of two studies")
     path = place / "index.html"

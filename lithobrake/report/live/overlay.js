@@ -25,8 +25,9 @@ class Overlay {
       const clip = [0, 1, 3].map((row) => [...place, 1].reduce((sum, one, k) => sum + camera[4 * k + row] * one, 0));
       const isBehind = canHide && place.reduce((sum, one, k) => sum + one * (eye[k] - one), 0) < 0;
       const x = 0.5 * width * (1 + clip[0] / clip[2]), y = 0.5 * height * (1 - clip[1] / clip[2]);
-      shown.hidden = isBehind || clip[2] <= 0 || x < 0 || x > width || y < 0 || y > height;
-      shown.style.transform = `translate(${x}px, ${y}px)`;
+      shown.hidden = isBehind || clip[2] <= 0 || x < 0 || x > 1.2 * width || y < 0 || y > height;
+      // Words that would be cut off at the right stand farther left.
+      shown.style.transform = `translate(${Math.min(x, width - shown.offsetWidth - 12)}px, ${y}px)`;
     }
     // The shorter side of the picture takes in a third of a right angle.
     const metres = 2 * distance * Math.tan(Math.PI / 12) / Math.min(width, height), length = roundLength(140 * metres);

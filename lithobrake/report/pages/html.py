@@ -114,7 +114,7 @@ def _opening(section: Section) -> str:
 
 def _section(section: Section, figures: Mapping[str, str]) -> str:
     """What stands under the heading of a section; nothing for an empty one."""
-    said = "".join(f"<p>{_unbroken(sentence)}</p>\n" for sentence in section.said)
+    said = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.said)
     shown = "".join(figures.get(plot.name, "") for plot in section.plots)
     tables = "".join(_table(table) for table in sorted(section.tables, key=_is_long) if table.rows)
     return said + shown + tables + _live(section.live) + "".join(_text(*one) for one in section.texts.items())
