@@ -52,8 +52,10 @@ def tiles(data: DrawnPage) -> list[Tile]:
     parts = results.variance_shares["speed_out"]
     if parts is not None:
         value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
+        is_found = value[0].isdigit()
         words = "at least of the variance of the rebound speed is explained by soil"
-        found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(parts.soil, data.level)})"))
+        words = words if is_found else "a part of the soil in the variance of the rebound speed"
+        found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil, data.level)})"))
     band = data.emulator.scores.outputs.get("speed_out")
     if band:
         words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"

@@ -92,7 +92,7 @@ def gravity_words(data: PageData) -> str:
 
 
 def bed(data: PageData) -> str:
-    """Figure 1."""
+    """How the ground was made."""
     if data.bed is None:
         program = data.study["solver"]["command"]
         return "The touchdowns were made by a " + (
@@ -121,7 +121,7 @@ def bed(data: PageData) -> str:
 
 
 def landing(data: PageData) -> str:
-    """Figure 2."""
+    """A landing."""
     if data.landing is None:
         return ""
     attributes, time = data.landing.attributes, data.landing.time
@@ -137,7 +137,7 @@ def landing(data: PageData) -> str:
 
 
 def counts(data: PaperPage) -> str:
-    """Figure 3."""
+    """What the designs cost."""
     table, design, designs = data.results.node_counts, data.study["design"], data.results.designs
     level, inputs = design["screening_level"], len(data.results.screening.inputs)
     grid = design["points"] == "smolyak"
@@ -161,7 +161,7 @@ def _runs(design: DesignCounts) -> str:
 
 
 def sobol(data: PaperPage) -> str:
-    """Figure 4."""
+    """Which inputs matter."""
     screening = data.results.screening
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
@@ -189,7 +189,7 @@ def _leader(name: str, screening: ExpansionResults) -> str:
 
 
 def errors(data: PaperPage) -> str:
-    """Figure 5."""
+    """How good the expansion is."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
         f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
@@ -225,7 +225,9 @@ def scatter(data: PaperPage) -> str:
 
 
 def impact_map(data: SampledPage) -> str:
-    """The map about the aim point."""
+    """The map about the aim point; empty without impacts."""
+    if not len(data.facet):
+        return ""
     shared = f"{thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples"
     found = [one for one in data.results.regions if one.share > 0.9]
     if not found:
@@ -255,7 +257,7 @@ def body(data: SampledPage) -> str:
 
 
 def rest(data: SampledPage) -> str:
-    """Figure 9."""
+    """Where landers rest after all bounces."""
     table = data.results.rest
     if isinstance(table, JourneyRest) or table.hard is None:
         return ""

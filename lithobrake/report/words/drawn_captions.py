@@ -27,7 +27,7 @@ def sign(name: str) -> str:
 
 
 def runs(data: RunsPage) -> str:
-    """Figure 3."""
+    """What the landings gave."""
     table = data.results.runs
     beds, outcomes = table.beds, table.outcomes
     own = listing(["soil", *drawn_things(data)])
@@ -74,7 +74,7 @@ def _ends(data: RunsPage, entry: Estimate, factor: float) -> str:
 
 
 def variance(data: RunsPage) -> str:
-    """Figure 4."""
+    """What decides."""
     records = {name: record for name, record in data.results.variance_shares.items() if record}
     if not records:
         return (
@@ -140,7 +140,7 @@ def _main_input(record: VarianceParts) -> str:
 
 
 def calibration(data: DrawnPage) -> str:
-    """Figure 5."""
+    """Whether to believe the emulator."""
     emulator = data.emulator
     scores = emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}

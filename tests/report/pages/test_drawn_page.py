@@ -287,7 +287,7 @@ def test_what_a_study_has_not_is_left_out(drawn: DrawnPage) -> None:
     alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
     empty = replace(alone, landing=None, facet=drawn.facet[:0], results=replace(alone.results, regions=()))
     content = drawn_content(empty)
-    assert not {plot.name for plot in content.plots} & {"landing", "body", "rest"}
+    assert not {plot.name for plot in content.plots} & {"map", "landing", "body", "rest"}
     titles = {table.title for table in tables_of(content)}
     assert not titles & {"Journeys to rest", "From bounce to bounce", "Landing regions"}
 
