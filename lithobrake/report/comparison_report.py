@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, PageTable, Plot, Tile
+from lithobrake.report.content import Content, PageTable, Plot, Section, Tile
 from lithobrake.report.figures.difference_figure import ShownDifference, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
@@ -24,14 +24,22 @@ TOLD = 4
 def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: Path) -> Path:
     """Write index.html and its figure into a folder, which is made; texts: the two study files. Returns the page."""
     plot = Plot("differences", "B less A", _caption(comparison), lambda: _draw(comparison))
-    panels = drawn_panels(place, [plot], lambda done, total: None)
     title = " against ".join(comparison.titles)
     facts = f"A: {comparison.names[0]}. B: {comparison.names[1]}. {comparison.of[:1].upper()}{comparison.of[1:]}."
-    files = {f"The study file of {letter}": text for letter, text in zip("AB", texts, strict=True)}
     warnings = [words for words in (comparison.note, comparison.why) if words]
     first = sentence(comparison, next(iter(comparison.answers)))
-    content = Content(first, warnings, _tiles(comparison), [plot], [_table(comparison), _settings(comparison)])
-    text = page(title, facts, content, panels, [], files, kind="Comparison of two studies")
+    sections = [
+        Section("Answers", [plot], [_table(comparison)]),
+        Section(
+            "Study files",
+            tables=[_settings(comparison)],
+            said=[] if comparison.settings else ["They do not differ in any key."],
+            texts={f"The study file of {letter}": text for letter, text in zip("AB", texts, strict=True)},
+        ),
+    ]
+    content = Content(first, warnings, _tiles(comparison), None, sections)
+    panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
+    text = page(title, facts, content, panels, kind="Comparison of two studies")
     path = place / "index.html"
     with atomic_path(path) as draft:
         draft.write_text(text, encoding="utf-8")
@@ -106,4 +114,4 @@ def _table(comparison: StudyComparison) -> PageTable:
 
 def _settings(comparison: StudyComparison) -> PageTable:
     rows = [[name, *values] for name, values in comparison.settings.items()]
-    return PageTable("What differs in the study files", ["key", "A", "B"], rows, "" if rows else "Nothing.")
+    return PageTable("What differs in the study files", ["key", "A", "B"], rows)

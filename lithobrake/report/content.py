@@ -1,4 +1,4 @@
-"""What a page is made of: figures, tiles, tables and parts that a reader moves, before they are HTML."""
+"""What a page is made of: figures, numbers, tables and parts that a reader moves, before they are HTML."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,11 +10,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Tile:
-    """One of the few numbers that a reader takes away."""
+    """One of the few numbers that a reader takes away; outcome: the word of the one that it is of, if it is of one."""
 
     value: str
     unit: str
     words: str
+    outcome: str = ""
 
 
 @dataclass(frozen=True)
@@ -31,49 +32,69 @@ class PageTable:
 
 @dataclass(frozen=True)
 class Panel:
-    """A figure of the page: title, one sentence that says what it shows, and the picture (PNG) if there is one.
+    """A figure of the page: title, sentences that say what it shows, and the picture (SVG), or None.
 
-    heading: that it stands under, as the first; tables: that stand below it.
+    Without a picture the sentences say why there is none.
     """
 
     title: str
     sentence: str
     picture: bytes | None
-    heading: str = ""
-    tables: Sequence[PageTable] = ()
 
 
 @dataclass(frozen=True)
 class Plot:
-    """A figure that is still to be drawn: name of its file, title, sentence, and what draws it, or None.
+    """A figure that is still to be drawn: name of its file, title, sentences, and what draws it, or None.
 
-    heading and tables as of a Panel.
+    One without a sentence is left out.
     """
 
     name: str
     title: str
     sentence: str
     draw: Callable[[], "Figure | None"]
-    heading: str = ""
-    tables: Sequence[PageTable] = ()
 
 
 @dataclass(frozen=True)
 class LiveSection:
-    """A part of the page that a reader moves, as HTML, under a heading that others may share, and its scripts."""
+    """A part of the page that a reader moves, as HTML, and its scripts."""
 
-    heading: str
     html: str
     scripts: tuple[str, ...]
 
 
 @dataclass(frozen=True)
+class Section:
+    """A part of the page with an entry in the contents; empty ones are left out.
+
+    said: sentences at its beginning; texts: files by title; is_printed: whether it stands on paper too.
+    """
+
+    title: str
+    plots: Sequence[Plot] = ()
+    tables: Sequence[PageTable] = ()
+    live: Sequence[LiveSection] = ()
+    said: Sequence[str] = ()
+    texts: Mapping[str, str] = field(default_factory=dict)
+    is_printed: bool = True
+
+
+@dataclass(frozen=True)
 class Content:
-    """What a page says of its study: the answer, what to beware of in sentences, and what stands below."""
+    """What a page says of its study.
+
+    answer: in one line; warnings: what to beware of; tiles: the numbers to take away; first: the figure beside them,
+    if there is one; sections: all else, in their order.
+    """
 
     answer: str
     warnings: Sequence[str]
     tiles: Sequence[Tile]
-    plots: Sequence[Plot]
-    tables: Sequence[PageTable]
-    live: Sequence[LiveSection] = ()
+    first: Plot | None
+    sections: Sequence[Section]
+
+    @property
+    def plots(self) -> list[Plot]:
+        """All figures in their order, but for those of which there is nothing to say."""
+        of_sections = [plot for section in self.sections for plot in section.plots]
+        return [plot for plot in ([self.first] if self.first else []) + of_sections if plot.sentence]

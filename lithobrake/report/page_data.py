@@ -27,8 +27,6 @@ PAPER_FILES = (*FILES, "scores.json", *OF_SAMPLES, *OF_ANY_STUDY)
 DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_SAMPLES, *OF_ANY_STUDY)
 JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", "touchdown_explorer.h5", *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
-# More dots than this only cover each other, and a picture of ten million takes minutes.
-DRAWN_COUNT = 200_000
 
 
 @dataclass(frozen=True)
@@ -36,8 +34,9 @@ class PageData:
     """What the page shows of any study.
 
     study: the tables of its file; results and provenance: those of summary.json; body_vertices of the body [m] and its
-    body_faces, counted from 0; paths: places on the ways of some flights [m] and how each ended. bed and landing are
-    None where a solver of the user's own made the touchdowns.
+    body_faces, counted from 0; paths: places on the ways of some flights [m] and how each ended; path_times: times at
+    these places since the flight began [s], and the number of the sample or journey of each. bed and landing are None
+    where a solver of the user's own made the touchdowns.
     """
 
     digits: ClassVar[int]
@@ -51,6 +50,7 @@ class PageData:
     body_vertices: Array
     body_faces: NDArray[np.int64]
     paths: tuple[Array, tuple[str, ...]]
+    path_times: tuple[Array, NDArray[np.int64]]
 
     @property
     def level(self) -> float:
@@ -85,10 +85,11 @@ class SampledPage(PageData):
 
 @dataclass(frozen=True)
 class PaperPage(SampledPage):
-    """Results of a paper study; scores: by set of runs and output, with the error of each run."""
+    """Results of a paper study; scores: by set of runs and output, with the error of each run; runs: of all designs."""
 
     model, digits = "expansion", 1
     results: PaperResults
+    runs: Table
     scores: Mapping[str, Mapping[str, OutputErrors]]
 
     @property
@@ -173,7 +174,8 @@ def page_results(found: StudyResults) -> PaperPage | DrawnPage | JourneyPage:
     results = found.results
     if isinstance(results, PaperResults):
         _refuse_without(found.folder, PAPER_FILES)
-        return PaperPage(results=results, **_of_any_study(found), **_of_samples(found), scores=_scores(found))
+        shared = _of_any_study(found) | _of_samples(found)
+        return PaperPage(results=results, **shared, runs=found.runs, scores=_scores(found))
     journeys = _journeys(found, results)
     _refuse_without(found.folder, JOURNEY_FILES if journeys else DRAWN_FILES)
     runs = found.runs.where(found.runs["design"] == "drawn")
@@ -211,6 +213,7 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
         "body_vertices": vertices,
         "body_faces": faces,
         "paths": found.flight_paths,
+        "path_times": found.flight_path_times,
     }
 
 

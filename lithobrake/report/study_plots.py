@@ -1,21 +1,17 @@
 """Figures of a study one by one, on axes of matplotlib, for a notebook or a paper; drawn by what draws the report."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
 from matplotlib.axes import Axes
 
-from lithobrake.report.figures.close_view import draw_bar, frame_view
-from lithobrake.report.figures.density import WHOLE, close_window, draw_density, near
-from lithobrake.report.figures.journey_map import draw_places, map_handles, map_window, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, draw_counts, draw_spread
-from lithobrake.report.figures.map_figure import draw_relief, draw_shares
-from lithobrake.report.figures.map_marks import draw_ellipses, fitting, mark_site
+from lithobrake.report.figures.place_map import draw_map
 from lithobrake.report.figures.runs_figure import draw_rebounds
-from lithobrake.report.figures.style import DELIVERY, END_COLOURS, figure_style
+from lithobrake.report.figures.shares import draw_shares
+from lithobrake.report.figures.style import figure_style
 from lithobrake.report.figures.variance_figure import draw_parts, part_handles
 from lithobrake.report.page_data import JourneyPage, PaperPage, RunsPage, SampledPage, page_results
 from lithobrake.report.pages import drawn_page, journey_page, shared_plots
@@ -40,16 +36,16 @@ class StudyPlots:
         self._study = study
 
     def map(self, ax: Axes | None = None) -> Axes:
-        """Where the landers end, with the smallest regions that hold 50 and 95 % of those at rest.
+        """Where the landers end, in metres about the aim point, with the smallest regions that hold 50 and 95 % of
+        those at rest and of the first impacts.
 
-        Of a study of single landings: the impacts after the first bounce, with their ellipses.
+        Of a study of single landings: the impacts after the first bounce. Where they lie far apart: the half of the
+        body around the aim point.
         """
         page = self._page
+        shown = journey_page.place_map(page) if isinstance(page, JourneyPage) else shared_plots.impacts(page)
         with _axes(ax, (6.2, 6.2)) as axes:
-            if isinstance(page, JourneyPage):
-                _draw_ends(axes, page)
-            else:
-                _draw_impacts(axes, page)
+            draw_map(axes, shown)
         return axes
 
     def ends(self, ax: Axes | None = None) -> Axes:
@@ -173,40 +169,3 @@ def _axes(ax: Axes | None, size: tuple[float, float]) -> Iterator[Axes]:
     with figure_style():
         _, axes = pyplot.subplots(figsize=size, layout="constrained")
         yield axes
-
-
-def _draw_ends(axes: Axes, page: JourneyPage) -> None:
-    """The landers by how they ended, about the aim point, or on the whole map where they lie far apart."""
-    table, site = page.journeys, page.results.site
-    places = places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
-    aim, regions = (site.latitude_deg, site.longitude_deg), page.at_rest.regions
-    delivery = None if page.results.delivery is None else page.results.delivery.ellipse
-    close = map_window(places, regions, aim, delivery)
-    window = close or WHOLE
-    if close is None:
-        draw_relief(axes, page.body_vertices)
-    draw_places(axes, places, regions, aim, window)
-    draw_ellipses(axes, delivery, window, DELIVERY)
-    if close is not None:
-        draw_bar(axes, close, float(np.linalg.norm(site.place_m)))
-    _legend_below(axes, map_handles(places, regions, fitting(delivery, window)))
-
-
-def _draw_impacts(axes: Axes, page: SampledPage) -> None:
-    """The impacts after the first bounce, about the site, or on the whole map where they lie far apart."""
-    site, ellipses = page.results.site, page.results.ellipses
-    place = site.latitude_deg, site.longitude_deg
-    close = close_window(page.latitude, page.longitude, place)
-    window = close or WHOLE
-    if close is None:
-        draw_relief(axes, page.body_vertices)
-    if len(page.latitude):
-        drawn, words = draw_density(axes, page.latitude, page.longitude, window, 11.0)
-        axes.figure.colorbar(drawn, ax=axes, format="%g", label=words, shrink=0.7)
-    draw_ellipses(axes, ellipses, window)
-    mark_site(axes, float(near(np.array([place[1]]), window.longitude)[0]), place[0])
-    frame_view(axes, window)
-
-
-def _legend_below(axes: Axes, handles: Sequence[object]) -> None:
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)

@@ -2,12 +2,13 @@
 
 import io
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, Panel, Plot
-from lithobrake.report.figures.style import figure_style
+from lithobrake.report.content import Content, Panel, Plot, Section
+from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import page
@@ -21,6 +22,8 @@ from lithobrake.results import open_study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# Per inch, of what is a picture inside an SVG.
+SVG_DOTS = 140
 # The kinds of files of a figure, and what each must not have of the moment and the program that made it.
 PICTURES: dict[str, dict[str, None]] = {"png": {"Software": None}, "svg": {"Date": None, "Creator": None}}
 
@@ -33,20 +36,21 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     """
     data = page_results(open_study(folder))
     content = _content(data)
-    # A figure of which there is nothing to say is left out.
-    plots = [plot for plot in content.plots if plot.sentence]
-    panels = drawn_panels(folder / "report", plots, progress)
+    drawn = drawn_panels(folder / "report", content.plots, progress)
     pictures = [
-        (_file(number, plot, kind), f"Figure {number}. {plot.title}")
-        for number, (plot, panel) in enumerate(zip(plots, panels, strict=True), start=1)
-        for kind in (PICTURES if panel.picture is not None else ())
+        (name, f"Figure {number}. {panel.title}")
+        for number, (panel, names) in enumerate((one for one in drawn.values() if one[1]), start=1)
+        for name in names
     ]
-    title = data.study["title"] or folder.name
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
-    text = page(title, captions.facts(data), content, panels, origin, {"The study file": data.study_text})
+    files = Section("Files", tables=origin, texts={"The study file": data.study_text}, is_printed=False)
+    whole = replace(content, sections=[*content.sections, files])
+    panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"
     with atomic_path(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+        draft.write_text(
+            page(data.study["title"] or folder.name, captions.facts(data), whole, panels), encoding="utf-8"
+        )
     return path
 
 
@@ -57,29 +61,34 @@ def _content(data: PaperPage | DrawnPage | JourneyPage) -> Content:
     return drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
 
 
-def drawn_panels(place: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]) -> list[Panel]:
-    """Draw all figures, and write each as a PNG and an SVG file in a folder, which is made."""
+def drawn_panels(
+    place: Path, plots: Sequence[Plot], progress: Callable[[int, int], None]
+) -> dict[str, tuple[Panel, list[str]]]:
+    """Draw all figures, and write each as a PNG and an SVG file in a folder, which is made.
+
+    Returns by name of the plot its panel and the names of its files, none where there is nothing to draw.
+    """
     place.mkdir(parents=True, exist_ok=True)
-    panels = []
-    for number, plot in enumerate(plots, start=1):
-        progress(number - 1, len(plots))
+    panels: dict[str, tuple[Panel, list[str]]] = {}
+    number = 0
+    for done, plot in enumerate(plots):
+        progress(done, len(plots))
         with figure_style():
             figure = plot.draw()
             made = {} if figure is None else {kind: _saved(figure, kind) for kind in PICTURES}
+        number += bool(made)
+        names = {kind: f"figure_{number}_{plot.name}.{kind}" for kind in made}
         for kind, content in made.items():
-            with atomic_path(place / _file(number, plot, kind)) as draft:
+            with atomic_path(place / names[kind]) as draft:
                 draft.write_bytes(content)
-        panels.append(Panel(plot.title, plot.sentence, made.get("png"), plot.heading, plot.tables))
+        panels[plot.name] = Panel(plot.title, plot.sentence, made.get("svg")), list(names.values())
     return panels
-
-
-def _file(number: int, plot: Plot, kind: str) -> str:
-    return f"figure_{number}_{plot.name}.{kind}"
 
 
 def _saved(figure: "Figure", kind: str) -> bytes:
     """A figure as a picture of this kind, the same bytes every time."""
     memory = io.BytesIO()
     # The picture's own metadata would differ between versions of matplotlib; the page has the provenance.
-    figure.savefig(memory, format=kind, metadata=PICTURES[kind])
+    dots = SVG_DOTS if kind == "svg" else STYLE["savefig.dpi"]
+    figure.savefig(memory, format=kind, metadata=PICTURES[kind], dpi=dots)
     return memory.getvalue()

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from lithobrake.results.json_values import INLINE
+from lithobrake.results.regions import RestRegion
 from lithobrake.results.shares import CountedShare, Level, SampleShares
 from lithobrake.vocabulary.screen import short_repr
 
@@ -143,6 +144,8 @@ class GroundResults:
     of the study"""
     interval: Level | None = field(metadata=INLINE)
     """of the shares; none on the equivalent ground, and on the soil of a paper study"""
+    regions: tuple[RestRegion, ...] = ()
+    """smallest regions that hold 50 and 95 % of the landers at rest; empty for fewer than five, or on one line"""
     __repr__ = short_repr
 
     @property

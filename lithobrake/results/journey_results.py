@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lithobrake.results.dispersion import GroundResults, LandingEllipses
+from lithobrake.results.regions import RestRegion
 from lithobrake.vocabulary.screen import short_repr
 
 
@@ -44,22 +45,6 @@ class RestQuantiles:
     median: RestQuantile
     q95: RestQuantile
     """95th percentile"""
-
-
-@dataclass(frozen=True)
-class RestRegion:
-    """The smallest region of the ground (highest density) that holds a share of landers: at rest, or at their first
-    impact."""
-
-    share: float
-    """that it holds, of 1"""
-    area_m2: float
-    """its area"""
-    largest_extent_m: float
-    """largest distance between two of its points"""
-    outlines: tuple[tuple[tuple[float, float], ...], ...]
-    """latitude and east longitude [deg] along its edges"""
-    __repr__ = short_repr
 
 
 @dataclass(frozen=True)

@@ -202,6 +202,16 @@ class StudyResults:
             return file["position"][:], tuple(map(str, file.attrs["status"]))
 
     @cached_property
+    def flight_path_times(self) -> "tuple[NDArray[np.float64], NDArray[np.int64]]":
+        """Times since the start of each flight at the places of flight_paths [s], shape [path_count, place_count], and
+        the number of the sample or journey that each is of, shape [path_count]."""
+        import h5py
+
+        path = self._file("flight_paths.h5")
+        with reading(path, self.remedy), h5py.File(path, "r") as file:
+            return file["time"][:], file["sample"][:]
+
+    @cached_property
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
         columns = ("ground", *_PLACES)

@@ -21,6 +21,7 @@ from lithobrake.results.expansions import (
 )
 from lithobrake.results.journey_results import DeliveryResults, EndShare, JourneyRest
 from lithobrake.results.limit_state_results import LimitStateResult
+from lithobrake.results.regions import RestRegion
 from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
 from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
 from lithobrake.results.side_results import SideResults
@@ -93,6 +94,8 @@ class DrawnResults:
     """by sun and earth what the landers at rest see of it; empty where the study does not ask"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
+    regions: tuple[RestRegion, ...] = ()
+    """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty with [journey], and for few"""
     __repr__ = short_repr
 
     @property
@@ -141,6 +144,8 @@ class PaperResults:
     """what becomes of the landers, over what that holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the most informative numbers, in sentences"""
+    regions: tuple[RestRegion, ...] = ()
+    """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty for few"""
     __repr__ = short_repr
 
 

@@ -2,17 +2,18 @@
 
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome
 
+# One outcome, one colour, in every figure and file; a test holds that colour-blind readers tell them apart.
 FATE_COLOURS: dict[str, str] = {
-    FlightStatus.IMPACT: "#2f6fb0",
-    FlightStatus.FLYING: "#8b8f96",
+    FlightStatus.IMPACT: "#4a90d9",
+    FlightStatus.FLYING: "#4d5560",
     FlightStatus.ESCAPED: "#e69f00",
-    FlightStatus.PARTNER: "#a8659a",
-    SampleOutcome.CAPTURED: "#98b06f",
-    SampleOutcome.LEFT_SIDEWAYS: "#c8553d",
-    SampleOutcome.TIME_LIMIT: "#d9cb3f",
-    SampleOutcome.OUTSIDE: "#7a5c3e",
-    JourneyStatus.SETTLED: "#1f9e78",
-    JourneyStatus.LOFTED: "#31465a",
+    FlightStatus.PARTNER: "#7b4fa3",
+    SampleOutcome.CAPTURED: "#b5cf6b",
+    SampleOutcome.LEFT_SIDEWAYS: "#b23a2e",
+    SampleOutcome.TIME_LIMIT: "#f0e442",
+    SampleOutcome.OUTSIDE: "#a6845f",
+    JourneyStatus.SETTLED: "#2aa884",
+    JourneyStatus.LOFTED: "#1b2a3a",
     JourneyStatus.SLIDING: "#6fb7e0",
     JourneyStatus.BOUNCING: "#f3c9b5",
 }
@@ -24,3 +25,4 @@ END_COLOURS: dict[str, str] = {
     JourneyEnd.UNDER_WAY: FATE_COLOURS[FlightStatus.FLYING],
     JourneyEnd.FAILED: FATE_COLOURS[SampleOutcome.LEFT_SIDEWAYS],
 }
+OUTCOME_COLOURS = FATE_COLOURS | END_COLOURS

@@ -3,6 +3,7 @@
 import fcntl
 import json
 import os
+import re
 import select
 import shutil
 import subprocess
@@ -77,6 +78,11 @@ class Page:
         size = self.tell("Page.getLayoutMetrics")["cssContentSize"]
         found = self.tell("Page.captureScreenshot", captureBeyondViewport=True, clip={**size, "scale": 1})
         path.write_bytes(b64decode(found["data"]))
+
+    def sheets(self) -> int:
+        """How many sheets of paper the page takes."""
+        found = self.tell("Page.printToPDF", preferCSSPageSize=True, printBackground=True)
+        return len(re.findall(rb"/Type\s*/Page\b", b64decode(found["data"])))
 
     @property
     def complaints(self) -> list[str]:

@@ -4,8 +4,10 @@ A function has no beds and no pictures. Those are put in by hand, and the summar
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import h5py
 import numpy as np
@@ -53,6 +55,19 @@ PAPER: dict[str, dict[str, Any]] = {
 }
 
 
+@dataclass(frozen=True)
+class Steady:
+    """A model with a seed from its inputs to six digits: their last bits differ between processors, and so would all
+    that comes out."""
+
+    model: Callable[..., Any]
+
+    def __call__(self, values: Mapping[str, float], seed: int) -> Any:
+        """Land once."""
+        words = ",".join(f"{name}={float(value):.6g}" for name, value in sorted(values.items()))
+        return self.model(values, crc32(words.encode()))
+
+
 def drawn_study(folder: Path) -> None:
     """A drawn study on ground that holds what lies there: landers leave, are captured, and are lost over the rim."""
     model = SyntheticLander(Truth(rim="fast_flat", capture=0.2), follows_speed=True)
@@ -67,7 +82,7 @@ def paper_study(folder: Path) -> None:
 def _finish(folder: Path, changes: Mapping[str, Any], model: Callable[..., Any], write: Callable[[Job], None]) -> None:
     """Run a study with a function, then give it the beds and the pictures that one with soil has."""
     tables = synthetic_tables(**changes) | {"title": "A study in small"}
-    lithobrake.run(tables, folder, workers=1, model=model, report=False)
+    lithobrake.run(tables, folder, workers=1, model=Steady(model), report=False)
     study = check_tables(tables, Path())
     (folder / "beds").mkdir()
     for name in bed_files(study):

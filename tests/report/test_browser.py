@@ -56,17 +56,43 @@ def test_no_width_scrolls_sideways_and_the_console_is_clean(
     assert page.requests == [report.as_uri()]
 
 
-def test_paper_has_everything_unfolded_and_no_controls(page: Page, report: Path) -> None:
+def test_paper_has_all_warnings_and_neither_controls_nor_files(page: Page, report: Path) -> None:
     page.open(report, PAPER, print_=True)
-    folded = "document.querySelectorAll('details:not([open])').length"
+    assert page.value("document.documentElement.scrollWidth") <= PAPER
+    heights = "['nav', '.live', '#files', '#appendix'].map((one) => document.querySelector(one).offsetHeight)"
+    assert page.value(heights) == [0, 0, 0, 0]
+    folded = "document.querySelectorAll('.warnings:not([open])').length"
     before = page.value(folded)
     page.value("dispatchEvent(new Event('beforeprint'))")
-    assert before > 0
     assert page.value(folded) == 0
-    assert page.value("document.documentElement.scrollWidth") <= PAPER
-    assert page.value("document.querySelector('.live').offsetHeight") == 0
     page.value("dispatchEvent(new Event('afterprint'))")
     assert page.value(folded) == before
+
+
+@pytest.mark.parametrize(("width", "height"), [(PHONE, 844), (TABLET, 1024), (LAPTOP, 800)])
+def test_the_first_screen_has_the_answer_the_numbers_and_the_map(
+    page: Page, report: Path, width: int, height: int
+) -> None:
+    page.open(report, width, height)
+    top, bottom = page.value(
+        "(() => { const box = (one) => document.querySelector(one).getBoundingClientRect();"
+        "return [box('.first img').top, box('.tiles').bottom]; })()"
+    )
+    assert bottom < height
+    # On a phone the map begins there, else it is whole.
+    assert top < 0.8 * height
+    whole = page.value("document.querySelector('.first img').getBoundingClientRect().bottom")
+    assert width == PHONE or whole < height
+
+
+def test_the_contents_stay_in_view_and_mark_where_one_is(page: Page, report: Path) -> None:
+    page.open(report, PHONE, 844)
+    marked = "document.querySelector('nav a[aria-current]').textContent"
+    assert page.value(marked) == "Answer"
+    page.value("document.querySelector('#how-sure').scrollIntoView()")
+    page.value("new Promise((done) => setTimeout(done, 200))")
+    assert page.value(marked) == "How sure"
+    assert page.value("document.querySelector('nav').getBoundingClientRect().top") == 0
 
 
 def test_a_figure_fills_the_window_until_it_is_left(page: Page, report: Path) -> None:
@@ -93,7 +119,7 @@ def test_tables_are_sorted_by_a_click_and_come_back(page: Page, report: Path) ->
     read = "[...table.tBodies[0].rows].map((row) => row.cells[2].textContent)"
     begin = (
         "const table = [...document.querySelectorAll('details')].find((one) => "
-        f"one.querySelector('h3').textContent.startsWith('{title}')).querySelector('table');"
+        f"one.querySelector('h3')?.textContent.startsWith('{title}')).querySelector('table');"
     )
     came, up, down, back = page.value(
         f"(() => {{ {begin} const read = () => {read}; const found = [read()];"
@@ -106,12 +132,15 @@ def test_tables_are_sorted_by_a_click_and_come_back(page: Page, report: Path) ->
     assert back == came
 
 
-def test_short_tables_stand_before_long_ones(page: Page, report: Path) -> None:
+def test_short_tables_stand_before_long_ones_in_each_part(page: Page, report: Path) -> None:
     page.open(report, LAPTOP)
-    found = page.value("[...document.querySelectorAll('details')].map((one) => one.open)")
-    tables = found[: found.index(False) + 1] if False in found else found
-    assert tables[0] is True
-    assert len(tables) > 2
+    found = page.value(
+        "[...document.querySelectorAll('section')].map((one) =>"
+        " [...one.querySelectorAll(':scope > details')].map((table) => table.open))"
+    )
+    assert all(part == sorted(part, reverse=True) for part in found)
+    assert sum(map(len, found)) > 5
+    assert not all(map(all, found))
 
 
 def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> None:
@@ -148,7 +177,8 @@ def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence
     for frame in (0, 3, len(moving.time) - 1):
         place = page.value(f"landing3d.then((view) => {{ view.moment = {frame}; view.draw(); return view.lander(); }})")
         assert place == pytest.approx(moving.position[frame, -1], abs=0.51 * quantum + 1e-6)
-    assert page.value("landing3d.then((view) => view.drawCalls)") == 1
+    # The bodies, the floor and its grid.
+    assert page.value("landing3d.then((view) => view.drawCalls)") == 3
     # Something is seen, and it is another picture when the lander is followed.
     look = "landing3d.then((view) => { view.follows = %s; view.draw(); return view.canvas.toDataURL(); })"
     assert page.value(look % "false") != page.value(look % "true")
@@ -176,3 +206,20 @@ def test_the_slider_of_the_landing_tells_the_time(page: Page, sequence: Path) ->
         "slider.dispatchEvent(new Event('input')); })()"
     )
     assert page.value("document.querySelector('#landing-3d output').textContent") == "t = 0.700 s"
+
+
+def test_the_marker_moves_along_the_way_of_a_lander(page: Page, sequence: Path, sequence_folder: Path) -> None:
+    page.open(sequence, LAPTOP)
+    assert page.value(STARTED) is True
+    place = open_study(sequence_folder).flight_paths[0]
+    for way, part in ((0, 0.0), (0, 1.0), (1, 0.5)):
+        found = page.value(
+            f"(() => {{ const [choice, slider] = document.querySelectorAll('#body-3d select, #body-3d input');"
+            f"choice.value = {way}; choice.dispatchEvent(new Event('change')); slider.value = {part} * slider.max;"
+            "slider.dispatchEvent(new Event('input')); return body3d.then((view) => view.lander()); })()"
+        )
+        assert found == pytest.approx(place[way, round(part * (place.shape[1] - 1))], abs=1e-3)
+    words = "[...document.querySelectorAll('#body-3d .stage span')].map((one) => one.textContent)"
+    bar, *labels = page.value(words)
+    assert bar.endswith(" m")
+    assert labels[:2] == ["north", "aim point"]

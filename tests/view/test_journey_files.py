@@ -88,9 +88,11 @@ def test_a_journey_that_failed_says_why() -> None:
 def test_the_map_joins_impacts_across_the_half_turn(shown: int | None) -> None:
     with figure_style():
         (line, dots, *_) = track_map(track(), shown).axes[0].lines
-    whole = [179.0, 180.5, 181.0, 182.0]
-    assert line.get_xdata() == pytest.approx(whole if shown is None else whole[: shown + 1])
-    assert dots.get_xdata() == pytest.approx(whole[:3] if shown is None else whole[: shown + 1])
+    # Metres east of the aim point at longitude 178: by the radius and the parallels.
+    turns = zip((10.0, 11.0, 11.5, float(ROW["latitude_deg"])), (1.0, 2.5, 3.0, 4.0), strict=True)
+    whole = [80.0 * np.cos(np.radians(latitude)) * np.radians(turn) for latitude, turn in turns]
+    assert line.get_xdata() == pytest.approx(whole if shown is None else whole[: shown + 1], rel=2e-3)
+    assert dots.get_xdata() == pytest.approx(whole[:3] if shown is None else whole[: shown + 1], rel=2e-3)
 
 
 def test_a_sheet_has_a_strip_for_each_touchdown(motion: JourneyMotion, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 from lithobrake.analysis import highest_density
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
-from lithobrake.pipeline.answer.journey_ends import SHARES, rest_regions
+from lithobrake.pipeline.answer.regions import SHARES, rest_regions
 from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
 from lithobrake.pipeline.folder.study_folder import AGAIN
 from lithobrake.pipeline.job import Job

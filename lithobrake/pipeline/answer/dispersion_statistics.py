@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from lithobrake.pipeline.answer.regions import place_regions
+from lithobrake.pipeline.answer.site_summary import site_results
 from lithobrake.pipeline.emulate.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.fly.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
@@ -20,6 +22,7 @@ from lithobrake.results.dispersion import (
 )
 from lithobrake.results.json_values import from_json
 from lithobrake.results.shares import CountedShare, Level, SampleShares
+from lithobrake.results.site_results import SiteResults
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 
@@ -88,11 +91,12 @@ def place_ellipses(study: Study, latitude: np.ndarray, longitude: np.ndarray) ->
 def rest_results(job: Job) -> RestResults:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
+    site = site_results(job.site)
     ranges = {name: (low, high) for name, (low, high) in known["trained_ranges"].items()}
     found: dict[str, GroundResults | None] = {}
     for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
-        found[ground] = _ends(job.study, ground, part, ranges) if part else None
+        found[ground] = _ends(job.study, site, ground, part, ranges) if part else None
     hard = found["hard"]
     if hard is not None:
         found["hard"] = _with_sampling_intervals(hard)
@@ -122,7 +126,9 @@ def _with_sampling_intervals(found: GroundResults) -> GroundResults:
     return found.with_counts({name: bounded(one) for name, one in found.counts.items()}, Level(LEVEL, None))
 
 
-def _ends(study: Study, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]) -> GroundResults:
+def _ends(
+    study: Study, site: SiteResults, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]
+) -> GroundResults:
     """Shares of each end, and the numbers of the landers that settled."""
     statuses, total = [row["status"] for row in rows], len(rows)
     settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
@@ -142,6 +148,7 @@ def _ends(study: Study, ground: str, rows: Rows, ranges: dict[str, tuple[float, 
         outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
         of=followed_words(study, ground, total),
         interval=None,
+        regions=place_regions(site, rows, JourneyStatus.SETTLED),
     )
 
 

@@ -10,6 +10,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import Rows, ellipses, fli
 from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.answer.limit_states import limit_state_results
 from lithobrake.pipeline.answer.missing_landings import described
+from lithobrake.pipeline.answer.regions import place_regions
 from lithobrake.pipeline.answer.shares_over_refits import Refits, journey_ends, sample_fates
 from lithobrake.pipeline.emulate.fitted_emulator import FILE as EMULATOR
 from lithobrake.pipeline.emulate.samples import Samples
@@ -48,6 +49,7 @@ def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Es
         # Its outputs are those of the runs, of which results.outputs speaks.
         monte_carlo=MonteCarlo(len(samples.leaves), int(samples.leaves.sum())),
         ellipses=ellipses(study, flights, FlightStatus.IMPACT),
+        regions=place_regions(found.site, flights, FlightStatus.IMPACT),
         rest=_rest(job, refits),
         limit_states=limit_state_results(study, job.folder, flights, shares.outcomes, holds=holds),
         aim=aim_results(study, job.folder, refits),

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.analysis import highest_density, quantile_estimate, share_estimate
-from lithobrake.analysis.highest_density import HighestDensity
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.answer.regions import SHARES, rest_regions
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
-from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, RestQuantiles, RestRegion
+from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, RestQuantiles
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import JOURNEYS_FILE
 
-SHARES = (0.5, 0.95)
 MEDIAN, Q95 = 0.5, 0.95
 
 
@@ -103,14 +102,6 @@ def rest_quantile(
     return RestQuantile(one.value, one.lower, one.upper, one.why)
 
 
-def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
-    """Regions of highest density as results."""
-    return tuple(
-        RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
-        for one in density.regions
-    )
-
-
 def end_share(
     met: np.ndarray, bed: np.ndarray, why: str | None = None, explained: np.ndarray | None = None
 ) -> EndShare:  # fmt: skip
@@ -120,7 +111,3 @@ def end_share(
     """
     found = share_estimate(met.astype(float), bed, explained=explained, why=why)
     return EndShare(int(met.sum()), found.share, found.lower, found.upper, found.why)
-
-
-def _line(outline: np.ndarray) -> tuple[tuple[float, float], ...]:
-    return tuple((latitude, longitude) for latitude, longitude in outline.tolist())

@@ -16,6 +16,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import (
     rest_results,
     shares,
 )
+from lithobrake.pipeline.answer.regions import place_regions
 from lithobrake.pipeline.answer.run_estimates import SPLIT
 from lithobrake.pipeline.answer.scope import scope
 from lithobrake.pipeline.answer.site_summary import site_results
@@ -83,13 +84,14 @@ def _results(job: Job, runs: dict[str, DesignRuns], distinct: DesignRuns) -> Pap
         kept_share=_by_output(screening, np.asarray(screening.sobol_group(kept))),
         scores=_scores(job),
         monte_carlo=_monte_carlo(samples),
-        site=site_results(job.site),
+        site=(site := site_results(job.site)),
         # One bed, one place and one attitude have no parts.
         variance_shares=dict.fromkeys(SPLIT),
         shares=table,
         returns=return_fraction(study, table, sum(ended.values())),
         flights=FlightResults(impact_numbers(flights), flight_checks(job)),
         ellipses=ellipses(study, flights, FlightStatus.IMPACT),
+        regions=place_regions(site, flights, FlightStatus.IMPACT),
         without_scatter=_without_scatter(job, samples, ended, holds=holds),
         rest=rest_results(job),
         answer=(),

@@ -1,4 +1,4 @@
-"""Figure 1: how the surface came to be, in pictures of its grains and in the history of its settling."""
+"""How the surface came to be, in pictures of its grains and in the history of its settling."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -2,19 +2,23 @@
 
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from lithobrake.report.figures.density import density_colours
 from lithobrake.report.figures.hulls import Camera, frame_axes
-from lithobrake.report.figures.map_marks import draw_legend, mark_site
+from lithobrake.report.figures.map_frames import draw_bar
+from lithobrake.report.figures.map_marks import SITE_STYLE, mark_site
+from lithobrake.vocabulary.fate_colours import FATE_COLOURS
+from lithobrake.vocabulary.outcomes import FlightStatus
 
 Array = NDArray[np.float64]
 Facets = NDArray[np.int64]
@@ -22,6 +26,7 @@ Facets = NDArray[np.int64]
 REACH = 0.1
 HECTARE = 1e4
 BARE = np.array(to_rgb("#d9d5cc"))
+COLOURS = density_colours(FATE_COLOURS[FlightStatus.IMPACT])
 # Where the light comes from in every view: right, up, towards the viewer.
 LIGHT = np.array([-0.5, 0.6, 0.62])
 
@@ -53,8 +58,11 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
             mark_site(axes, *camera.project(site)[0])
         frame_axes(axes, (-1.04 * reach, 1.04 * reach), (-1.04 * reach, 1.04 * reach))
         axes.set_title(title, loc="center", fontsize=9)
-    draw_legend(figure, (), "impacts", (0.01, 0.01))
-    bar = figure.colorbar(ScalarMappable(norm, "viridis"), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
+        if number == len(views) - 1:
+            draw_bar(axes, 2.08 * reach)
+    mark = Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11})
+    figure.legend(handles=[mark], loc="lower left", bbox_to_anchor=(0.01, 0.01), borderpad=0.0)
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
     # Next to a single decade the ticks between would be named too, and push the label off the figure.
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
     bar.set_label("impacts per hectare")
@@ -93,9 +101,9 @@ def _paint(axes: Axes, corners: Array, density: Array, norm: LogNorm, camera: Ca
     seen = np.flatnonzero(turned[:, 2] > 0.0)
     order = seen[np.argsort((corners[seen].mean(axis=1) @ camera.axes()[2]), kind="stable")]
     hit = density[order] > 0.0
-    colours = np.where(hit[:, None], matplotlib.colormaps["viridis"](norm(density[order]))[:, :3], BARE)
+    colours = np.where(hit[:, None], COLOURS(norm(density[order]))[:, :3], BARE)
     # Weak, so that a colour can still be read off its bar.
     light = 0.78 + 0.22 * np.clip(turned[order] @ (LIGHT / np.linalg.norm(LIGHT)), 0.0, None)
     colours = colours * light[:, None]
     stack: Any = camera.project(corners[order])[0]
-    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3))
+    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3, rasterized=True))

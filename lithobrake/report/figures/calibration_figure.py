@@ -1,4 +1,4 @@
-"""Figure 5 of a drawn study: whether the emulator predicts landings on beds that it has not seen."""
+"""Whether the emulator predicts landings on beds that it has not seen."""
 
 from collections.abc import Mapping, Sequence
 

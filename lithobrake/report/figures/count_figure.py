@@ -1,4 +1,4 @@
-"""Figure 3: what a design costs, as the number of inputs and the level grow."""
+"""What a design costs, as the number of inputs and the level grow."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

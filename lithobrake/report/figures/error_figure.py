@@ -1,4 +1,4 @@
-"""Figure 5: how far the expansion is from the soft-surface model, on runs it has seen and on runs it has not."""
+"""How far the expansion is from the soft-surface model, on runs it has seen and on runs it has not."""
 
 from collections.abc import Mapping, Sequence
 

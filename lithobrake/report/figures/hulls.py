@@ -121,7 +121,7 @@ def paint(
     edges = colours * np.where(_is_large(bodies), 1.0, 0.84)[owners][:, None]
     # One array of triangles is drawn much faster than a list of polygons, and not all versions declare it.
     stack: Any = camera.project(triangles)[0]
-    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=edges, linewidths=0.3))
+    axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=edges, linewidths=0.3, rasterized=True))
 
 
 def _is_large(bodies: Sequence[Hull]) -> NDArray[np.bool_]:

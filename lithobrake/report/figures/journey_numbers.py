@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.map_figure import Share, draw_shares
+from lithobrake.report.figures.shares import Share, draw_shares
 from lithobrake.report.figures.style import INK, QUIET
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.fate_colours import END_COLOURS

@@ -1,4 +1,4 @@
-"""Figure 2: one landing, at several instants from the same place."""
+"""One landing, at several instants from the same place."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,4 +1,4 @@
-"""Figure 3 of a drawn study: all its landings, each of which is a draw, and how they lie on the beds."""
+"""All its landings, each of which is a draw, and how they lie on the beds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,54 +1,70 @@
-"""Figure 6: the outputs of the Monte Carlo on the expansion, coloured by one input."""
+"""What may come out of a touchdown: the density of the samples of a model, and the runs on top."""
 
 from collections.abc import Mapping
 from itertools import combinations
+from typing import Any
 
-import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.style import QUIET
-from lithobrake.report.page_data import DRAWN_COUNT
+from lithobrake.report.figures.density import density_colours
+from lithobrake.report.figures.style import INK, TRAINING
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 
 Array = NDArray[np.float64]
+# Cells along each axis: a hundred samples to each in the mean would show all there is, within these bounds.
+FEWEST_CELLS, MOST_CELLS, TO_A_CELL = 12, 50, 20.0
+COLOURS = density_colours(TRAINING)
 
 
-def scatter_figure(outputs: Mapping[str, Array], colour: tuple[str, Array], leaves: NDArray[np.bool_]) -> Figure:
-    """Draw every pair of outputs of the samples that leave the surface, of the first `DRAWN_COUNT` of them.
+def scatter_figure(samples: Mapping[str, Array], runs: Mapping[str, Array]) -> Figure:
+    """Draw every pair of outputs: samples that leave the surface as counts in cells, runs as dots.
 
-    outputs: name to values [SI], shape [sample]; colour: label and values of an input; leaves: shape [sample].
+    samples and runs: name to values [SI], shape [count]; a run without outputs is NaN.
     """
-    names = [name for name in PAPER_OUTPUTS if name in outputs]
+    names = [name for name in PAPER_OUTPUTS if name in samples]
     pairs = list(combinations(names, 2))
-    figure = Figure(figsize=(9.2, 3.45))
+    figure = Figure(figsize=(9.2, 3.6))
     grid = figure.subplots(1, len(pairs), squeeze=False)[0]
-    figure.subplots_adjust(left=0.07, right=0.9, top=0.96, bottom=0.15, wspace=0.3)
-    drawn = np.flatnonzero(leaves)[:DRAWN_COUNT]
-    size = float(np.clip(2e4 / max(len(drawn), 1), 0.25, 6.0))
-    for axes, (first, second) in zip(grid, pairs, strict=True):
-        x, y = (outputs[name][drawn] * output(name).factor for name in (first, second))
-        points = axes.scatter(
-            x, y, c=colour[1][drawn], s=size, cmap="viridis", linewidths=0, alpha=0.55, rasterized=True
-        )
-        axes.set_xlabel(output(first).label)
-        axes.set_ylabel(output(second).label)
-        axes.set_xlim(*_window(x))
-        axes.set_ylim(*_window(y))
-        axes.grid(visible=True)
-        axes.locator_params(nbins=6)
-    bar_axes = figure.add_axes((0.92, 0.15, 0.014, 0.81))
-    norm = points.norm
-    bar = figure.colorbar(matplotlib.cm.ScalarMappable(norm=norm, cmap="viridis"), cax=bar_axes)
-    bar.set_label(colour[0])
+    figure.subplots_adjust(left=0.07, right=0.9, top=0.92, bottom=0.15, wspace=0.3)
+    shown = {name: _shown(samples[name], name) for name in names}
+    dots = {name: _shown(runs[name], name) for name in names if name in runs}
+    bins = int(np.clip(np.sqrt(len(shown[names[0]]) / TO_A_CELL), FEWEST_CELLS, MOST_CELLS))
+    counts = {pair: _counts(shown[pair[0]], shown[pair[1]], bins) for pair in pairs}
+    norm = LogNorm(1.0, max(10.0, *(float(one[0].max()) for one in counts.values())))
+    for axes, pair in zip(grid, pairs, strict=True):
+        _draw_pair(axes, pair, counts[pair], norm)
+        if all(name in dots for name in pair):
+            axes.plot(*(dots[name] for name in pair), "o", color=INK, markersize=1.8, markeredgewidth=0.0)
+    bar: Any = figure.colorbar(
+        ScalarMappable(norm, COLOURS), cax=figure.add_axes((0.92, 0.15, 0.014, 0.77)), format="%g"
+    )
+    bar.set_label("samples in a cell")
     bar.outline.set_visible(False)
-    bar_axes.tick_params(colors=QUIET)
+    dot = Line2D([], [], linestyle="none", marker="o", markersize=3, color=INK, label="runs")
+    figure.legend(handles=[dot], loc="upper left", bbox_to_anchor=(0.06, 1.0), borderpad=0.0)
     return figure
 
 
-def _window(values: Array) -> tuple[float, float]:
-    """All values, with a margin."""
-    low, high = float(np.min(values)), float(np.max(values))
-    margin = 0.04 * (high - low) or 1e-9
-    return low - margin, high + margin
+def _shown(values: Array, name: str) -> Array:
+    return np.asarray(values, dtype=float) * output(name).factor
+
+
+def _counts(x: Array, y: Array, bins: int) -> tuple[Array, Array, Array]:
+    """Counts in cells [bins, bins], and their edges along both axes."""
+    counts, edges_x, edges_y = np.histogram2d(x, y, bins)
+    return counts, edges_x, edges_y
+
+
+def _draw_pair(axes: Axes, pair: tuple[str, str], found: tuple[Array, Array, Array], norm: LogNorm) -> None:
+    counts, x, y = found
+    axes.pcolormesh(x, y, np.ma.masked_equal(counts.T, 0), norm=norm, cmap=COLOURS, rasterized=True)
+    axes.set_xlabel(output(pair[0]).label)
+    axes.set_ylabel(output(pair[1]).label)
+    axes.grid(visible=True)
+    axes.locator_params(nbins=6)

@@ -1,4 +1,4 @@
-"""Figure 4: which inputs matter, as rings of first-order Sobol indices."""
+"""Which inputs matter, as rings of first-order Sobol indices."""
 
 from collections.abc import Mapping
 

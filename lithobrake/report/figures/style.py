@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 INK = "#1c2733"
 QUIET = "#66717d"
 RULE = "#c9ced4"
+WASH = "#f5f7f9"
 GRAIN = "#c9b699"
 LANDER = "#3f83c8"
 TRAINING = "#2f6fb0"
 TEST = "#e2a13b"
 TEST_ALL = "#8b8f96"
 SITE = "#c8442b"
-DELIVERY = "#2f6fb0"
 # Okabe and Ito's set in an order that keeps neighbours apart; grey is left to the interactions.
 INPUT_COLOURS = (
     "#2f6fb0",

@@ -1,4 +1,4 @@
-"""Figure 4 of a drawn study: where the scatter of each output comes from, as bars that add up to the whole."""
+"""Where the scatter of each output comes from, as bars that add up to the whole."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

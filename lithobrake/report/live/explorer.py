@@ -9,8 +9,8 @@ import numpy as np
 from lithobrake.report.content import LiveSection
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
-from lithobrake.report.words.captions import input_words, listing, thousands
-from lithobrake.report.words.drawn_warnings import action, has_interval
+from lithobrake.report.words.captions import action, input_words, listing, thousands
+from lithobrake.report.words.drawn_warnings import has_interval
 from lithobrake.report.words.labels import output
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
@@ -53,12 +53,13 @@ def explorer_section(
     law = {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
     numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
     html = f"""<section id="explorer">
+<h3>Explorer</h3>
 <p class="note">{escape(note)}Grey lines: the whole law.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>
 {script_data("explorer-data", numbers)}"""
-    return LiveSection("Explorer", html, SCRIPTS)
+    return LiveSection(html, SCRIPTS)
 
 
 def _fixed(data: PageData, explorer: ExplorerTables) -> str:

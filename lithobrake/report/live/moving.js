@@ -1,5 +1,5 @@
 "use strict";
-// The two views of the page in three dimensions: a landing that moves, and the body with where landers come down.
+// What moves in a view: its arrays, a slider of moments with a button that plays them, and a landing.
 
 // Arrays that the page has deflated: the same as unpack gives of the others.
 async function inflate(packed) {
@@ -47,46 +47,73 @@ function control(label, ...inside) {
   return element("label", {}, ...inside, ` ${label}`);
 }
 
+// A slider over moments from 0 to a last one, and a button that plays them, evenly, in eight seconds.
+function player(words, last, changed) {
+  const slider = element("input", { type: "range", min: 0, max: last, step: "any", value: 0, ariaLabel: words });
+  const button = element("button", { type: "button", textContent: "Play" });
+  let began = null;
+  const stop = () => { began = null; button.textContent = "Play"; };
+  const step = (now) => {
+    if (began === null) return;
+    slider.value = (now - began) / 8000 * Number(slider.max);
+    changed();
+    if (Number(slider.value) < Number(slider.max)) requestAnimationFrame(step); else stop();
+  };
+  button.addEventListener("click", () => {
+    if (began !== null) return stop();
+    const end = Number(slider.max), start = Number(slider.value) < end ? Number(slider.value) : 0;
+    began = performance.now() - start / end * 8000;
+    button.textContent = "Stop";
+    requestAnimationFrame(step);
+  });
+  slider.addEventListener("input", () => { stop(); changed(); });
+  return { slider, button, stop };
+}
+
+// A bar of colours with the values at both its ends.
+function colourBar() {
+  const [low, colours, high] = [element("span"), element("i"), element("span")];
+  const box = element("p", { className: "colours", hidden: true }, low, colours, high);
+  const show = (shade) => {
+    box.hidden = !shade;
+    if (shade?.scale) colours.style.setProperty("--scale", shade.scale);
+    if (shade) [low.textContent, high.textContent] = [shade.low, `${shade.high} ${shade.unit}`];
+  };
+  return { box, show };
+}
+
 // The view with a moment that moves.
 function showLanding(holder, scene, times) {
   const canvas = holder.querySelector("canvas"), view = new View3d(canvas, scene), last = times.length - 1;
-  const ends = { min: 0, max: last, step: "any", value: 0 };
-  const slider = element("input", { type: "range", ...ends, ariaLabel: "Time of the landing" });
-  const shown = element("output"), button = element("button", { type: "button", textContent: "Play" });
-  const follows = element("input", { type: "checkbox" }), colour = element("select");
+  const shown = element("output"), follows = element("input", { type: "checkbox" }), colour = element("select");
+  const bar = colourBar();
   const draw = () => {
     view.moment = Math.min(Number(slider.value), last);
     const frame = Math.min(Math.floor(view.moment), last - 1), part = view.moment - frame;
     shown.textContent = `t = ${(times[frame] + part * (times[frame + 1] - times[frame])).toFixed(3)} s`;
     view.draw();
   };
-  let began = null;
-  const step = (now) => {
-    if (began === null) return;
-    // Frames come evenly, eight seconds for all of them.
-    slider.value = (now - began) / 8000 * last;
-    draw();
-    if (Number(slider.value) < last) requestAnimationFrame(step); else stop();
-  };
-  const stop = () => { began = null; button.textContent = "Play"; };
-  button.addEventListener("click", () => {
-    if (began !== null) return stop();
-    const start = Number(slider.value) < last ? Number(slider.value) : 0;
-    began = performance.now() - start / last * 8000;
-    button.textContent = "Stop";
-    requestAnimationFrame(step);
-  });
-  slider.addEventListener("input", () => { stop(); draw(); });
+  const { slider, button } = player("Time of the landing", last, draw);
   follows.checked = view.follows = Boolean(scene.follows);
   follows.addEventListener("change", () => { view.follows = follows.checked; draw(); });
   for (const name of ["body", ...scene.shades.map((one) => one.name)])
     colour.append(element("option", { value: name, textContent: name }));
-  colour.addEventListener("change", () => { view.colourBy(colour.value === "body" ? null : colour.value); draw(); });
-  const colours = element("label", { textContent: "colour by " }, colour);
+  colour.addEventListener("change", () => {
+    view.colourBy(colour.value === "body" ? null : colour.value);
+    bar.show(scene.shades.find((one) => one.name === colour.value));
+    draw();
+  });
+  const colours = element("label", { textContent: "colour of the grains by " }, colour);
   const choices = [control("follow the lander", follows), colours];
-  holder.querySelector(".tools").append(button, slider, shown, ...choices);
+  holder.querySelector(".tools").append(button, slider, shown, ...choices, bar.box);
   draw();
   return view;
+}
+
+// What stands where it is: lines and triangles among the arrays.
+function stillParts(found) {
+  return [["floor", "TRIANGLES"], ["grid", "LINES"], ["mark", "LINES"], ["path", "LINES"]].flatMap(([name, kind]) =>
+    found[`${name}_corner`] ? [{ kind, corner: found[`${name}_corner`], paint: found[`${name}_paint`] }] : []);
 }
 
 async function start3d(name, show) {
@@ -94,20 +121,10 @@ async function start3d(name, show) {
   if (!holder || !data) return null;
   const facts = JSON.parse(data.textContent), found = await inflate(facts.arrays);
   try {
-    return show(holder, { ...triangles(found), ...facts }, found);
+    return show(holder, { ...triangles(found), ...facts, still: stillParts(found) }, found);
   } catch (error) {
     // An old browser or a machine without a picture: the figures above show the same.
     holder.querySelector(".tools").textContent = `No view here: ${error.message}.`;
     return null;
   }
 }
-
-const landing3d = start3d("landing-3d", (holder, scene, found) =>
-  showLanding(holder, { ...scene, poses: poses(found, scene), shading: found }, found.times));
-const body3d = start3d("body-3d", (holder, scene, found) => {
-  const lines = found.path_corner ? { corner: found.path_corner, paint: found.path_paint } : null;
-  const still = Float32Array.of(0, 0, 0, 0, 0, 0, 0, 1);
-  const view = new View3d(holder.querySelector("canvas"), { ...scene, lines, poses: still });
-  view.draw();
-  return view;
-});

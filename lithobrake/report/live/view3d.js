@@ -12,7 +12,7 @@ in vec3 corner;
 in float body;
 in vec3 paint;
 uniform sampler2D poses;
-uniform float moment, bodies, shaded;
+uniform float moment, bodies, shaded, isStill;
 uniform mat4 camera;
 out vec3 place, colour;
 
@@ -28,6 +28,13 @@ vec3 scale(float share) {
 }
 
 void main() {
+  // Ground and lines stand where they are, whatever moves.
+  if (isStill > .5) {
+    place = corner;
+    colour = paint;
+    gl_Position = camera * vec4(place, 1.);
+    return;
+  }
   float frame = floor(moment), part = moment - frame;
   vec4 here = texel(frame, 0), there = part > 0. ? texel(frame + 1., 0) : here;
   vec4 turn = texel(frame, 1), next = part > 0. ? texel(frame + 1., 1) : turn;
@@ -35,8 +42,8 @@ void main() {
   // Quaternions stand as x, y, z, w.
   vec3 turned = corner + 2. * cross(q.xyz, cross(q.xyz, corner) + q.w * corner);
   place = turned + mix(here.xyz, there.xyz, part);
-  // Between two frames straight on the scale, which is one of equal factors.
-  colour = shaded > .5 ? scale(mix(here.w, there.w, part)) : paint;
+  // Between two frames straight on the scale, which is one of equal factors. The lander, the last, keeps its own.
+  colour = shaded > .5 && body < bodies - 1.5 ? scale(mix(here.w, there.w, part)) : paint;
   gl_Position = camera * vec4(place, 1.);
 }`;
 
@@ -44,12 +51,12 @@ const FACES = `#version 300 es
 precision highp float;
 in vec3 place, colour;
 uniform vec3 light;
-uniform float isLine;
+uniform float isFlat;
 out vec4 shown;
 
 void main() {
   // Flat faces: their normal is that of the triangle on the screen.
-  vec3 normal = isLine > .5 ? vec3(0., 0., 1.) : normalize(cross(dFdx(place), dFdy(place)));
+  vec3 normal = isFlat > .5 ? vec3(0., 0., 1.) : normalize(cross(dFdx(place), dFdy(place)));
   float sun = max(dot(normal, light), 0.);
   shown = vec4(colour * (.62 + .08 * normal.z + .34 * sun), 1.);
 }`;
@@ -87,18 +94,18 @@ function cameraMatrix(eye, target, aspect, near, far) {
 
 class View3d {
   // scene: corner [3 n], body [n], paint [3 n] of the corners; poses [8 frames bodies]: place, shade, quaternion;
-  // shades by name [frames bodies]: places on the scale of colours, from 0 to 255.
+  // shades by name [frames bodies]: places on the scale of colours, from 0 to 255; still: what stands where it is, lines
+  // or triangles of corners and paints; labels: words and place [m] of each, and whether the body may hide it.
   constructor(canvas, scene) {
-    Object.assign(this, { canvas, scene, moment: 0, drawCalls: 0, lines: scene.lines });
+    Object.assign(this, { canvas, scene, moment: 0, drawCalls: 0 });
     this.gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error("this browser has no WebGL 2");
     const { gl } = this;
     this.program = program(gl);
     this.bodies = this.held(scene.corner, scene.body, scene.paint);
-    if (scene.lines) {
-      const { corner, paint } = scene.lines;
-      this.paths = this.held(corner, new Float32Array(corner.length / 3), paint);
-    }
+    this.still = (scene.still ?? []).map(({ corner, paint, kind }) =>
+      ({ kind, count: corner.length / 3, held: this.held(corner, new Float32Array(corner.length / 3), paint) }));
+    this.overlay = new Overlay(canvas, scene.labels ?? []);
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
     for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
       gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
@@ -162,15 +169,18 @@ class View3d {
     // A sun at the upper left of whoever looks.
     const turn = orbit.azimuth - 1, light = [0.66 * Math.cos(turn), 0.66 * Math.sin(turn), 0.75];
     set("light", "3f", ...light);
-    set("isLine", "1f", 0);
+    set("isFlat", "1f", 0);
+    set("isStill", "1f", 0);
     gl.bindVertexArray(this.bodies);
     gl.drawArrays(gl.TRIANGLES, 0, scene.corner.length / 3);
-    this.drawCalls = 1;
-    if (!this.paths) return;
-    set("isLine", "1f", 1);
-    gl.bindVertexArray(this.paths);
-    gl.drawArrays(gl.LINES, 0, scene.lines.corner.length / 3);
-    this.drawCalls = 2;
+    set("isFlat", "1f", 1);
+    set("isStill", "1f", 1);
+    for (const { kind, count, held } of this.still) {
+      gl.bindVertexArray(held);
+      gl.drawArrays(gl[kind], 0, count);
+    }
+    this.drawCalls = 1 + this.still.length;
+    this.overlay.show(seen, eye, orbit.distance);
   }
 
   // Drag to turn, wheel or two fingers to come nearer, arrow keys for both.

@@ -1,10 +1,10 @@
-"""The page of a drawn study: its figures in the order of the work, and what stands beside them."""
+"""The page of a drawn study: where and when its landers come down, why, how sure that is, and the landings."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot
+from lithobrake.report.content import Content, Plot, Section
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.rare_figure import rare_figure
@@ -12,14 +12,15 @@ from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.explorer import explorer_sections
-from lithobrake.report.live.views import view_sections
+from lithobrake.report.live.views import landing_views
 from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.pages import shared_plots as any_study
-from lithobrake.report.tables.drawn_tables import colour_input, tables, tiles
+from lithobrake.report.tables import drawn_tables as tables
+from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.report.words import captions, drawn_captions
 from lithobrake.report.words.drawn_captions import rare_caption
 from lithobrake.report.words.drawn_warnings import warnings
-from lithobrake.report.words.labels import input_label
+from lithobrake.report.words.labels import PAPER_OUTPUTS
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM
 
@@ -32,24 +33,28 @@ RETURNS_ROW = {"returns": "return fraction"}
 
 def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
-    live = [*explorer_sections(data), *view_sections(data)]
-    return Content(captions.answer(data), warnings(data), tiles(data), drawn_plots(data), tables(data), live)
-
-
-def drawn_plots(data: DrawnPage) -> list[Plot]:
-    """Its figures in the order of the work."""
-    colour, words = colour_input(data), drawn_captions
-    plots = [
-        *landing_plots(data),
-        Plot("calibration", "Whether to believe the emulator", words.calibration(data), lambda: _calibration(data)),
-        Plot("outputs", "What may come out", words.samples(data, colour), lambda: _samples(data, colour)),
-        Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
-        Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
-        Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)),
+    landings, live = {plot.name: plot for plot in landing_plots(data)}, [*landing_views(data), *explorer_sections(data)]
+    samples = Plot("outputs", "What may come out", drawn_captions.samples(data), lambda: _samples(data))
+    sections = [
+        any_study.where(data),
+        Section("When", tables=time_tables(data)),
+        Section("Why", [landings["variance"], *_options(data)], tables.why_tables(data)),
+        Section("How sure", _sure(data), tables.sure_tables(data)),
+        Section("Method", [landings["runs"], samples, landings["landing"]], tables.method_tables(data), live),
+        any_study.appendix(data),
     ]
+    return Content(captions.answer(data), warnings(data), tables.tiles(data), any_study.first_map(data), sections)
+
+
+def _options(data: DrawnPage) -> list[Plot]:
     aim = data.results.aim
-    if aim is not None:
-        plots.append(Plot("aim", "Where to aim", words.aims(data, aim), lambda: aim_figure(aim)))
+    return [Plot("aim", "Where to aim", drawn_captions.aims(data, aim), lambda: aim_figure(aim))] if aim else []
+
+
+def _sure(data: DrawnPage) -> list[Plot]:
+    """Whether to believe the emulator, and what is rare."""
+    words = drawn_captions.calibration(data)
+    plots = [Plot("calibration", "Whether to believe the emulator", words, lambda: _calibration(data))]
     if data.rare:
         plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
     return plots
@@ -59,7 +64,6 @@ def landing_plots(data: RunsPage) -> list[Plot]:
     """The figures of the landings themselves, or of the first ones of journeys."""
     words = drawn_captions
     return [
-        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
         Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
         Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
@@ -101,10 +105,12 @@ def _calibration(data: DrawnPage) -> "Figure":
     return calibration_figure(data.emulator.scores.outputs)
 
 
-def _samples(data: DrawnPage, colour: str | None) -> "Figure | None":
-    samples = data.samples
+def _samples(data: DrawnPage) -> "Figure | None":
+    samples, runs = data.samples, data.runs
     leaves = samples["outcome"] == TouchdownOutcome.CLEAR
-    if colour is None or not leaves.any():
+    if not leaves.any():
         return None
-    column = samples.columns[colour]
-    return scatter_figure(samples, (input_label(colour, column.units), column.values), leaves)
+    left = runs["outcome"] == TouchdownOutcome.CLEAR
+    return scatter_figure(
+        {name: samples[name][leaves] for name in PAPER_OUTPUTS}, {name: runs[name][left] for name in PAPER_OUTPUTS}
+    )

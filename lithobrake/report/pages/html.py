@@ -1,11 +1,13 @@
 """The page: one HTML file that needs nothing but itself."""
 
 import base64
+import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 
-from lithobrake.report.content import Content, LiveSection, PageTable, Panel, Tile
+from lithobrake.report.content import Content, LiveSection, PageTable, Panel, Section, Tile
+from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15
@@ -16,34 +18,17 @@ FOOTER = (
     "<footer>Written by lithobrake from the files of the results that it names. SI units; degrees where a label says "
     "so.</footer>"
 )
-HINT = (
-    '<p class="note hint">Click or tap a figure to let it fill the window; click again or press Esc to go back.</p>\n'
-)
+HINT = '<p class="note hint">Click or tap a figure to let it fill the window; again, or Esc, to go back.</p>\n'
 
 
-def _header(kind: str, title: str, content: Content, facts: str) -> str:
-    warnings = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in content.warnings)
-    return f"""<header>
-<p class="kind">{escape(kind)}</p>
-<h1>{escape(title)}</h1>
-<p class="answer">{escape(content.answer)}</p>
-{warnings}<p class="facts">{escape(facts)}</p>
-</header>"""
-
-
-def page(
-    title: str,
-    facts: str,
-    content: Content,
-    panels: Sequence[Panel],
-    provenance: Sequence[PageTable],
-    study_texts: Mapping[str, str],
-    kind: str = "Landing study",
-) -> str:
-    """Put the page together, with the panels that the plots gave and study files by title; words are escaped here."""
-    style = _own_file("pages/style.css")
-    scripts = dict.fromkeys([SCRIPT, *(name for section in content.live for name in section.scripts)])
-    pictures = "\n".join(_panel(number, panel) for number, panel in enumerate(panels, start=1))
+def page(title: str, facts: str, content: Content, panels: Mapping[str, Panel], kind: str = "Landing study") -> str:
+    """Put the page together, with the panels that the plots of the content gave, by name; words are escaped here."""
+    numbers = {name: number for number, name in enumerate(_numbered(content, panels), start=1)}
+    figures = {plot.name: _panel(numbers.get(plot.name), panels[plot.name]) for plot in content.plots}
+    shown = [(section, _section(section, figures)) for section in content.sections]
+    shown = [(section, inside) for section, inside in shown if inside]
+    live = [one for section, _ in shown for one in section.live]
+    scripts = dict.fromkeys([SCRIPT, *(name for one in live for name in one.scripts)])
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -51,70 +36,117 @@ def page(
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(title)}</title>
 <style>
-{style}</style>
+{own_file("pages/style.css")}</style>
 </head>
-<body><main>
-{_header(kind, title, content, facts)}
-<ul class="tiles">
-{"".join(_tile(tile) for tile in content.tiles)}</ul>
-{pictures}
-{_live(content.live)}<h2>Tables</h2>
-{"".join(_table(table) for table in sorted(content.tables, key=_is_long))}
-<h2>Provenance</h2>
-{"".join(_table(table) for table in provenance)}
-{"".join(_text(*one) for one in study_texts.items())}
-{FOOTER}
+<body>
+{_contents([section for section, _ in shown])}
+<main>
+{_first_screen(kind, title, facts, content, figures)}
+{"".join(f"{_opening(section)}{inside}</section>{chr(10)}" for section, inside in shown)}{FOOTER}
 </main>
 <script>
-{"".join(_own_file(name) for name in scripts)}</script>
+{"".join(own_file(name) for name in scripts)}</script>
 </body>
 </html>
 """
 
 
-def _live(sections: Sequence[LiveSection]) -> str:
-    """The sections that a reader moves, each heading once; without scripts none of them can be seen."""
-    text, heading = "", ""
-    for section in sections:
-        text += f"<h2>{escape(section.heading)}</h2>\n" if section.heading != heading else ""
-        text, heading = text + section.html, section.heading
-    return f'<div class="live">\n{NO_SCRIPT}{text}</div>\n' if text else ""
-
-
-def _own_file(name: str) -> str:
+def own_file(name: str) -> str:
     """The text of a file of this package that every page has inside."""
     return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
 
 
-def _tile(tile: Tile) -> str:
-    return f"<li><b>{escape(tile.value)} <small>{escape(tile.unit)}</small></b><span>{escape(tile.words)}</span></li>\n"
+def picture(number: str, svg: bytes, alternative: str) -> str:
+    """A picture inside the page that fills the window while its box is ticked.
 
-
-def _heading(number: int, panel: Panel) -> str:
-    """The heading of a figure that has one, which the first always has, there with how a figure is enlarged."""
-    words = panel.heading or ("Figures" if number == 1 else "")
-    return (f"<h2>{escape(words)}</h2>\n" if words else "") + (HINT if number == 1 else "")
-
-
-def _panel(number: int, panel: Panel) -> str:
-    """One figure under its heading, with the tables that belong to it."""
-    return f"{_heading(number, panel)}{_figure(number, panel)}{''.join(_table(table) for table in panel.tables)}"
-
-
-def _figure(number: int, panel: Panel) -> str:
-    """One figure with the picture inside the page, or a place that says there is none."""
-    caption = f"<figcaption><b>Figure {number}. {escape(panel.title)}.</b> {escape(panel.sentence)}</figcaption>"
-    if panel.picture is None:
-        absent = '<div class="absent">No picture: the sentence says why.</div>'
-        return f'<figure id="figure-{number}">{absent}{caption}</figure>'
-    data = base64.b64encode(panel.picture).decode("ascii")
-    alternative = escape(f"{panel.title}. {panel.sentence}", quote=True)
-    # A picture is enlarged by a box that is ticked: no second copy of it, and nothing that a browser may block on disk.
+    No second copy of it, and nothing that a browser may block on disk.
+    """
+    data = base64.b64encode(svg).decode("ascii")
     return (
-        f'<figure id="figure-{number}"><label class="picture"><input type="checkbox" '
-        f'aria-label="Figure {number} in full size"><span><img alt="{alternative}" '
-        f'src="data:image/png;base64,{data}"></span></label>{caption}</figure>'
+        f'<label class="picture"><input type="checkbox" aria-label="{escape(number, quote=True)} in full size"><span>'
+        f'<img alt="{escape(alternative, quote=True)}" src="data:image/svg+xml;base64,{data}"></span></label>'
     )
+
+
+def _numbered(content: Content, panels: Mapping[str, Panel]) -> list[str]:
+    """The names of the figures that have a picture, in their order."""
+    return [plot.name for plot in content.plots if panels[plot.name].picture is not None]
+
+
+def _first_screen(kind: str, title: str, facts: str, content: Content, figures: Mapping[str, str]) -> str:
+    """The answer, the numbers, and the figure beside them."""
+    tiles = "".join(_tile(tile) for tile in content.tiles)
+    beside = "" if content.first is None else figures.get(content.first.name, "")
+    return f"""<header id="answer">
+<p class="kind">{escape(kind)}</p>
+<h1>{escape(title)}</h1>
+<p class="answer">{_unbroken(content.answer)}</p>
+<div class="{"first" if beside else "first alone"}">
+<div><ul class="tiles">
+{tiles}</ul>
+{_warnings(content.warnings)}</div>
+{beside}<div class="facts"><p>{escape(facts)}</p>
+{HINT if figures else ""}</div></div>
+</header>"""
+
+
+def _warnings(warnings: Sequence[str]) -> str:
+    """What to beware of: one in full, several behind their number."""
+    text = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in warnings)
+    if len(warnings) < 2:
+        return text
+    return f'<details class="warnings"><summary>{len(warnings)} warnings</summary>{text}</details>\n'
+
+
+def _contents(sections: Sequence[Section]) -> str:
+    links = [f'<a href="#{_anchor(one)}">{escape(one.title)}</a>' for one in sections]
+    return f'<nav aria-label="Contents"><a href="#answer">Answer</a> {" ".join(links)}</nav>' if links else ""
+
+
+def _anchor(section: Section) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", section.title.lower()).strip("-")
+
+
+def _opening(section: Section) -> str:
+    kind = "" if section.is_printed else ' class="screen"'
+    return f'<section id="{_anchor(section)}"{kind}>\n<h2>{escape(section.title)}</h2>\n'
+
+
+def _section(section: Section, figures: Mapping[str, str]) -> str:
+    """What stands under the heading of a section; nothing for an empty one."""
+    said = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.said)
+    shown = "".join(figures.get(plot.name, "") for plot in section.plots)
+    tables = "".join(_table(table) for table in sorted(section.tables, key=_is_long) if table.rows)
+    return said + shown + tables + _live(section.live) + "".join(_text(*one) for one in section.texts.items())
+
+
+def _live(sections: Sequence[LiveSection]) -> str:
+    """What a reader moves; without scripts none of it can be seen."""
+    text = "".join(section.html for section in sections)
+    return f'<div class="live">\n{NO_SCRIPT}{text}</div>\n' if text else ""
+
+
+def _unbroken(words: str) -> str:
+    """Words of the page in which no line breaks before a sign of per cent."""
+    return escape(words).replace(" %", "&nbsp;%")
+
+
+def _tile(tile: Tile) -> str:
+    colour = OUTCOME_COLOURS.get(tile.outcome)
+    style = f' style="border-color: {colour}"' if colour else ""
+    value = f"<b>{escape(tile.value)} <small>{escape(tile.unit)}</small></b>"
+    return f"<li{style}>{value}<span>{_unbroken(tile.words)}</span></li>\n"
+
+
+def _panel(number: int | None, panel: Panel) -> str:
+    """One figure with the picture inside the page; without one, what says why."""
+    sentence = _unbroken(panel.sentence)
+    if panel.picture is None or number is None:
+        return f'<p class="note"><b>{escape(panel.title)}.</b> {sentence}</p>\n'
+    name = f"Figure {number}"
+    shown = picture(name, panel.picture, f"{panel.title}. {panel.sentence}")
+    caption = f"<figcaption><b>{name}. {escape(panel.title)}.</b> {sentence}</figcaption>"
+    return f'<figure id="figure-{number}">{shown}{caption}</figure>\n'
 
 
 def _table(table: PageTable) -> str:

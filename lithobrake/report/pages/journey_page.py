@@ -1,109 +1,129 @@
-"""The page of a study of journeys: where they end, then what decides it, and the first touchdown."""
+"""The page of a study of journeys: where and when they end, why, how sure that is, and the first touchdown."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot
+from lithobrake.report.content import Content, Plot, Section
 from lithobrake.report.figures.aim_figure import aim_figure
-from lithobrake.report.figures.journey_map import journey_map, places_by_end
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
-from lithobrake.report.figures.map_figure import Share
+from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, places_by_end, whole_figure
+from lithobrake.report.figures.shares import Share
 from lithobrake.report.figures.variance_figure import variance_figure
+from lithobrake.report.live.body_view import end_views
 from lithobrake.report.live.touchdown_explorer import touchdown_sections
-from lithobrake.report.live.views import view_sections
+from lithobrake.report.live.views import landing_views
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
-from lithobrake.report.tables.journey_tables import journey_tables, rest_tables, side_tables, tiles
+from lithobrake.report.pages.shared_plots import draw_bed
+from lithobrake.report.tables import drawn_tables
+from lithobrake.report.tables import journey_tables as tables
+from lithobrake.report.tables.dispersion_tables import site_tables
+from lithobrake.report.words import captions
 from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results.journey_results import EndShare
-from lithobrake.vocabulary.fate_colours import END_COLOURS
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-WHERE, DECIDES, FIRST = "Where it ends up", "What decides it", "The first touchdown"
-# Figures of a drawn study by the part of this page, with another title where its own speaks of more.
-OF_FIRST = {
-    "bed": "", "landing": "A first touchdown", "runs": "What the first touchdowns gave",
-}  # fmt: skip
+# Titles of figures of a drawn study that are of first touchdowns here.
+OF_FIRST = {"landing": "A first touchdown", "runs": "What the first touchdowns gave"}
 
 
 def journey_content(data: JourneyPage) -> Content:
     """All that the page shows of the study."""
-    plots = [*_ends(data), *_decides(data), *_part(data, FIRST, OF_FIRST)]
-    live = [*touchdown_sections(data), *view_sections(data)]
-    return Content(words.answer(data), words.journey_warnings(data), tiles(data), plots, journey_tables(data), live)
+    first = Plot("ends", "Where the landers rest", words.rest_map(data), lambda: local_figure(place_map(data)))
+    sections = [_where(data), _when(data), _why(data), _sure(data), _method(data), _appendix(data)]
+    return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
 
 
-def _ends(data: JourneyPage) -> list[Plot]:
-    """How the journeys end, the first under its heading."""
+def _where(data: JourneyPage) -> Section:
     plots = [
-        Plot("ends", "Where the landers rest", words.rest_map(data), lambda: _draw_map(data), WHERE, rest_tables(data)),
+        Plot("whole", "All ends, and the whole body", words.whole_map(data), lambda: _draw_whole(data)),
+        Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
+    ]
+    return Section("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
+
+
+def _when(data: JourneyPage) -> Section:
+    plots = [
         Plot("times", "Time to rest and distance", words.times(data), lambda: _draw_times(data)),
         Plot("counts", "Touchdowns and contacts", words.counts(data), lambda: _draw_counts(data)),
-        Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
-        *_options(data),
     ]
-    shown = [plot for plot in plots if plot.sentence]
-    return [replace(shown[0], heading=WHERE), *shown[1:]]
+    return Section("When", plots, tables.time_tables(data))
 
 
-def _options(data: JourneyPage) -> list[Plot]:
-    """What becomes of the landers at each delivery option, where the study has any."""
-    aim = data.results.aim
-    return [] if aim is None else [Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim))]
-
-
-def _decides(data: JourneyPage) -> list[Plot]:
-    """The parts of the variance of the ends, and of the first touchdown, where they are known."""
-    sides = side_tables(data)
-    first = next(one for one in landing_plots(data) if one.name == "variance")
+def _why(data: JourneyPage) -> Section:
+    """The parts of the variance, the sides of the lander, and the delivery options, as far as they are known."""
+    aim, variance = data.results.aim, _of_landings(data)["variance"]
+    first = Plot("variance", "The same of the first touchdown", words.first_variance(data), variance.draw)
     plots = [
-        Plot("end_variance", "Parts of the variance of the ends", words.end_variance(data), lambda: _draw_ends(data)),
-        replace(first, title="Parts of the variance of the first touchdown", sentence=words.first_variance(data)),
+        Plot("end_variance", "What decides the ends", words.end_variance(data), lambda: _draw_ends(data)),
+        first,
     ]
-    shown = [plot for plot in plots if plot.sentence]
-    headed = [replace(plot, heading=DECIDES, tables=sides) for plot in shown[:1]]
-    return [*headed, *shown[1:]]
+    if aim is not None:
+        plots.append(Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim)))
+    return Section("Why", plots, tables.side_tables(data))
+
+
+def _sure(data: JourneyPage) -> Section:
+    return Section("How sure", tables=tables.sure_tables(data))
+
+
+def _method(data: JourneyPage) -> Section:
+    """A touchdown and what the first ones gave, and what a reader can try."""
+    found = _of_landings(data)
+    plots = [
+        Plot(name, title, words.of_first_touchdown(found[name].sentence), found[name].draw)
+        for name, title in OF_FIRST.items()
+    ]
+    return Section("Method", plots, site_tables(data), [*landing_views(data), *touchdown_sections(data)])
+
+
+def _appendix(data: JourneyPage) -> Section:
+    """How the ground was poured, and the tables of the first touchdowns."""
+    plots = [Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))]
+    return Section(
+        "Appendix",
+        plots,
+        tables.first_tables(
+            [*drawn_tables.sure_tables(data), *drawn_tables.why_tables(data), *drawn_tables.method_tables(data)]
+        ),
+        is_printed=False,
+    )
+
+
+def _of_landings(data: JourneyPage) -> dict[str, Plot]:
+    return {plot.name: plot for plot in landing_plots(data)}
+
+
+def place_map(data: JourneyPage) -> PlaceMap:
+    """Where the landers end, with the regions of those at rest and of the first impacts."""
+    table, site, delivery = data.journeys, data.results.site, data.results.delivery
+    regions = [
+        Regions("those at rest", END_COLOURS[JourneyEnd.AT_REST], data.at_rest.regions),
+        Regions("the first impacts", FATE_COLOURS[FlightStatus.IMPACT], () if delivery is None else delivery.regions),
+    ]
+    return PlaceMap(
+        places=places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"]),
+        regions=regions,
+        aim=(site.latitude_deg, site.longitude_deg),
+        radius=float(np.linalg.norm(site.place_m)),
+    )
+
+
+def _draw_whole(data: JourneyPage) -> "Figure":
+    return whole_figure(place_map(data), end_shares(data), "all journeys")
 
 
 def _draw_ends(data: JourneyPage) -> "Figure":
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
     return variance_figure(known, words.END_ROWS, LEVEL)
-
-
-def _part(data: JourneyPage, heading: str, titles: dict[str, str]) -> list[Plot]:
-    """Figures of a drawn study under a heading, each saying that it is of the first touchdown."""
-    found = [plot for plot in landing_plots(data) if plot.name in titles and plot.sentence and _is_drawn(data, plot)]
-    said = [
-        replace(plot, title=titles[plot.name] or plot.title, sentence=_sentence(plot), heading="" if row else heading)
-        for row, plot in enumerate(found)
-    ]
-    return [plot for plot in said if plot.sentence]
-
-
-def _is_drawn(data: JourneyPage, plot: Plot) -> bool:
-    """Whether there is a picture: a program or function of the user's own has no bed."""
-    return plot.name != "bed" or data.bed is not None
-
-
-def _sentence(plot: Plot) -> str:
-    return plot.sentence if plot.name == "bed" else words.of_first_touchdown(plot.sentence)
-
-
-def _draw_map(data: JourneyPage) -> "Figure":
-    table, site = data.journeys, data.results.site
-    places = places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
-    radius = float(np.linalg.norm(site.place_m))
-    aim, regions = (site.latitude_deg, site.longitude_deg), data.at_rest.regions
-    delivery = None if data.results.delivery is None else data.results.delivery.ellipse
-    return journey_map(places, regions, aim, radius, end_shares(data), "all journeys", data.body_vertices, delivery)
 
 
 def _share(name: str, one: EndShare, colour: str) -> Share:

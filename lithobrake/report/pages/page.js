@@ -6,9 +6,9 @@ function element(name, settings = {}, ...inside) {
   return made;
 }
 
-// Paper cannot be unfolded. What was folded is folded again afterwards.
+// Paper cannot be unfolded: warnings stand on it in full, and what else is folded does not.
 addEventListener("beforeprint", () => {
-  for (const part of document.querySelectorAll("details:not([open])")) { part.open = true; part.dataset.folded = ""; }
+  for (const part of document.querySelectorAll(".warnings:not([open])")) { part.open = true; part.dataset.folded = ""; }
 });
 addEventListener("afterprint", () => {
   for (const part of document.querySelectorAll("[data-folded]")) { part.open = false; delete part.dataset.folded; }
@@ -16,7 +16,7 @@ addEventListener("afterprint", () => {
 
 // The number that a cell begins with, powers of ten and gaps between thousands included; NaN where it begins with none.
 function cellNumber(text) {
-  const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹", found = text.replace(/[\u2212\u2011]/g, "-").replace(/(\d) (?=\d{3}\b)/g, "$1")
+  const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹", found = text.replace(/[\u2212\u2011]/g, "-").replace(/(\d)[ \u00a0](?=\d{3}\b)/g, "$1")
     .match(/^\s*([-+]?\d[\d.]*)(?: × 10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/);
   if (!found) return NaN;
   const power = found[3] ? Number([...found[3]].map((one) => raised.indexOf(one)).join("")) : 0;
@@ -56,4 +56,19 @@ for (const heading of typeof document === "undefined" ? [] : document.querySelec
   heading.append(button);
   button.title = "Sort";
   button.addEventListener("click", () => sortRows(heading));
+}
+
+// The contents mark the last part whose heading has come to the upper third of the window.
+function markContents(links) {
+  const above = links.filter((one) => document.querySelector(one.hash).getBoundingClientRect().top < innerHeight / 3);
+  for (const one of links) one.removeAttribute("aria-current");
+  const now = above.at(-1) ?? links[0];
+  now.setAttribute("aria-current", "true");
+  now.parentElement.scrollLeft = now.offsetLeft - 40;
+}
+
+const contents = typeof document === "undefined" ? [] : [...document.querySelectorAll("nav a")];
+if (contents.length) {
+  addEventListener("scroll", () => markContents(contents), { passive: true });
+  markContents(contents);
 }

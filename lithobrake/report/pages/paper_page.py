@@ -4,19 +4,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot
+from lithobrake.report.content import Content, Plot, Section
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
 from lithobrake.report.live.explorer import explorer_sections
-from lithobrake.report.live.views import view_sections
+from lithobrake.report.live.views import landing_views
 from lithobrake.report.page_data import PaperPage
 from lithobrake.report.pages import shared_plots as any_study
-from lithobrake.report.tables.paper_tables import tables, tiles
+from lithobrake.report.tables import paper_tables as tables
+from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.report.words import captions
-from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
-from lithobrake.results.telling_numbers import TellingNumbers
+from lithobrake.report.words.labels import PAPER_OUTPUTS
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 
 def paper_content(data: PaperPage) -> Content:
     """All that the page shows of the study."""
-    live = [*explorer_sections(data), *view_sections(data)]
-    return Content(captions.answer(data), [], tiles(data), _plots(data), tables(data), live)
-
-
-def _plots(data: PaperPage) -> list[Plot]:
-    colour = _colour_input(data)
-    return [
-        Plot("bed", "The surface", captions.bed(data), lambda: any_study.draw_bed(data)),
-        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
+    method = [
         Plot("counts", "What the designs cost", captions.counts(data), lambda: _counts(data)),
-        Plot("sobol", "What matters", captions.sobol(data), lambda: _sobol(data)),
-        Plot("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data)),
-        Plot("outputs", "What may come out", captions.scatter(data, colour), lambda: _outputs(data, colour)),
-        Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: any_study.draw_map(data)),
-        Plot("body", "The same on the body", captions.body(data), lambda: any_study.draw_body(data)),
-        Plot("rest", "Where it rests", captions.rest(data), lambda: any_study.draw_rest(data)),
+        Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
+        Plot("outputs", "What may come out", captions.scatter(data), lambda: _outputs(data)),
     ]
+    sure = [Plot("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data))]
+    why = [Plot("sobol", "What matters", captions.sobol(data), lambda: _sobol(data))]
+    live = [*landing_views(data), *explorer_sections(data)]
+    sections = [
+        any_study.where(data),
+        Section("When", tables=time_tables(data)),
+        Section("Why", why, tables.why_tables(data)),
+        Section("How sure", sure, tables.sure_tables(data)),
+        Section("Method", method, tables.method_tables(data), live),
+        any_study.appendix(data),
+    ]
+    return Content(captions.answer(data), [], tables.tiles(data), any_study.first_map(data), sections)
 
 
 def _counts(data: PaperPage) -> "Figure":
@@ -67,17 +67,12 @@ def _errors(data: PaperPage) -> "Figure":
     return error_figure(data.scores["refined"], data.scores["test_kept"], data.scores["test_all"])
 
 
-def _colour_input(data: PaperPage) -> str:
-    """The restitution of the grains, as in [Landings-PCE], or the input that decides the speed most."""
-    if "grain.restitution" in data.samples:
-        return "grain.restitution"
-    return TellingNumbers.of(data.results).main_input.name
-
-
-def _outputs(data: PaperPage, colour_name: str) -> "Figure | None":
-    samples = data.samples
+def _outputs(data: PaperPage) -> "Figure | None":
+    samples, runs = data.samples, data.runs
     leaves = samples["outcome"] == TouchdownOutcome.CLEAR
     if not leaves.any():
         return None
-    colour = samples.columns[colour_name]
-    return scatter_figure(samples, (input_label(colour_name, colour.units), colour.values), leaves)
+    left = runs["outcome"] == TouchdownOutcome.CLEAR
+    return scatter_figure(
+        {name: samples[name][leaves] for name in PAPER_OUTPUTS}, {name: runs[name][left] for name in PAPER_OUTPUTS}
+    )

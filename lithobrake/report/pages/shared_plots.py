@@ -4,16 +4,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.report.content import Plot, Section
 from lithobrake.report.figures.bed_figure import bed_figure
 from lithobrake.report.figures.body_figure import body_figure
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import landing_figure
-from lithobrake.report.figures.map_figure import Share, map_figure
+from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, whole_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
+from lithobrake.report.figures.shares import Share
+from lithobrake.report.live.body_view import body_views
 from lithobrake.report.page_data import PageData, PaperPage, SampledPage
-from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts
+from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
+from lithobrake.report.words import captions
 from lithobrake.report.words.captions import hours, thousands
-from lithobrake.results.dispersion import RestResults
 from lithobrake.results.shares import CountedShare
 from lithobrake.vocabulary.fate_colours import FATE_COLOURS
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
@@ -21,6 +24,7 @@ from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+AT_REST = FATE_COLOURS[JourneyStatus.SETTLED]
 # What may become of a landing, as short as it has to be beside a bar.
 SHORT_OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "impact within {hours}",
@@ -40,6 +44,27 @@ SHORT_JOURNEY_WORDS = {
 }
 
 
+def first_map(data: SampledPage) -> Plot:
+    """The figure beside the answer."""
+    return Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: draw_impacts(data))
+
+
+def where(data: SampledPage) -> Section:
+    """Where landers come down and where they rest."""
+    plots = [
+        Plot("whole", "All outcomes, and the whole body", captions.whole_map(data), lambda: draw_whole(data)),
+        Plot("body", "The same on the body", captions.body(data), lambda: draw_body(data)),
+        Plot("rest", "Where it rests", captions.rest(data), lambda: draw_rest(data)),
+    ]
+    return Section("Where", plots, place_tables(data), body_views(data), captions.details(data))
+
+
+def appendix(data: PageData) -> Section:
+    """How the ground was poured."""
+    plots = [Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))]
+    return Section("Appendix", plots, site_tables(data), is_printed=False)
+
+
 def draw_bed(data: PageData) -> "Figure | None":
     if data.bed is None:
         return None
@@ -52,10 +77,12 @@ def draw_landing(data: PageData) -> "Figure | None":
     return landing_figure(scene(data.landing, has_lander=True))
 
 
-def draw_map(data: SampledPage) -> "Figure":
-    site, shares, ellipses = data.results.site, impact_shares(data), data.results.ellipses
-    where = (site.latitude_deg, site.longitude_deg)
-    return map_figure(data.latitude, data.longitude, where, shares, data.body_vertices, ellipses, whole_words(data))
+def draw_impacts(data: SampledPage) -> "Figure":
+    return local_figure(impacts(data))
+
+
+def draw_whole(data: SampledPage) -> "Figure":
+    return whole_figure(impacts(data), impact_shares(data), whole_words(data))
 
 
 def impact_shares(data: SampledPage) -> list[Share]:
@@ -63,6 +90,19 @@ def impact_shares(data: SampledPage) -> list[Share]:
     table, limit = data.results.shares, hours(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
     return [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
+
+
+def impacts(data: SampledPage) -> PlaceMap:
+    """Where the landers come down after the first bounce, with the regions of these places."""
+    colour = FATE_COLOURS[FlightStatus.IMPACT]
+    places, regions = Places("impacts", colour, data.latitude, data.longitude), data.results.regions
+    return PlaceMap([places], [Regions("the impacts", colour, regions)], *_aim(data))
+
+
+def _aim(data: PageData) -> tuple[tuple[float, float], float]:
+    """The aim point [deg], and the radius of the body there [m]."""
+    site = data.results.site
+    return (site.latitude_deg, site.longitude_deg), float(np.linalg.norm(site.place_m))
 
 
 def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> Share:
@@ -85,10 +125,8 @@ def draw_body(data: SampledPage) -> "Figure":
     return body_figure(data.body_vertices, data.body_faces, data.facet, np.array(data.results.site.place_m))
 
 
-def draw_rest(data: SampledPage) -> "Figure":
-    found, site, limit = followed(data), data.results.site, hours(data.study["rest"]["duration"])
-    rest = data.results.rest
-    why_no_soil = rest.why_no_soil if isinstance(rest, RestResults) else None
+def draw_rest(data: SampledPage) -> "Figure | None":
+    found, limit = followed(data), hours(data.study["rest"]["duration"])
     # The same statuses on both sides, so that rows and colours match.
     met = {
         key: words
@@ -98,11 +136,11 @@ def draw_rest(data: SampledPage) -> "Figure":
     maps = []
     for ground, (latitude, longitude) in data.rest.items():
         table = found.get(ground)
-        shares = [
-            _share(data, key, words.format(hours=limit), table.outcomes[key]) for key, words in met.items() if table
-        ]
-        absent = None if table else f"Not asked: {why_no_soil}."
-        ellipses = table.ellipses if table else None
-        whole = f"the {table.sample_count} followed" if table else ""
-        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", latitude, longitude, ellipses, shares, absent, whole))
-    return rest_figure(maps, (site.latitude_deg, site.longitude_deg), data.body_vertices)
+        if table is None:
+            continue
+        shares = [_share(data, key, words.format(hours=limit), table.outcomes[key]) for key, words in met.items()]
+        places = Places("at rest", AT_REST, latitude, longitude)
+        regions = Regions("those at rest", AT_REST, table.regions)
+        whole = f"the {table.sample_count} followed"
+        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", places, regions, shares, whole))
+    return rest_figure(maps, *_aim(data)) if maps else None

@@ -6,8 +6,7 @@ from typing import Any
 from lithobrake.report.content import PageTable
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.words.captions import hours, thousands
-from lithobrake.report.words.chance import follows_gaussian
-from lithobrake.report.words.numbers import fixed, flat, number
+from lithobrake.report.words.numbers import area, flat, number
 from lithobrake.results.dispersion import GroundResults, ImpactNumber
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.json_values import to_json
@@ -69,10 +68,14 @@ def site_tables(data: PageData) -> list[PageTable]:
     return [_site(data)]
 
 
-def dispersion_tables(data: SampledPage) -> list[PageTable]:
-    """In the order of the journey, those that have a row."""
-    made = (_outcomes, _flights, _statuses, _journeys, _ellipses, _site)
-    return [table for table in (make(data) for make in made) if table.rows]
+def place_tables(data: SampledPage) -> list[PageTable]:
+    """What becomes of the landers, and the regions that hold them."""
+    return [_outcomes(data), _statuses(data), _regions(data)]
+
+
+def time_tables(data: SampledPage) -> list[PageTable]:
+    """Flights to the next impact, and journeys to rest."""
+    return [_flights(data), _journeys(data)]
 
 
 def _outcomes(data: SampledPage) -> PageTable:
@@ -226,31 +229,17 @@ def _sliding(rest: Mapping[str, Any]) -> str:
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 
-def _ellipses(data: SampledPage) -> PageTable:
-    columns = ["places", "share inside", "latitude [deg]", "longitude [deg]", "semi-axes [m]", "heading [deg]", "shape"]
-    sets = {"next impact": (data.results.ellipses, len(data.facet))}
-    if data.results.without_scatter:
-        alone = data.results.without_scatter
-        sets["next impact, without scatter"] = (alone.ellipses, alone.shares.outcomes[FlightStatus.IMPACT].count)
-    sets |= {
-        f"at rest, {GROUND_WORDS[ground]}": (table.ellipses, table.outcomes[JourneyStatus.SETTLED].count)
-        for ground, table in followed(data).items()
-    }
-    rows = []
-    for name, (found, count) in sets.items():
-        shape = "as Gaussian" if follows_gaussian(found, count) else "not Gaussian"
-        if found is None:
-            continue
-        for entry in found.shares:
-            axes = " x ".join(number(axis) for axis in entry.semi_axes_m)
-            middle = [fixed(found.latitude_deg), fixed(found.longitude_deg)]
-            rows.append([name, percent(entry.share), *middle, axes, f"{found.heading_deg:.1f}", shape])
-    note = (
-        "Each holds that share of the places, which need follow no law; the heading is that of the longer axis, from "
-        "north toward east. Not Gaussian: the sizes of both differ from those of a Gaussian law by more than chance, "
-        "so an ellipse says little of where the places lie inside it."
-    )
-    return PageTable("Landing ellipses", columns, rows, note, frozenset(columns[1:6]))
+def _regions(data: SampledPage) -> PageTable:
+    sets = {"next impacts": data.results.regions}
+    sets |= {f"at rest, {GROUND_WORDS[ground]}": table.regions for ground, table in followed(data).items()}
+    columns = ["places", "share inside", "area", "largest extent [m]"]
+    rows = [
+        [name, percent(one.share), area(one.area_m2), number(one.largest_extent_m, 2)]
+        for name, found in sets.items()
+        for one in found
+    ]
+    note = "The smallest regions that hold that share, by a density fitted to the places."
+    return PageTable("Landing regions", columns, rows, note if rows else "", frozenset(columns[1:]))
 
 
 def _site(data: PageData) -> PageTable:

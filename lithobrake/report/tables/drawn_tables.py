@@ -1,20 +1,19 @@
 """The tables and the first numbers of the page of a drawn study."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import DrawnPage, RunsPage
-from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, dispersion_tables, followed
+from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
 from lithobrake.report.tables.rare_tables import rare_tables
-from lithobrake.report.words.captions import hours, input_words
+from lithobrake.report.words.captions import action, hours, input_words
 from lithobrake.report.words.chance import BAND
 from lithobrake.report.words.drawn_captions import RETURNS, sign
 from lithobrake.report.words.drawn_warnings import (
-    action,
     as_sentence,
     drawn_things,
     has_interval,
@@ -28,7 +27,7 @@ from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
 from lithobrake.results.run_results import SideRuns, VarianceParts
 from lithobrake.results.shares import Estimate
-from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import interval_digits, percent, span, with_interval
 
 CENTIMETRES = 100.0
@@ -50,15 +49,13 @@ def tiles(data: DrawnPage) -> list[Tile]:
             ends = " to ".join(number(CENTIMETRES * end) for end in (median.lower, median.upper))
             words += f" ({percent(data.level)} interval {ends})"
         found.append(Tile(number(CENTIMETRES * median.value), "cm/s", words))
-    runs = results.runs
-    left = runs.outcomes.get(TouchdownOutcome.CLEAR, 0)
-    beds = f", on {runs.beds} beds" if runs.beds > 1 else ", all on one bed"
-    found.append(Tile(str(left), f"of {runs.count}", f"landings left the surface{beds}"))
     parts = results.variance_shares["speed_out"]
     if parts is not None:
         value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
+        is_found = value[0].isdigit()
         words = "at least of the variance of the rebound speed is explained by soil"
-        found.append(Tile(value, "%" if value[0].isdigit() else unit, f"{words} ({interval(parts.soil, data.level)})"))
+        words = words if is_found else "a part of the soil in the variance of the rebound speed"
+        found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil, data.level)})"))
     band = data.emulator.scores.outputs.get("speed_out")
     if band:
         words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"
@@ -77,27 +74,27 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
     return []
 
 
-def tables(data: DrawnPage) -> list[PageTable]:
-    """Those that have a row."""
-    of_samples = [*limit_state_tables(data), *rare_tables(data.rare), *dispersion_tables(data)]
-    return [*landing_tables(data, _emulator(data)), *of_samples]
+def why_tables(data: RunsPage) -> list[PageTable]:
+    """What decides, as far as it is known."""
+    return _with_rows(_variance(data), _sides(data))
 
 
-def landing_tables(data: RunsPage, *after_runs: PageTable) -> list[PageTable]:
-    """Those of the landings themselves, or of the first ones of journeys, that have a row; others stand among them."""
-    first: tuple[Callable[[RunsPage], PageTable], ...] = (
-        _answer,
-        _inputs,
-        _outputs,
-        _directions,
-        _variance,
-        _sides,
-        _runs,
-    )
-    made = [*(make(data) for make in first), *after_runs, beds_table(data), touchdowns_table(data)]
-    found = [table for table in made if table.rows]
+def sure_tables(data: RunsPage) -> list[PageTable]:
+    """The answer with its interval, what is behind it, and the limit states."""
     side = data.results.runs.side_runs
-    return [*found, *([_side_runs(data, side)] if side else [])]
+    found = [_answer(data), _runs(data), *([_emulator(data)] if isinstance(data, DrawnPage) else [])]
+    found += [_side_runs(data, side)] if side else []
+    found += [*limit_state_tables(data), *rare_tables(data.rare)] if isinstance(data, DrawnPage) else []
+    return _with_rows(*found)
+
+
+def method_tables(data: RunsPage) -> list[PageTable]:
+    """What was varied, and what the landings gave."""
+    return _with_rows(_inputs(data), _outputs(data), _directions(data), touchdowns_table(data), beds_table(data))
+
+
+def _with_rows(*found: PageTable) -> list[PageTable]:
+    return [table for table in found if table.rows]
 
 
 def _answer(data: RunsPage) -> PageTable:
@@ -295,11 +292,3 @@ def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[st
             yield f"{prefix}{key}", value
         elif isinstance(value, Mapping):
             yield from _uncertain(value, f"{prefix}{key}.")
-
-
-def colour_input(data: DrawnPage) -> str | None:
-    """The input that figures of the samples are coloured by: the one that V+ varies most with, of those sampled."""
-    sampled = [name for name, _ in _uncertain(data.study) if name in data.samples]
-    parts = data.results.variance_shares["speed_out"]
-    alone = {name: one.share for name, one in parts.soil_by_input.items() if name in sampled} if parts else {}
-    return max(alone, key=lambda name: alone[name]) if alone else next(iter(sampled), None)

@@ -1,38 +1,65 @@
 """The first numbers and the tables of the page of a study of journeys."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.tables.dispersion_tables import site_tables
-from lithobrake.report.tables.drawn_tables import landing_tables
 from lithobrake.report.words.drawn_warnings import as_sentence, interval
 from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
-from lithobrake.report.words.numbers import number
-from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.report.words.numbers import area, number
+from lithobrake.results.journey_results import EndShare, RestQuantiles
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
 
 # Tables of any drawn study that are of more than the first touchdown, and one that has another name here.
-OF_ALL = ("Beds", "Site and body", "Inputs that the runs draw")
-RENAMED = {"The answer": "Return fraction", "After the first bounce": "What follows", "Landing ellipses": "Ellipses"}
+OF_ALL = ("Beds", "Inputs that the runs draw")
+RENAMED = {"The answer": "Return fraction"}
 
 
 def tiles(data: JourneyPage) -> list[Tile]:
-    """The share of each end; they add up to 100 %."""
-    count = len(data.journeys["end"])
-    found = []
-    for name, one in data.ends.items():
-        value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
-        sure = interval(one, LEVEL)
-        words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
-        found.append(Tile(value, "%", words))
+    """At rest, the likeliest other end, when and where; the share of each end where no lander rests."""
+    count, ends = len(data.journeys["end"]), data.ends
+    if data.at_rest.time_s.median.value is None:
+        return [_end_tile(name, one, count) for name, one in ends.items()]
+    others = {name: one for name, one in ends.items() if name != JourneyEnd.AT_REST}
+    other = max(others, key=lambda name: (others[name].share, others[name].upper or 0.0))
+    found = [_end_tile(name, ends[name], count) for name in (JourneyEnd.AT_REST, other)]
+    rest, (size, unit) = data.at_rest, time_unit(data)
+    found.append(_quantile_tile(rest.time_s, unit, "to rest, in the median", size))
+    found.append(_quantile_tile(rest.distance_m, "m", "from the aim point, in the median"))
+    if rest.regions:
+        large = rest.regions[-1]
+        words = f"hold {percent(large.share)} of those at rest; {number(large.largest_extent_m, 2)} m across"
+        value, _, unit = area(large.area_m2).rpartition("\N{NO-BREAK SPACE}")
+        found.append(Tile(value, unit, words))
+    else:
+        found.append(_quantile_tile(rest.contacts, "contacts", "with the ground, in the median"))
     return found
 
 
-def rest_tables(data: JourneyPage) -> list[PageTable]:
-    """When, where and how the landers rest, none where no lander does; and how they come down first."""
-    return [table for table in (_numbers(data), _regions(data), _sky(data), _delivery(data)) if table.rows]
+def _end_tile(name: str, one: EndShare, count: int) -> Tile:
+    value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
+    sure = interval(one, LEVEL)
+    words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
+    return Tile(value, "%", words, name)
+
+
+def _quantile_tile(found: RestQuantiles, unit: str, words: str, size: float = 1.0) -> Tile:
+    """A median with its interval, and the 95th percentile."""
+    value, _, ends = quantile_words(found.median, size).partition(" ")
+    most = quantile_words(found.q95, size).partition(" ")[0]
+    return Tile(value, unit, f"{words} {ends}; 95 %: {most} {unit}".replace("  ", " "))
+
+
+def place_tables(data: JourneyPage) -> list[PageTable]:
+    """Where the landers rest, and what they see from there."""
+    return [_regions(data), _sky(data)]
+
+
+def time_tables(data: JourneyPage) -> list[PageTable]:
+    """How the landers come down first, and when and how they rest."""
+    return [_numbers(data), _delivery(data)]
 
 
 def _numbers(data: JourneyPage) -> PageTable:
@@ -58,9 +85,9 @@ def _row(words: str, found: RestQuantiles, size: float = 1.0) -> list[str]:
 
 
 def _regions(data: JourneyPage) -> PageTable:
-    columns = ["smallest region that holds", "area [m2]", "largest extent [m]"]
+    columns = ["smallest region that holds", "area", "largest extent [m]"]
     rows = [
-        [f"{percent(one.share)} of the landers at rest", number(one.area_m2, 2), number(one.largest_extent_m, 2)]
+        [f"{percent(one.share)} of the landers at rest", area(one.area_m2), number(one.largest_extent_m, 2)]
         for one in data.at_rest.regions
     ]
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
@@ -105,9 +132,11 @@ def _delivery(data: JourneyPage) -> PageTable:
     }
     rows = [[words, *(number(one, 3) for one in spread)] for words, spread in spreads.items() if spread]
     note = f"{found.count} of {found.of} landers touch down."
-    for one in found.ellipse.shares if found.ellipse else ():
-        long, short = (number(2.0 * axis, 2) for axis in one.semi_axes_m)
-        note += f" {percent(one.share)} of the first impacts lie in an ellipse of {long} m by {short} m."
+    for one in found.regions:
+        note += (
+            f" The smallest region with {percent(one.share)} of the first impacts has {area(one.area_m2)} and "
+            f"is {number(one.largest_extent_m, 2)} m across."
+        )
     return PageTable("How they are delivered", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -131,9 +160,14 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
     return [PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))] if rows else []
 
 
-def journey_tables(data: JourneyPage) -> list[PageTable]:
-    """How the journeys ended, and the tables of the first touchdowns."""
-    return [_ends(data), *(_of_first(table) for table in [*landing_tables(data), *site_tables(data)])]
+def sure_tables(data: JourneyPage) -> list[PageTable]:
+    """How the journeys ended, by landings and by the emulator."""
+    return [_ends(data)]
+
+
+def first_tables(found: Sequence[PageTable]) -> list[PageTable]:
+    """Tables of a drawn study under titles that say that they are of first touchdowns, where they are."""
+    return [_of_first(table) for table in found]
 
 
 def _ends(data: JourneyPage) -> PageTable:

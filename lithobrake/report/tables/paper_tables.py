@@ -5,9 +5,7 @@ from typing import Any
 
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import PageData, PaperPage
-from lithobrake.report.tables.dispersion_tables import dispersion_tables
-from lithobrake.report.words.captions import input_words
-from lithobrake.report.words.drawn_warnings import action
+from lithobrake.report.words.captions import action, input_words
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
 from lithobrake.results.expansions import Ends
@@ -85,19 +83,19 @@ def _touchdowns_tile(telling: TellingNumbers) -> Tile:
     return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
 
 
-def tables(data: PaperPage) -> list[PageTable]:
-    """All tables, in the order of the stages."""
-    return [
-        _inputs(data),
-        _runs(data),
-        *([beds_table(data)] if data.results.beds else []),
-        _fits(data),
-        _scores(data),
-        _sobol(data),
-        _outputs(data),
-        *([touchdowns_table(data)] if data.results.outputs_of_runs else []),
-        *dispersion_tables(data),
-    ]
+def why_tables(data: PaperPage) -> list[PageTable]:
+    """The indices of all inputs."""
+    return [_sobol(data)]
+
+
+def sure_tables(data: PaperPage) -> list[PageTable]:
+    """The errors of the expansions, and how these were fitted."""
+    return [_scores(data), _fits(data)]
+
+
+def method_tables(data: PaperPage) -> list[PageTable]:
+    """What was varied, what was run, and what came out."""
+    return [_inputs(data), _runs(data), _outputs(data), touchdowns_table(data), beds_table(data)]
 
 
 def provenance(data: PageData) -> list[PageTable]:
@@ -258,7 +256,13 @@ def touchdowns_table(data: PageData) -> PageTable:
         for name, (unit, values) in numbers.items()
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
-    return PageTable("What else the touchdowns gave", columns, rows, "Over all distinct runs.", frozenset(columns[2:]))
+    return PageTable(
+        "What else the touchdowns gave",
+        columns,
+        rows,
+        "Over all distinct runs." if rows else "",
+        frozenset(columns[2:]),
+    )
 
 
 def _output_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:

@@ -4,10 +4,9 @@ import math
 import re
 from collections.abc import Mapping
 
-from lithobrake.report.page_data import DRAWN_COUNT, PageData, PaperPage, SampledPage
-from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.report.page_data import PageData, PaperPage, SampledPage
 from lithobrake.report.words.labels import PAPER_OUTPUTS, PART_KEY, output
-from lithobrake.report.words.numbers import fixed, number, q2_words
+from lithobrake.report.words.numbers import area, number, q2_words
 from lithobrake.results.expansions import DesignCounts, ExpansionResults, OutputErrors
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
@@ -44,9 +43,25 @@ def hours(seconds: float) -> str:
     return f"{seconds / 3600:.3g} h"
 
 
-def answer(data: PageData) -> str:
-    """The answer to the question of the study: where, and what the summary says of it."""
-    return " ".join([*place_words(data), *data.results.answer])
+def answer(data: SampledPage) -> str:
+    """How many landers return, in one line."""
+    returns = data.results.returns
+    if isinstance(data, PaperPage):
+        where, _, _ = data.results.answer[0].partition(":")
+        return f"{where}: {percent(returns.share, data.digits)} of the landers {action(data)}."
+    level = None if returns.lower is None else data.level
+    return f"{with_interval(returns, level=level)} of the landings {action(data)}."
+
+
+def action(data: PageData) -> str:
+    """What the return fraction is of: landers that do this."""
+    again = f"impact the surface again within {hours(data.study['flight']['duration'])}"
+    return f"{again} or are captured where the ground holds them" if data.results.site.holds else again
+
+
+def details(data: PageData) -> list[str]:
+    """Where the study lands, and the whole answer."""
+    return [" ".join([*place_words(data), *data.results.answer])]
 
 
 def place_words(data: PageData) -> list[str]:
@@ -80,7 +95,7 @@ def gravity_words(data: PageData) -> str:
 
 
 def bed(data: PageData) -> str:
-    """Figure 1."""
+    """How the ground was made."""
     if data.bed is None:
         program = data.study["solver"]["command"]
         return "The touchdowns were made by a " + (
@@ -109,7 +124,7 @@ def bed(data: PageData) -> str:
 
 
 def landing(data: PageData) -> str:
-    """Figure 2."""
+    """A landing."""
     if data.landing is None:
         return ""
     attributes, time = data.landing.attributes, data.landing.time
@@ -125,7 +140,7 @@ def landing(data: PageData) -> str:
 
 
 def counts(data: PaperPage) -> str:
-    """Figure 3."""
+    """What the designs cost."""
     table, design, designs = data.results.node_counts, data.study["design"], data.results.designs
     level, inputs = design["screening_level"], len(data.results.screening.inputs)
     grid = design["points"] == "smolyak"
@@ -149,7 +164,7 @@ def _runs(design: DesignCounts) -> str:
 
 
 def sobol(data: PaperPage) -> str:
-    """Figure 4."""
+    """Which inputs matter."""
     screening = data.results.screening
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
@@ -177,7 +192,7 @@ def _leader(name: str, screening: ExpansionResults) -> str:
 
 
 def errors(data: PaperPage) -> str:
-    """Figure 5."""
+    """How good the expansion is."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
         f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
@@ -196,58 +211,56 @@ def _explained(table: Mapping[str, OutputErrors]) -> str:
     return listing(parts)
 
 
-def scatter(data: PaperPage, colour_name: str) -> str:
-    """Figure 6."""
+def scatter(data: PaperPage) -> str:
+    """What may come out."""
     table = data.results.monte_carlo
     total, leaving = table.sample_count, table.leaving_count
     if not leaving:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
     speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
     degrees = output("elevation_out").factor
-    first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
     return (
         f"Of {thousands(total)} samples of the refined expansion {thousands(leaving)} leave the surface, the middle "
         f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
         f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
-        f"the colour is the {input_words(colour_name)}{first}."
+        "dots are the runs of all designs."
     )
 
 
 def impact_map(data: SampledPage) -> str:
-    """Figure 7."""
+    """The map about the aim point; empty without impacts."""
+    if not len(data.facet):
+        return ""
+    shared = f"{thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples"
+    found = [one for one in data.results.regions if one.share > 0.9]
+    if not found:
+        return f"{shared} of the {data.model}; they are too few for a region that holds 95 % of them."
+    size = f"{area(found[0].area_m2)} and is {number(found[0].largest_extent_m, 2)} m across"
+    return f"{shared} of the {data.model}; the smallest region that holds {percent(found[0].share)} of them has {size}."
+
+
+def whole_map(data: SampledPage) -> str:
+    """The map of the whole body."""
     shares, site = data.results.shares, data.results.site
     extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
     outward = site.effective_acceleration_outward
     direction = "outward" if outward > 0 else "inward"
     down = with_interval(shares.outcomes[FlightStatus.IMPACT], data.digits)
     return (
-        f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])}. "
-        f"The map has the {thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples of "
-        f"the {data.model} (body: {number(site.mass_kg)} kg, {extents} m, one turn in "
-        f"{site.spin_period_s / 3600:.4g} h; at the site gravity and spin together pull "
-        f"{number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
+        f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])} (body: "
+        f"{number(site.mass_kg)} kg, {extents} m, one turn in {site.spin_period_s / 3600:.4g} h; at the site gravity "
+        f"and spin together pull {number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)}). Areas are true, "
+        "on a sphere of the radius at the aim point."
     )
 
 
 def body(data: SampledPage) -> str:
-    """Figure 8."""
-    if not len(data.facet):
-        return ""
-    shared = f"{thousands(len(data.facet))} impacts on the shape that the flights used"
-    ellipses = data.results.ellipses
-    large = [one.semi_axes_m for one in ellipses.shares if one.share > 0.9] if ellipses else []
-    if ellipses is None or not large:
-        return f"{shared}; they lie too far around the body, or are too few, for an ellipse that holds 95 % of them."
-    long, short = large[0]
-    return (
-        f"{shared}; an ellipse of {number(long)} by {number(short)} m (semi-axes) about latitude "
-        f"{fixed(ellipses.latitude_deg, 1)} deg, longitude {fixed(ellipses.longitude_deg, 1)} deg holds 95 % of them"
-        f"{_shape_words(data)}."
-    )
+    """The body with its impacts."""
+    return f"{thousands(len(data.facet))} impacts on the shape that the flights used." if len(data.facet) else ""
 
 
 def rest(data: SampledPage) -> str:
-    """Figure 9."""
+    """Where landers rest after all bounces."""
     table = data.results.rest
     if isinstance(table, JourneyRest) or table.hard is None:
         return ""
@@ -264,12 +277,6 @@ def rest(data: SampledPage) -> str:
         f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
         f"because the impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
     )
-
-
-def _shape_words(data: SampledPage) -> str:
-    """What to beware of where the places are not spread as the ellipses suggest."""
-    is_gaussian = follows_gaussian(data.results.ellipses, len(data.facet))
-    return "" if is_gaussian else ", but the places are not Gaussian, and it says little of where they lie inside it"
 
 
 def thousands(count: int) -> str:

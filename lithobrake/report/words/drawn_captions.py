@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lithobrake.report.page_data import DRAWN_COUNT, DrawnPage, RunsPage
+from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.words.captions import input_words, listing, thousands
 from lithobrake.report.words.chance import BAND, band_luck, unlucky
 from lithobrake.report.words.drawn_warnings import drawn_things, emulator_outside, left_out, missing_sentence
@@ -27,7 +27,7 @@ def sign(name: str) -> str:
 
 
 def runs(data: RunsPage) -> str:
-    """Figure 3."""
+    """What the landings gave."""
     table = data.results.runs
     beds, outcomes = table.beds, table.outcomes
     own = listing(["soil", *drawn_things(data)])
@@ -74,7 +74,7 @@ def _ends(data: RunsPage, entry: Estimate, factor: float) -> str:
 
 
 def variance(data: RunsPage) -> str:
-    """Figure 4."""
+    """What decides."""
     records = {name: record for name, record in data.results.variance_shares.items() if record}
     if not records:
         return (
@@ -140,7 +140,7 @@ def _main_input(record: VarianceParts) -> str:
 
 
 def calibration(data: DrawnPage) -> str:
-    """Figure 5."""
+    """Whether to believe the emulator."""
     emulator = data.emulator
     scores = emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}
@@ -163,20 +163,14 @@ def calibration(data: DrawnPage) -> str:
     return " ".join([*said, emulator.statement])
 
 
-def samples(data: DrawnPage, colour_name: str | None) -> str:
-    """Figure 6."""
-    if colour_name is None:
-        return ""
+def samples(data: DrawnPage) -> str:
+    """What may come out."""
     outcome = data.samples["outcome"]
     total, leaving = len(outcome), int((outcome == TouchdownOutcome.CLEAR).sum())
     if not leaving:
         return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
-    first = f" (the first {thousands(DRAWN_COUNT)} are drawn)" if leaving > DRAWN_COUNT else ""
-    colour = f"the colour is the {input_words(colour_name)}"
-    if not data.emulator.follows_inputs:
-        colour += ", and says nothing: the emulator samples runs whatever the inputs"
-    count = f"Of {thousands(total)} samples of the emulator {thousands(leaving)} leave the surface"
-    return " ".join(filter(None, [f"{count}{first}; {colour}.", emulator_outside(data)]))
+    count = f"Of {thousands(total)} samples of the emulator {thousands(leaving)} leave the surface; dots are the runs."
+    return " ".join(filter(None, [count, emulator_outside(data)]))
 
 
 def aims(data: RunsPage, table: AimResults) -> str:

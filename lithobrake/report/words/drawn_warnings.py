@@ -3,19 +3,13 @@
 from collections.abc import Mapping
 
 from lithobrake.report.page_data import DrawnPage, PageData, RunsPage
-from lithobrake.report.words.captions import hours, listing
+from lithobrake.report.words.captions import listing
 from lithobrake.results.limit_state_results import RareLimitState
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.percentages import BoundedShare, interval_digits, percent, span
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
-
-
-def action(data: PageData) -> str:
-    """What the return fraction is of: landers that do this."""
-    again = f"impact the surface again within {hours(data.study['flight']['duration'])}"
-    return f"{again} or are captured where the ground holds them" if data.results.site.holds else again
 
 
 def has_interval(data: PageData) -> bool:

@@ -4,7 +4,7 @@ from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
 from lithobrake.report.words.drawn_captions import detected_words, floor_words, variance
 from lithobrake.report.words.drawn_warnings import landing_warnings
-from lithobrake.report.words.numbers import number
+from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import RestQuantile
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
@@ -21,10 +21,15 @@ END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m":
 
 
 def answer(data: JourneyPage) -> str:
-    """Where the study lands, how the journeys end, and why there is no interval, if so."""
-    found = data.results.answer
-    has_reason = data.ends[JourneyEnd.AT_REST].why is not None
-    return " ".join([*place_words(data), *found[: 2 if has_reason else 1]])
+    """How many landers come to rest, in one line."""
+    at_rest = data.ends[JourneyEnd.AT_REST]
+    level = None if at_rest.lower is None else LEVEL
+    return f"{with_interval(at_rest, level=level)} of the landers come to rest within {_limit(data)}."
+
+
+def details(data: JourneyPage) -> list[str]:
+    """Where the study lands, and the whole answer."""
+    return [" ".join([*place_words(data), *data.results.answer])]
 
 
 def journey_warnings(data: JourneyPage) -> list[str]:
@@ -47,31 +52,39 @@ def has_places(data: JourneyPage) -> bool:
 
 
 def rest_map(data: JourneyPage) -> str:
-    """The map of the ends."""
+    """The map about the aim point."""
     if not has_places(data):
         return ""
-    rest, at_rest = data.at_rest, data.ends[JourneyEnd.AT_REST]
-    said = [f"{with_interval(at_rest)} of {len(data.journeys['end'])} landers come to rest within {_limit(data)}."]
+    rest, said = data.at_rest, []
     if rest.regions:
-        areas = " and ".join(f"{percent(one.share)} of them ({number(one.area_m2, 2)} m2)" for one in rest.regions)
-        said.append(f"The lines enclose the smallest regions with {areas}, by a density fitted to their places.")
+        areas = " and ".join(f"{percent(one.share)} ({area(one.area_m2)})" for one in rest.regions)
+        said.append(f"Smallest regions that hold {areas} of the landers at rest, by a density fitted to their places.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     said += _delivery(data)
-    said.append("Landers that escaped, came down on the partner, failed or still fly have no place on it.")
-    return " ".join(said)
+    return " ".join(said) or "Each dot is a lander."
+
+
+def whole_map(data: JourneyPage) -> str:
+    """The map of all ends."""
+    total = len(data.journeys["end"])
+    words = f"{with_interval(data.ends[JourneyEnd.AT_REST])} of {total} landers come to rest within {_limit(data)}."
+    if not has_places(data):
+        return ""
+    return (
+        f"{words} Areas are true, on a sphere of the radius at the aim point. Landers that escaped, came down on the "
+        "partner or failed have no place on it."
+    )
 
 
 def _delivery(data: JourneyPage) -> list[str]:
-    """The ellipses of the first impacts, where there are any."""
+    """The regions of the first impacts, where there are any."""
     found = data.results.delivery
-    if found is None or found.ellipse is None or not found.ellipse.shares:
+    if found is None or not found.regions:
         return []
-    shares = " and ".join(percent(one.share) for one in found.ellipse.shares)
-    long, short = (2.0 * axis for axis in found.ellipse.shares[-1].semi_axes_m)
+    large = found.regions[-1]
     return [
-        f"The ellipses hold {shares} of the first impacts, the delivery; the larger is {number(long, 2)} m by "
-        f"{number(short, 2)} m."
+        f"Blue: the same of the first impacts, the delivery; {percent(large.share)} lie within {area(large.area_m2)}."
     ]
 
 

@@ -71,6 +71,12 @@ def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float =
     return f"{mantissa} × 10{raised}"
 
 
+def area(square_metres: float) -> str:
+    """An area to two digits, "32 000 m2", with spaces at which no line breaks."""
+    rounded = float(f"{square_metres:.2g}")
+    return (f"{rounded:,.0f},m2" if rounded >= 10.0 else f"{rounded:g},m2").replace(",", "\N{NO-BREAK SPACE}")
+
+
 def table_cell(value: float, scale: float = 0.0) -> str:
     """A number in a column: three digits, zeros at the end kept; scale: the largest of its unit in the table."""
     return number(value, zeros=True, scale=scale)

@@ -8,14 +8,19 @@ import numpy as np
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.figures.close_view import round_length
+from lithobrake.report.content import Content, PageTable
+from lithobrake.report.figures.ground_map import round_length
+from lithobrake.report.live.body_view import end_views
 from lithobrake.report.page_data import JourneyPage, page_results
-from lithobrake.report.pages.journey_page import DECIDES, FIRST, WHERE, journey_content
+from lithobrake.report.pages.journey_page import journey_content
+from lithobrake.report.words import journey_captions as words
 from lithobrake.results import StudyResults
 from lithobrake.results.journey_results import EndShare
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
-from ...report.page_text import visible_text
+from ...report.browser import browser_page, needs_browser
 
 
 @pytest.fixture
@@ -25,30 +30,42 @@ def data(journeys: StudyResults) -> JourneyPage:
     return found
 
 
-def test_the_page_begins_with_the_ends_of_the_journeys(journeys_folder: Path) -> None:
+def tables_of(content: Content) -> dict[str, PageTable]:
+    return {table.title: table for section in content.sections for table in section.tables}
+
+
+def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPage, journeys_folder: Path) -> None:
     page = write_report(journeys_folder).read_text(encoding="utf-8")
-    lines = visible_text(page).splitlines()
-    first = [line for line in lines if re.match(r"[\d.]+ % \|", line)]
-    assert [line.split(" | ")[1].split(",")[0] for line in first] == [end.label for end in JourneyEnd]
-    assert sum(float(line.split(" ")[0]) for line in first) == pytest.approx(100.0, abs=1.0)
-    places = [lines.index(words) for words in (WHERE, DECIDES, FIRST)]
-    assert places == sorted(places)
-    assert lines.index(first[-1]) < places[0]
-    captions = {line.split(". ")[1]: line for line in lines if line.startswith("Figure ") and ". " in line}
-    assert next(iter(captions)) == "Where the landers rest"
-    assert "Where it rests" not in captions
-    assert 'class="absent"' not in page
+    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST]
+    assert content.answer.startswith(with_interval(at_rest, level=None if at_rest.lower is None else LEVEL))
+    assert len(content.tiles) == 5
+    assert content.tiles[0].words.startswith("at rest, ")
+    assert float(content.tiles[2].value) == pytest.approx(
+        data.at_rest.time_s.median.value / words.time_unit(data)[0], rel=0.05
+    )
+    header = page[: page.index("</header>")]
+    assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
+    contents = ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
+    assert re.findall(r"<h2>([^<]+)</h2>", page) == contents
+
+
+def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:
+    table = tables_of(journey_content(data))["How the journeys ended"]
+    assert sum(float(row[2].split(" ")[0]) for row in table.rows) == pytest.approx(100.0, abs=1.0)
 
 
 def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
     content = journey_content(data)
     names = [plot.name for plot in content.plots]
-    assert names[:5] == ["ends", "times", "counts", "attitude", "end_variance"]
-    assert all("first touchdown" in plot.sentence for plot in content.plots[5:])
-    titles = [table.title for table in content.tables]
-    assert titles[0] == "How the journeys ended"
-    others = [title for title in titles[1:] if not title.startswith("First touchdown: ")]
-    assert set(others) <= {"Beds", "Site and body", "Inputs that the runs draw"}
+    assert names[:6] == ["ends", "whole", "attitude", "times", "counts", "end_variance"]
+    others = [plot for plot in content.plots[6:] if plot.name != "bed"]
+    assert others
+    assert all("first touchdown" in plot.sentence for plot in others)
+    appendix = next(section for section in content.sections if section.title == "Appendix")
+    titles = {table.title for table in appendix.tables}
+    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {
+        "Beds", "Inputs that the runs draw",
+    }  # fmt: skip
 
 
 def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None:
@@ -65,7 +82,7 @@ def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None
     table = type(data.journeys)(data.journeys.row, columns)
     content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
     assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
-    assert content.plots[0].heading == WHERE
+    assert [tile.value for tile in content.tiles].count("0") == 4
 
 
 @pytest.mark.parametrize(("most", "length"), [(7.3, 5.0), (5.0, 5.0), (1.99, 1.0), (0.3, 0.2), (250.0, 200.0)])
@@ -77,6 +94,20 @@ def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyP
     ways, ends = data.paths
     arcs = [end for end in ends if end == JourneyEnd.AT_REST]
     assert len(ways) == len(ends) > len(arcs) > 0
-    section = next(one for one in journey_content(data).live if "Where the landers rest, to turn" in one.html)
+    (view,) = end_views(data)
     on_ground = int(np.isfinite(data.journeys["latitude_deg"]).sum())
-    assert f"where {on_ground} landers ended on the ground" in section.html
+    assert f"where {on_ground} landers ended on the ground" in view.html
+    assert f"--key: {END_COLOURS[JourneyEnd.AT_REST]}" in view.html
+    # A lander with several flights is one way, of so many flights.
+    flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
+    assert sum(flights) == len(ways)
+    assert len(flights) == len(np.unique(data.path_times[1]))
+
+
+@needs_browser
+def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp_path: Path) -> None:
+    path = write_report(journeys_folder)
+    with browser_page(tmp_path) as page:
+        page.open(path, 1280)
+        assert 2 <= page.sheets() <= 3
+        assert page.complaints == []

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
@@ -31,9 +32,10 @@ def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> Non
     axes = journeys.plot.map(Figure().subplots())
     at_rest = journeys.journeys.where(journeys.journeys["end"] == "at_rest")
     drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
-    for latitude, longitude in zip(at_rest["latitude_deg"], at_rest["longitude_deg"], strict=True):
-        turned = (drawn[:, 0] - longitude + 180.0) % 360.0 - 180.0
-        assert np.min(np.hypot(turned, drawn[:, 1] - latitude)) == pytest.approx(0.0, abs=1e-9)
+    site = journeys.results.site
+    ground = GroundMap(site.latitude_deg, site.longitude_deg, float(np.linalg.norm(site.place_m)))
+    for east, north in zip(*ground.places(at_rest["latitude_deg"], at_rest["longitude_deg"]), strict=True):
+        assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: StudyResults) -> None:

@@ -1,6 +1,6 @@
 """Each figure is made from plain arrays and shows what it is given."""
 
-from dataclasses import replace
+from collections.abc import Iterable
 
 import matplotlib
 import numpy as np
@@ -8,38 +8,26 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from lithobrake.analysis import dispersion_ellipses
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.bed_figure import bed_figure, three_moments
 from lithobrake.report.figures.body_figure import body_figure, colour_ends, facet_density
 from lithobrake.report.figures.count_figure import Design, count_figure
-from lithobrake.report.figures.density import WHOLE, Window, close_window, draw_density, neighbour_count
 from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.hulls import Hull, Scene
 from lithobrake.report.figures.landing_figure import instants, landing_figure
-from lithobrake.report.figures.map_figure import Share, draw_shares, map_figure
-from lithobrake.report.figures.map_marks import draw_ellipses, fitting, outline
-from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
+from lithobrake.report.figures.shares import Share, draw_shares
 from lithobrake.report.figures.sobol_figure import sobol_figure
-from lithobrake.report.figures.style import INK, figure_style
+from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import DrawnPage
-from lithobrake.report.pages.shared_plots import draw_map, draw_rest
-from lithobrake.report.words.chance import follows_gaussian
+from lithobrake.report.pages.shared_plots import draw_rest, draw_whole
 from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results import MovingBodies
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
-from lithobrake.results.dispersion import EllipseShare, LandingEllipses
 from lithobrake.results.expansions import OutputErrors
 from lithobrake.results.shares import Estimate, ShareInterval
-from lithobrake.vocabulary.fate_colours import FATE_COLOURS
+from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
 
-
-def ellipse(share: float, long: float, short: float) -> EllipseShare:
-    return EllipseShare(share, (long, short), (10.0 * long, 10.0 * short))
-
-
-ELLIPSES = LandingEllipses(10.0, 30.0, 20.0, (ellipse(0.5, 0.8, 0.4), ellipse(0.95, 1.6, 0.8)))
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])
 
@@ -166,98 +154,6 @@ def test_error_figure_shows_a_q2_that_does_not_exist_as_such() -> None:
         assert "$Q^2$ undefined" in texts(error_figure(scores, scores, scores))
 
 
-def test_scatter_figure_leaves_out_samples_that_stay() -> None:
-    outputs = {name: np.linspace(0.0, 1.0, 20) for name in PAPER_OUTPUTS}
-    leaves = np.arange(20) >= 5
-    with figure_style():
-        figure = scatter_figure(outputs, ("restitution", np.linspace(0.3, 0.8, 20)), leaves)
-    assert [len(axes.collections[0].get_offsets()) for axes in figure.axes[:3]] == [15, 15, 15]
-
-
-def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
-    with figure_style():
-        figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("captured", 0.0, upper=0.0203)])
-    words = [text.get_text() for axes in figure.axes for text in axes.texts]
-    assert "at most 2.0 %" in words
-    assert not any("% interval" in axes.get_xlabel() for axes in figure.axes)
-
-
-@pytest.mark.parametrize("with_relief", [False, True])
-def test_map_figure_shows_shares_with_intervals(with_relief: bool) -> None:
-    generator = np.random.default_rng(3)
-    latitude, longitude = generator.uniform(-40, 40, 300), generator.uniform(-180, 180, 300)
-    vertices = generator.normal(size=(200, 3))
-    vertices /= np.linalg.norm(vertices, axis=1)[:, None]
-    shares = [Share("re-impact", 0.6, 0.55, 0.65), Share("escaped", 0.4, 0.35, 0.45)]
-    with figure_style():
-        figure = map_figure(latitude, longitude, (0.0, 10.0), shares, vertices if with_relief else None)
-    words = texts(figure)
-    assert "60 % (55-65 %)" in words
-    assert "landing site" in words
-
-
-def test_map_figure_without_any_impact_is_still_a_map() -> None:
-    with figure_style():
-        figure = map_figure(np.zeros(0), np.zeros(0), (0.0, 0.0), [Share("escaped", 1.0, 0.9, 1.0)])
-    assert "no impact among the flights" in texts(figure)
-    assert len(figure.axes) == 2
-
-
-def test_map_figure_shows_impacts_near_the_site_in_a_close_view() -> None:
-    generator = np.random.default_rng(4)
-    latitude, longitude = 30 + generator.normal(size=200), 179 + generator.normal(size=200)
-    longitude = np.where(longitude > 180, longitude - 360, longitude)
-    window = close_window(latitude, longitude, (30.0, 179.0))
-    assert window is not None
-    assert window.longitude == pytest.approx(179.0, abs=1.0)
-    assert window.half < 5.0
-    with figure_style():
-        figure = map_figure(latitude, longitude, (30.0, 179.0), [Share("impact", 1.0, 0.98, 1.0)], None, ELLIPSES)
-    ends = (window.latitude - window.half, window.latitude + window.half)
-    (view,) = figure.axes[0].child_axes
-    assert view.get_ylim() == pytest.approx(ends)
-    assert len(view.collections[0].get_offsets()) == 200
-
-
-def test_ellipses_are_named_beside_the_map_and_not_on_it() -> None:
-    generator = np.random.default_rng(8)
-    latitude, longitude = 10 + generator.normal(size=50), 30 + generator.normal(size=50)
-    with figure_style():
-        figure = map_figure(latitude, longitude, (10.0, 30.0), [], None, ELLIPSES)
-    (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == [
-        "landing site",
-        "ellipse that holds 50 % of the impacts",
-        "ellipse that holds 95 % of the impacts",
-    ]
-    FigureCanvasAgg(figure).draw()
-    assert not any(legend.get_window_extent().overlaps(axes.get_window_extent()) for axes in figure.axes)
-    axes = Figure().add_subplot()
-    draw_ellipses(axes, ELLIPSES, WHOLE)
-    draw_ellipses(axes, None, WHOLE)
-    assert len(axes.lines) == 4
-    assert not axes.texts
-
-
-@pytest.mark.parametrize("longitude", [20.0, 380.0])
-def test_the_mark_of_the_site_leaves_the_densest_place_in_sight(longitude: float) -> None:
-    generator = np.random.default_rng(9)
-    spread = generator.uniform(-60, 60, 12_000), generator.uniform(-180, 180, 12_000)
-    # The peak of the density lies right at the site.
-    places = [np.append(values, np.full(500, middle)) for values, middle in zip(spread, (10.0, 20.0), strict=True)]
-    with figure_style():
-        figure = map_figure(*places, (10.0, longitude), [Share("impact", 1.0)])
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    x, y = figure.axes[0].transData.transform((20.0, 10.0))
-    pixels = np.asarray(canvas.buffer_rgba(), dtype=float)[:, :, :3] / 255
-    peak = np.array(matplotlib.colormaps["viridis"](1.0)[:3])
-    assert pixels[int(pixels.shape[0] - y), int(x)] == pytest.approx(peak, abs=0.02)
-    # And the mark is there, to the right of it.
-    beside = pixels[int(pixels.shape[0] - y), int(x) : int(x) + 15]
-    assert np.abs(beside - matplotlib.colors.to_rgb(INK)).max(axis=1).min() < 0.1
-
-
 def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> None:
     axes = Figure().add_subplot()
     draw_shares(axes, [Share("down", 0.75, 0.7, 0.8), Share("captured", 0.25)], "all 100 000 samples")
@@ -270,9 +166,10 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
 
 def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
     with figure_style():
-        figures = draw_map(drawn), draw_rest(drawn)
+        figures = draw_whole(drawn), draw_rest(drawn)
     found: dict[str, set[str]] = {}
-    for axes in (axes for figure in figures for axes in figure.axes if axes.patches and axes.get_yticklabels()):
+    assert figures[1] is not None
+    for axes in (axes for figure in figures if figure for axes in figure.axes if axes.get_xlabel().startswith("share")):
         for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=False):
             found.setdefault(label.get_text(), set()).add(matplotlib.colors.to_hex(bar.get_facecolor()))
     assert {"captured", "at rest", "unknown outcome"} <= found.keys()
@@ -281,26 +178,29 @@ def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
     assert len(set(FATE_COLOURS.values())) == len(FATE_COLOURS)
 
 
-def test_an_ellipse_over_the_edge_of_the_map_or_round_a_pole_is_not_drawn() -> None:
-    at = LandingEllipses(85.0, 170.0, 0.0, (ellipse(0.5, 2.0, 1.0), ellipse(0.95, 20.0, 8.0)))
-    assert [one.share for one in fitting(at, WHOLE)] == [0.5]
-    assert [one.share for one in fitting(replace(at, latitude_deg=10.0), WHOLE)] == [0.5, 0.95]
-    close = Window(latitude=10.0, longitude=170.0, half=5.0, half_longitude=5.0)
-    assert [one.share for one in fitting(replace(at, latitude_deg=10.0), close)] == [0.5]
-    assert fitting(None, WHOLE) == []
+# What is left of linear red, green and blue without the cones for long or for middle wavelengths [Machado-2009].
+BLIND = {
+    "protanopia": [(0.152286, 1.052583, -0.204868), (0.114503, 0.786281, 0.099216), (-0.003882, -0.048116, 1.051998)],
+    "deuteranopia": [(0.367322, 0.860646, -0.227968), (0.280085, 0.672501, 0.047413), (-0.011820, 0.042940, 0.968881)],
+}
+TO_XYZ = np.array([(0.4124, 0.3576, 0.1805), (0.2126, 0.7152, 0.0722), (0.0193, 0.1192, 0.9505)])
 
 
-@pytest.mark.parametrize(("freedom", "is_gaussian"), [(np.inf, True), (2.0, False)])
-def test_ellipses_of_heavy_tails_are_flagged(freedom: float, is_gaussian: bool) -> None:
-    random = np.random.default_rng(1)
-    places = random.standard_normal((2000, 2))
-    if np.isfinite(freedom):
-        places /= np.sqrt(random.chisquare(freedom, 2000) / freedom)[:, None]
-    found = dispersion_ellipses(*(0.1 * places.T))
-    assert found is not None
-    shares = tuple(ellipse(share, *axes) for share, axes in found.semi_axes_deg.items())
-    assert follows_gaussian(LandingEllipses(0.0, 0.0, 0.0, shares), 2000) is is_gaussian
-    assert follows_gaussian(None, 0)
+def seen(colours: Iterable[str], matrix: list[tuple[float, ...]]) -> np.ndarray:
+    """CIE L*a*b* of colours as such an eye has them, [count, 3]."""
+    rgb = np.array([matplotlib.colors.to_rgb(colour) for colour in colours])
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    xyz = np.clip(linear @ np.array(matrix).T, 0.0, 1.0) @ TO_XYZ.T / (TO_XYZ @ np.ones(3))
+    x, y, z = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0).T
+    return np.stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], axis=1)
+
+
+@pytest.mark.parametrize("eye", BLIND)
+@pytest.mark.parametrize(("colours", "least"), [(END_COLOURS, 25.0), (FATE_COLOURS, 12.0)], ids=["ends", "all"])
+def test_colour_blind_readers_tell_outcomes_apart(eye: str, colours: dict[str, str], least: float) -> None:
+    lab = seen(colours.values(), BLIND[eye])
+    apart = np.linalg.norm(lab[:, None] - lab[None], axis=2)
+    assert apart[np.triu_indices(len(lab), 1)].min() > least
 
 
 def test_aims_share_one_scale_and_have_colour_bars() -> None:
@@ -327,6 +227,22 @@ def test_aims_share_one_scale_and_have_colour_bars() -> None:
     assert sorted(patch.get_linestyle() for patch in figure.axes[0].patches) == [":", "solid"]
 
 
+def test_scatter_figure_has_every_sample_in_a_cell_and_the_runs_on_top() -> None:
+    generator = np.random.default_rng(5)
+    samples = {name: generator.uniform(0.0, 1.0, 400) for name in PAPER_OUTPUTS}
+    with figure_style():
+        figure = scatter_figure(samples, {name: values[:7] for name, values in samples.items()})
+    assert [float(axes.collections[0].get_array().sum()) for axes in figure.axes[:3]] == [400.0] * 3
+    assert [len(axes.lines[0].get_xdata()) for axes in figure.axes[:3]] == [7] * 3
+
+
+def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
+    axes = Figure().add_subplot()
+    draw_shares(axes, [Share("captured", 0.0, upper=0.0203)], "all samples")
+    assert [text.get_text() for text in axes.texts] == ["at most 2.0 %"]
+    assert "% interval" not in axes.get_xlabel()
+
+
 def test_shares_without_intervals_speak_of_none() -> None:
     axes = Figure().add_subplot()
     draw_shares(axes, [Share("down", 0.75, None, None)], "the 200 followed")
@@ -350,19 +266,6 @@ def test_names_of_curves_and_legends_of_many_inputs_cover_nothing() -> None:
     assert all(rings.legends[0].get_window_extent().y1 <= axes.get_window_extent().y0 for axes in rings.axes)
 
 
-def test_an_ellipse_lies_as_far_from_its_middle_as_it_is_long() -> None:
-    latitude, longitude = outline(60.0, 170.0, 90.0, (10.0, 4.0))
-    places, middle = (
-        np.stack([np.cos(a) * np.cos(b), np.cos(a) * np.sin(b), np.sin(a)], axis=-1)
-        for a, b in (np.radians([latitude, longitude]), np.radians([60.0, 170.0]))
-    )
-    away = np.degrees(np.arccos(places @ middle))
-    assert (away.max(), away.min()) == pytest.approx((10.0, 4.0), abs=1e-3)
-    # Its longer axis heads east.
-    assert longitude[0] > 180.0
-    assert latitude[90] < 57.0 or latitude[90] > 63.0
-
-
 def test_density_on_the_body_counts_each_impact_over_the_area_around_it() -> None:
     corners = 1e3 * TETRAHEDRON[FACES]
     area = 2.0 * np.sqrt(3.0) * 1e6
@@ -372,39 +275,6 @@ def test_density_on_the_body_counts_each_impact_over_the_area_around_it() -> Non
     with figure_style():
         figure = body_figure(1e3 * TETRAHEDRON, FACES, np.array([2, 2, 2, 0]), np.array([300.0, 300.0, 300.0]))
     assert "from the south" in texts(figure)
-
-
-def test_rest_figure_shows_both_grounds_over_one_window_or_says_why_not() -> None:
-    generator = np.random.default_rng(7)
-    latitude, longitude = 10 + generator.normal(size=50), 30 + generator.normal(size=50)
-    hard = RestMap("On hard ground", latitude, longitude, ELLIPSES, [Share("at rest", 0.9, 0.85, 0.95)])
-    soil = RestMap("On soil", latitude + 3.0, longitude, None, [Share("at rest", 0.5, 0.4, 0.6)])
-    with figure_style():
-        figure = rest_figure([soil, hard], (10.0, 30.0))
-        silent = rest_figure(
-            [RestMap("On soil", latitude[:0], latitude[:0], None, [], "not asked"), hard], (10.0, 30.0)
-        )
-    maps = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("On ")]
-    assert maps[0].get_ylim() == maps[1].get_ylim()
-    assert "50 % (40-60 %)" in texts(figure)
-    assert "not asked" in texts(silent)
-
-
-def test_no_impact_is_lost_on_the_map_of_the_whole_body() -> None:
-    generator = np.random.default_rng(6)
-    latitude, longitude = generator.uniform(-90, 90, 12_000), generator.uniform(-180, 180, 12_000)
-    drawn, words = draw_density(Figure().add_subplot(), latitude, longitude, WHOLE, 9.0)
-    assert drawn.get_array().sum() == 12_000
-    assert words == "impacts per cell of 3 deg"
-
-
-def test_impacts_all_over_the_body_have_no_close_view() -> None:
-    assert close_window(np.linspace(-60, 60, 50), np.linspace(-180, 180, 50), (0.0, 0.0)) is None
-
-
-def test_neighbours_are_counted_across_the_date_line() -> None:
-    count = neighbour_count(np.zeros(3), np.array([-179.0, 179.0, 90.0]), 5.0)
-    assert count.tolist() == [2.0, 2.0, 1.0]
 
 
 def test_the_look_leaves_the_settings_of_others_alone() -> None:

@@ -13,7 +13,7 @@ import h5py
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.content import PageTable
+from lithobrake.report.content import Content, PageTable
 from lithobrake.report.page_data import DrawnPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.tables import drawn_tables
@@ -39,8 +39,13 @@ def changed(data: DrawnPage, **tables: Mapping[str, Any]) -> DrawnPage:
     return replace(data, results=replace(data.results, **new))
 
 
+def tables_of(content: Content) -> list[PageTable]:
+    """All tables of a page that have a row, which those without do not reach."""
+    return [table for section in content.sections for table in section.tables if table.rows]
+
+
 def table_of(data: DrawnPage, title: str) -> PageTable:
-    return next(table for table in drawn_tables.tables(data) if table.title.startswith(title))
+    return next(table for table in tables_of(drawn_content(data)) if table.title.startswith(title))
 
 
 def percents(words: str) -> list[float]:
@@ -54,15 +59,27 @@ def test_the_product_of_an_archive_stands_beside_the_body(drawn: DrawnPage) -> N
 
 
 def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: Path) -> None:
-    names = ("bed", "landing", "runs", "variance", "calibration", "outputs", "map", "body", "rest")
-    files = sorted(path.name for path in (sequence_folder / "report").glob("*.png"))
-    assert files == [f"figure_{number}_{name}.png" for number, name in enumerate(names, start=1)]
-    assert len(re.findall(r'<img alt="[^"]+" src="data:image/png;base64,', drawn_page)) == len(names)
+    names = ("map", "whole", "body", "rest", "variance", "calibration", "runs", "outputs", "landing", "bed")
+    files = {path.name for path in (sequence_folder / "report").glob("*.png")}
+    assert files == {f"figure_{number}_{name}.png" for number, name in enumerate(names, start=1)}
+    assert len(re.findall(r'<img alt="[^"]+" src="data:image/svg\+xml;base64,', drawn_page)) == len(names)
+
+
+def test_the_sections_stand_in_the_order_of_their_questions(drawn_page: str) -> None:
+    contents = re.search(r"<nav.*?</nav>", drawn_page)
+    assert contents is not None
+    order = ["Answer", "Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
+    assert re.findall(r">([^<]+)</a>", contents[0]) == order
+    assert re.findall(r"<h2>([^<]+)</h2>", drawn_page) == order[1:]
+    assert all(f'id="{link}"' in drawn_page for link in re.findall(r'href="#([^"]+)"', contents[0]))
 
 
 def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None:
-    words = captions.answer(drawn)
-    assert all(sentence in words for sentence in drawn.results.answer)
+    returns, words = drawn.results.returns, captions.answer(drawn)
+    assert words.startswith(with_interval(returns, level=drawn.level))
+    assert words.count(".") == words.rstrip(".").count(".") + 1
+    (details,) = captions.details(drawn)
+    assert all(sentence in details for sentence in drawn.results.answer)
 
 
 def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
@@ -149,9 +166,8 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
     assert isinstance(found, DrawnPage)
     content = drawn_content(found)
     assert "fast: Few beds led to it: raise bed.bed_count." in content.warnings
-    plot = content.plots[-1]
+    plot = next(plot for plot in content.plots if plot.name == "rare")
     figure = plot.draw()
-    assert plot.name == "rare"
     assert figure is not None
     assert len(figure.axes[0].lines) >= 2
     probabilities, levels = rare_tables(found.rare)
@@ -193,15 +209,6 @@ def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPa
         assert f"{end:.3g}" in words
 
 
-def test_a_colour_that_says_nothing_is_called_so(drawn: DrawnPage) -> None:
-    colour = drawn_tables.colour_input(drawn)
-    follows, alone = (
-        drawn_captions.samples(changed(drawn, emulator={"follows_inputs": is_so}), colour) for is_so in (True, False)
-    )
-    assert len(alone) > len(follows)
-    assert "whatever the inputs" in alone
-
-
 def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: DrawnPage) -> None:
     table, speed = table_of(drawn, "Outputs of the landings"), drawn.results.spreads["speed_out"]
     row = next(row for row in table.rows if row[1] == "m/s")
@@ -214,15 +221,16 @@ def test_an_azimuth_has_a_direction_and_a_resultant_length(drawn: DrawnPage) -> 
     azimuth = OutputDirection(mean, Estimate(0.2, 0.1, 0.3), "the landings")
     table = table_of(changed(drawn, outputs={"azimuth_out": azimuth}), "Directions of the landings")
     assert table.rows == [["azimuth out", "5.00 (-10 to 20)", "0.200 (0.1 to 0.3)"]]
-    assert not any(one.title.startswith("Directions") for one in drawn_tables.tables(drawn))
+    assert not any(one.title.startswith("Directions") for one in tables_of(drawn_content(drawn)))
 
 
 def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> None:
     alone = replace(drawn, bed=None, landing=None, results=replace(drawn.results, beds=()))
     content = drawn_content(alone)
-    assert "Beds" not in {table.title for table in content.tables}
-    assert next(row for row in content.tables[0].rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
-    assert {plot.name for plot in content.plots if not plot.sentence} == {"landing"}
+    assert "Beds" not in {table.title for table in tables_of(content)}
+    rows = table_of(alone, "The answer").rows
+    assert next(row for row in rows if "new bed" in row[0])[0] == "prediction interval for a new bed"
+    assert "landing" not in {plot.name for plot in content.plots}
 
 
 def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
@@ -231,7 +239,7 @@ def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
     assert re.findall(r"\d+", table.note)[:2] == [str(side.soil_pairs), str(side.twins)]
     assert float(table.rows[0][2].split()[0]) == pytest.approx(side.chaos_deviation["speed_out"].value, rel=5e-3)
     without = changed(drawn, runs={"side_runs": None})
-    assert not [one for one in drawn_tables.tables(without) if one.title == "Side runs"]
+    assert not [one for one in tables_of(drawn_content(without)) if one.title == "Side runs"]
 
 
 def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: DrawnPage) -> None:
@@ -239,14 +247,14 @@ def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: DrawnPage) -> None:
     study = drawn.study | {
         "site": drawn.study["site"] | {"heading_deg": law}, "bed": drawn.study["bed"] | {"diameter": law},
     }  # fmt: skip
-    inputs = table_of(replace(drawn, study=study), "Inputs")
+    inputs = table_of(replace(drawn, study=study), "Inputs that")
     assert [row[1] for row in inputs.rows][-3:] == ["impact.region", "impact.azimuth_deg", "impact.orientation"]
     assert {row[1].partition(".")[0] for row in inputs.rows} == {"grain", "impact"}
 
 
 def test_what_the_emulator_found_stands_beside_the_inputs(drawn: DrawnPage) -> None:
     found = changed(drawn, emulator={"found_inputs": ["grain.friction"]})
-    told = {row[1]: row[-1] for row in table_of(found, "Inputs").rows if row[-1]}
+    told = {row[1]: row[-1] for row in table_of(found, "Inputs that").rows if row[-1]}
     assert told.pop("grain.friction") == "yes"
     assert set(told.values()) == {"no"}
 
@@ -264,23 +272,24 @@ def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
     shares = dict.fromkeys(drawn.results.variance_shares)
     alone = changed(drawn, returns=ONE_BED, runs={"beds": 1}, variance_shares=shares)
     content = drawn_content(replace(alone, results=replace(alone.results, outputs=outputs)))
-    answer, outputs_table = content.tables[0], next(one for one in content.tables if one.title.startswith("Outputs"))
+    answer, outputs_table = (
+        next(one for one in tables_of(content) if one.title.startswith(title)) for title in ("The answer", "Outputs")
+    )
     assert not any("interval" in row[0] for row in answer.rows)
     assert answer.note.startswith(ONE_BED["why"])
     assert not any(" to " in cell for row in outputs_table.rows for cell in row)
     assert next(plot for plot in content.plots if plot.name == "variance").draw() is None
-    assert not any("held-out beds" in table.title for table in content.tables)
+    assert not any("held-out beds" in table.title for table in tables_of(content))
 
 
 def test_what_a_study_has_not_is_left_out(drawn: DrawnPage) -> None:
     none = dict.fromkeys(("soil", "hard", "equivalent"))
     alone = changed(drawn, rest=none | {"why_no_soil": "rest.count is 0"})
-    empty = replace(alone, landing=None, facet=drawn.facet[:0], results=replace(alone.results, ellipses=None))
+    empty = replace(alone, landing=None, facet=drawn.facet[:0], results=replace(alone.results, regions=()))
     content = drawn_content(empty)
-    assert {plot.name for plot in content.plots if not plot.sentence} == {"landing", "body", "rest"}
-    assert all(table.rows for table in content.tables)
-    titles = {table.title for table in content.tables}
-    assert not titles & {"Journeys to rest", "From bounce to bounce", "Landing ellipses"}
+    assert not {plot.name for plot in content.plots} & {"map", "landing", "body", "rest"}
+    titles = {table.title for table in tables_of(content)}
+    assert not titles & {"Journeys to rest", "From bounce to bounce", "Landing regions"}
 
 
 def test_the_landing_is_that_of_the_telling_run(sequence_folder: Path, tmp_path: Path) -> None:

@@ -5,26 +5,35 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.content import Content, PageTable, Panel, Tile
+from lithobrake.report.content import Content, PageTable, Panel, Plot, Section, Tile
 from lithobrake.report.pages.html import LONG, page
-from lithobrake.report.words.numbers import flat, number, show, unit_scales
+from lithobrake.report.words.numbers import area, flat, number, show, unit_scales
+from lithobrake.vocabulary.fate_colours import FATE_COLOURS
+
+
+def drawn(name: str, title: str, sentence: str) -> Plot:
+    return Plot(name, title, sentence, lambda: None)
 
 
 def example() -> str:
     errors = PageTable("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))
-    return page(
-        "Study <one>",
-        "Study of 2026-03-01.",
-        Content("Half of them come back.", ["Only <two> beds."], [Tile("48.3", "%", "re-impact")], [], [errors]),
-        [Panel("Bed", 'A "bed" of 3 grains.', b"\x89PNG"), Panel("Landing", "No landing was kept.", None)],
-        [PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])],
-        {"The study file": 'title = "<one>"'},
-    )
+    versions = PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])
+    sections = [
+        Section("How sure", [drawn("landing", "Landing", "No landing was kept.")], [errors]),
+        Section("Nothing", [drawn("none", "None", "")], [PageTable("Empty", ["a"], [], "Of nothing.")]),
+        Section("Files", tables=[versions], texts={"The study file": 'title = "<one>"'}, is_printed=False),
+    ]
+    tile = Tile("48.3", "%", "re-impact", "impact")
+    bed = drawn("bed", "Bed", 'A "bed" of 3 grains.')
+    content = Content("Half of them come back.", ["Only <two> beds."], [tile], bed, sections)
+    panels = {"bed": Panel("Bed", bed.sentence, b"<svg/>"), "landing": Panel("Landing", "No landing was kept.", None)}
+    return page("Study <one>", "Study of 2026-03-01.", content, panels)
 
 
 def folds(tables: list[PageTable]) -> list[str]:
     """The parts of a page that can be folded, opening tag first."""
-    text = page("Study", "", Content("", [], [], [], tables), [], [], {"The study file": ""})
+    section = Section("Tables", tables=tables, texts={"The study file": ""})
+    text = page("Study", "", Content("", [], [], None, [section]), {})
     return re.findall(r"<details.*?</details>", text, flags=re.DOTALL)
 
 
@@ -57,8 +66,29 @@ def test_words_are_escaped_and_figures_numbered() -> None:
     assert '<p class="warning">Only &lt;two&gt; beds.</p>' in text
     assert "<one>" not in text
     assert "Figure 1. Bed." in text
-    assert "Figure 2. Landing." in text
-    assert "data:image/png;base64,iVBORw==" in text
+    assert "data:image/svg+xml;base64,PHN2Zy8+" in text
+    # What has no picture has its sentence alone, and what has neither is not there.
+    assert "Figure 2" not in text
+    assert '<p class="note"><b>Landing.</b> No landing was kept.</p>' in text
+    assert "Nothing" not in text
+    assert "Empty" not in text
+
+
+def test_the_first_screen_has_the_numbers_and_the_figure_beside_the_answer() -> None:
+    text = example()
+    header = text[text.index("<header") : text.index("</header>")]
+    order = ["Half of them come back.", "48.3", "Figure 1. Bed.", "Study of 2026-03-01."]
+    assert [header.index(words) for words in order] == sorted(header.index(words) for words in order)
+    assert f'<li style="border-color: {FATE_COLOURS["impact"]}">' in header
+
+
+def test_contents_lead_to_each_section() -> None:
+    text = example()
+    assert re.findall(r'<a href="#([^"]+)">([^<]+)</a>', text) == [
+        ("answer", "Answer"), ("how-sure", "How sure"), ("files", "Files"),
+    ]  # fmt: skip
+    assert '<section id="how-sure">' in text
+    assert '<section id="files" class="screen">' in text
 
 
 def test_long_tables_are_folded_short_ones_open_and_each_scrolls_in_a_box_of_its_own() -> None:
@@ -72,7 +102,7 @@ def test_long_tables_are_folded_short_ones_open_and_each_scrolls_in_a_box_of_its
 
 def test_a_picture_is_enlarged_without_a_second_copy_of_it() -> None:
     text = example()
-    assert text.count("data:image/png") == text.count('<label class="picture"><input type="checkbox"') == 1
+    assert text.count("data:image/svg+xml") == text.count('<label class="picture"><input type="checkbox"') == 1
     assert 'aria-label="Figure 1 in full size"' in text
 
 
@@ -94,6 +124,13 @@ def test_cells_that_are_links_lead_to_files_and_all_others_are_words() -> None:
 )
 def test_numbers_in_words(value: float, text: str) -> None:
     assert number(value) == text
+
+
+def test_areas_have_two_digits_and_do_not_break() -> None:
+    gap = "\N{NO-BREAK SPACE}"
+    assert [area(value) for value in (31637.5, 456.4, 20.46, 3.14)] == [
+        f"32{gap}000{gap}m2", f"460{gap}m2", f"20{gap}m2", f"3.1{gap}m2",
+    ]  # fmt: skip
 
 
 def test_numbers_of_a_column_keep_their_zeros() -> None:

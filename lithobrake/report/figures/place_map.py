@@ -1,0 +1,225 @@
+"""Where landers end: their places and the smallest regions that hold them, about the aim point and all around."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from lithobrake.report.figures.density import MANY, cell_counts, density_colours, density_norm, draw_cells
+from lithobrake.report.figures.ground_map import GroundMap, Panel, panel_around
+from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
+from lithobrake.report.figures.map_marks import SITE_STYLE, draw_edges, fill_regions, mark_site, region_style
+from lithobrake.report.figures.shares import Share, draw_shares
+from lithobrake.report.figures.style import QUIET
+from lithobrake.results.regions import RestRegion
+from lithobrake.vocabulary.percentages import percent
+
+Array = NDArray[np.float64]
+# Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
+WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17
+# Of the figure of the whole body: its height [inch].
+DISCS = 2.75
+
+
+@dataclass(frozen=True)
+class Places:
+    """Landers that ended in one way: words of the outcome, its colour, latitude and longitude [deg]."""
+
+    words: str
+    colour: str
+    latitude: Array
+    longitude: Array
+
+    @property
+    def are_many(self) -> bool:
+        """Whether they are drawn as counts in cells, not as dots."""
+        return len(self.latitude) >= MANY
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Smallest regions that hold shares of landers, in words and in their colour."""
+
+    of: str
+    colour: str
+    found: Sequence[RestRegion]
+
+
+@dataclass(frozen=True)
+class PlaceMap:
+    """What a map shows: places and regions by outcome, the aim point [deg], and the radius of the body there [m].
+
+    The first regions are filled, of the others the edges are drawn.
+    """
+
+    places: Sequence[Places]
+    regions: Sequence[Regions]
+    aim: tuple[float, float]
+    radius: float
+
+    @property
+    def ground(self) -> GroundMap:
+        """The map about the aim point."""
+        return GroundMap(*self.aim, self.radius)
+
+    def panel(self) -> Panel | None:
+        """The part of it that holds the regions, or the landers where there are none; None where they lie apart."""
+        lines = [np.array(line).T for one in self.regions for region in one.found for line in region.outlines]
+        if not (self.regions and self.regions[0].found):
+            lines += [np.array([one.latitude, one.longitude]) for one in self.places]
+        return panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
+
+
+def local_figure(shown: PlaceMap) -> Figure:
+    """Draw the map about the aim point in metres; both halves of the body where places lie too far apart."""
+    panel, handles = shown.panel(), _handles(shown)
+    many = next((one for one in shown.places if one.are_many), None)
+    rows = ROW * len(handles) + 0.06 + (0.62 if many else 0.0)
+    height = (0.05 + MAP + BELOW if panel else 0.5 * WIDTH) + rows
+    figure = Figure(figsize=(WIDTH, height))
+    grounds = (shown.ground,) if panel else (shown.ground, shown.ground.opposite)
+    norm = _norm(shown, grounds, panel)
+    if panel is None:
+        _halves(figure, shown, norm, (0.01, rows / height, 0.98, 1.0 - rows / height))
+    else:
+        axes = figure.add_axes((LEFT / WIDTH, (rows + BELOW) / height, MAP / WIDTH, MAP / height))
+        draw_local(axes, shown, panel, norm)
+    if many:
+        width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
+        bar = figure.add_axes((LEFT / WIDTH, (rows - 0.14) / height, 0.7, 0.1 / height))
+        draw_scale(figure, bar, many, norm, width)
+    figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.03, 0.01), borderpad=0.0, borderaxespad=0.0)
+    return figure
+
+
+def whole_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
+    """Draw the places on both halves of the body, and the share of each outcome; whole: what the shares are of."""
+    rows = 0.2 * len(shares)
+    height = max(DISCS, rows + 0.8)
+    figure = Figure(figsize=(9.2, height))
+    norm = _norm(shown, (shown.ground, shown.ground.opposite), None)
+    _halves(figure, shown, norm, (0.0, 0.0, 0.51, 1.0))
+    draw_shares(
+        figure.add_axes((0.735, 0.5 * (1.0 - rows / height) + 0.1 / height, 0.13, rows / height)), shares, whole
+    )
+    return figure
+
+
+def draw_local(axes: Axes, shown: PlaceMap, panel: Panel, norm: LogNorm) -> None:
+    """Draw a part of the map about the aim point with its frame."""
+    ground, outside = shown.ground, 0
+    for place, one in enumerate(shown.regions):
+        if place == 0 and not any(places.are_many for places in shown.places):
+            fill_regions(axes, one.found, ground, one.colour)
+        draw_edges(axes, one.found, ground, one.colour)
+    for places in shown.places:
+        outside += _draw_places(axes, places, ground, panel, norm)
+    mark_site(axes, 0.0, 0.0)
+    frame_local(axes, ground, panel)
+    if outside:
+        style: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 8, "color": QUIET, "zorder": 7}
+        axes.text(0.975, 0.03, f"{outside} outside", transform=axes.transAxes, **style)
+
+
+def draw_scale(figure: Figure, axes: Axes, many: Places, norm: LogNorm, width: float) -> None:
+    """The colour bar of counts in cells of a width [m]."""
+    colours = density_colours(many.colour)
+    bar = figure.colorbar(ScalarMappable(norm, colours), cax=axes, orientation="horizontal", format="%g")
+    bar.set_label(f"{many.words} in a cell {width:.2g} m wide", fontsize=8)
+    outline: Any = bar.outline
+    outline.set_visible(False)
+
+
+def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: Panel | None) -> LogNorm:
+    """One scale for the counts of all maps of a figure."""
+    return density_norm([
+        cell_counts(ground, (one.latitude, one.longitude), panel)[0] for ground in grounds for one in shown.places
+    ])  # fmt: skip
+
+
+def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: Panel | None, norm: LogNorm) -> int:
+    """Draw places as dots, or many of them as counts in cells; returns how many lie outside of the panel."""
+    seen = ground.facing(places.latitude, places.longitude) >= 0.0
+    east, north = ground.places(places.latitude[seen], places.longitude[seen])
+    if places.are_many:
+        draw_cells(axes, ground, (places.latitude, places.longitude), panel, norm, places.colour)
+    else:
+        size = 16.0 if panel else 9.0
+        axes.scatter(east, north, s=size, color=places.colour, linewidths=0.4, edgecolors="white", zorder=5)
+    return int(len(seen) - panel.holds(east, north).sum()) if panel else 0
+
+
+def _halves(figure: Figure, shown: PlaceMap, norm: LogNorm, place: tuple[float, float, float, float]) -> None:
+    """Both halves of the body side by side at a place in parts of the figure: left, bottom, width, height."""
+    left, bottom, width, height = place
+    for side, (ground, title) in enumerate(
+        ((shown.ground, "the half around the aim point"), (shown.ground.opposite, "the other half"))
+    ):
+        axes = figure.add_axes((left + 0.5 * width * side, bottom, 0.5 * width, 0.91 * height))
+        _draw_half(axes, shown, ground, norm, title)
+        if side == 0:
+            mark_site(axes, 0.0, 0.0)
+            draw_bar(axes, 2.12 * ground.edge)
+
+
+def _draw_half(axes: Axes, shown: PlaceMap, ground: GroundMap, norm: LogNorm, title: str) -> None:
+    disc = frame_half(axes, ground, title)
+    for one in shown.regions:
+        draw_edges(axes, one.found, ground, one.colour)
+    for places in shown.places:
+        _draw_places(axes, places, ground, None, norm)
+    for line in axes.lines:
+        line.set_clip_path(disc)
+
+
+def draw_map(axes: Axes, shown: PlaceMap) -> None:
+    """The map about the aim point on axes of the caller; where places lie too far apart, the half of the body there."""
+    panel = shown.panel()
+    norm = _norm(shown, (shown.ground,), panel)
+    if panel is None:
+        _draw_half(axes, shown, shown.ground, norm, "the half around the aim point")
+        mark_site(axes, 0.0, 0.0)
+        draw_bar(axes, 2.12 * shown.ground.edge)
+    else:
+        draw_local(axes, shown, panel, norm)
+    many = next((one for one in shown.places if one.are_many), None)
+    if many:
+        width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
+        bar = axes.figure.colorbar(ScalarMappable(norm, density_colours(many.colour)), ax=axes, format="%g", shrink=0.7)
+        bar.set_label(f"{many.words} in a cell {width:.2g} m wide")
+    axes.legend(handles=_handles(shown), loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
+
+
+def _handles(shown: PlaceMap) -> list[Line2D]:
+    """Say what dots, lines and mark are."""
+    handles = [
+        Line2D([], [], linestyle="none", marker="o", markersize=5, color=one.colour, label=f"{one.words} ({count})")
+        for one in shown.places
+        for count in [len(one.latitude)]
+        if count and not one.are_many
+    ]
+    for one in shown.regions:
+        for region in one.found:
+            words, style = f"smallest region with {percent(region.share)} of {one.of}", region_style(region)
+            handles.append(Line2D([], [], linestyle=style, color=one.colour, linewidth=1.3, label=words))
+    handles.append(Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11}))
+    return handles
+
+
+def places_by_end(
+    words: Mapping[str, str], colours: Mapping[str, str], end: NDArray[np.str_], latitude: Array, longitude: Array
+) -> list[Places]:
+    """The landers that have a place on the ground, by how they ended."""
+    has_place = np.isfinite(latitude + longitude)
+    return [
+        Places(label, colours[name], latitude[chosen], longitude[chosen])
+        for name, label in words.items()
+        for chosen in [has_place & (end == name)]
+    ]

@@ -1,0 +1,171 @@
+"""The view of the body in three dimensions: its facets, the ways of landers, and what stands around it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import LogNorm, to_hex, to_rgb
+from numpy.typing import NDArray
+
+from lithobrake.report.content import LiveSection
+from lithobrake.report.figures.body_figure import BARE, COLOURS, colour_ends, facet_density
+from lithobrake.report.figures.style import INK, LANDER, QUIET
+from lithobrake.report.live.views import geometry, orbit, section, still
+from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
+from lithobrake.report.words.captions import BODIES
+from lithobrake.report.words.numbers import number
+from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+
+Array = NDArray[np.float64]
+# Over the radius of the body: a pin, the marker of a lander, the ends of the axis and of the line to the partner.
+PIN, MARKER, AXIS, FAR = 0.04, 0.03, 1.3, 1.55
+MARK = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=float)
+MARK_FACES = np.array([
+    (0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5),
+])  # fmt: skip
+# How a flight ended, in words of a legend.
+FATE_WORDS = {
+    FlightStatus.IMPACT: "impact",
+    FlightStatus.FLYING: "still flying",
+    FlightStatus.PARTNER: "on the partner",
+}
+
+
+def body_views(data: SampledPage) -> list[LiveSection]:
+    """The body with where landers come down, facets coloured as in its figure, if any does."""
+    if not len(data.facet):
+        return []
+    density = facet_density(data.body_vertices[data.body_faces], data.facet)
+    low, high = colour_ends(density)
+    scale = COLOURS(LogNorm(low, high)(density))[:, :3]
+    arrays, facts = _body(data, np.where(density[:, None] > 0.0, scale, BARE))
+    facts["bar"] = {"low": number(low, 2), "high": number(high, 2), "unit": "impacts per hectare"}
+    facts["bar"]["scale"] = ", ".join(to_hex(COLOURS(part)) for part in (0.0, 0.5, 1.0))
+    words = "Facets: impacts per hectare as in the figure of the body."
+    if len(data.paths[0]):
+        arrays |= _lines(*data.paths)
+        words += f" Lines: the ways of the first {len(data.paths[1])} flights, seen from the turning body."
+    legend = {FATE_WORDS.get(FlightStatus(one), one): FATE_COLOURS[one] for one in dict.fromkeys(data.paths[1])}
+    return [
+        section("body-3d", "Where the lander comes down, to turn", _with_marker(words, facts), arrays, facts, legend)
+    ]
+
+
+def end_views(data: JourneyPage) -> list[LiveSection]:
+    """The body with a pin at the place of each lander on the ground, and the flights of the first journeys."""
+    table, (ways, ended) = data.journeys, data.paths
+    place = np.column_stack([table[f"position_{axis}"] for axis in "xyz"])
+    on_ground = np.isfinite(place).all(axis=1)
+    if not (on_ground.any() or len(ways)):
+        return []
+    arrays, facts = _body(data, np.broadcast_to(np.array(BARE), (len(data.body_faces), 3)))
+    foot, end = place[on_ground], table["end"][on_ground]
+    head = foot + PIN * _radius(data) * foot / np.linalg.norm(foot, axis=1)[:, None]
+    pins, lines = _lines(np.stack([foot, head], axis=1), end), _lines(ways, ended)
+    arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
+    words = f"Pins: where {on_ground.sum()} landers ended on the ground."
+    if len(ways):
+        words += " Lines: the flights of the first journeys, seen from the turning body."
+    legend = {JourneyEnd(one).label: END_COLOURS[one] for one in dict.fromkeys([*end.tolist(), *ended])}
+    return [section("body-3d", "Where the landers rest, to turn", _with_marker(words, facts), arrays, facts, legend)]
+
+
+def _with_marker(words: str, facts: Mapping[str, Any]) -> str:
+    """The words of a view, and what moves in it."""
+    return f"{words} The marker on the way of a lander is not to scale." if facts["ways"] else words
+
+
+def _radius(data: PageData) -> float:
+    return float(np.linalg.norm(data.body_vertices, axis=1).max())
+
+
+def _body(data: PageData, colours: Array) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Arrays and numbers of the body and a marker, looked at from above the site; colours: of facets [facet, 3]."""
+    radius, site = _radius(data), np.array(data.results.site.place_m)
+    longitude, latitude = np.arctan2(site[1], site[0]), np.arctan2(site[2], np.hypot(site[0], site[1]))
+    ways, of_ways = _ways(data)
+    hulls = [(data.body_vertices, data.body_faces), *([(MARKER * radius * MARK, MARK_FACES)] if ways else [])]
+    paint = np.rint(255.0 * colours)
+    if ways:
+        paint = np.concatenate([paint, np.tile(255.0 * np.array(to_rgb(LANDER)), (len(MARK_FACES), 1))])
+    arrays = {**geometry(hulls), "paint": paint.astype(np.uint8), **of_ways}
+    around, labels = _around(data, radius)
+    facts = {"bodyCount": len(hulls), "frameCount": 1, "shades": [], "ways": ways, "labels": labels}
+    if ways:
+        facts["perFlight"] = data.paths[0].shape[1]
+    # What lies around the body reaches farther out.
+    seen = orbit(np.zeros(3), 1.25 * radius, float(longitude) - 0.4, float(latitude) + 0.3)
+    return arrays | around, {**facts, "orbit": seen}
+
+
+def _around(data: PageData, radius: float) -> tuple[dict[str, np.ndarray], list[dict[str, Any]]]:
+    """The axis of the spin and the direction of the partner as lines, and the words at their ends and at the site."""
+    place = np.array(data.results.site.place_m)
+    top = max(float(np.abs(data.body_vertices[:, 2]).max()), 0.5 * radius)
+    lines, labels = [(0.0, 0.0, -AXIS * top), (0.0, 0.0, AXIS * top)], [_label("north", [0.0, 0.0, 1.08 * AXIS * top])]
+    labels.append({**_label("aim point", (1.03 * place).tolist()), "canHide": True})
+    longitude = _partner_longitude(data)
+    if longitude is not None:
+        ray = np.array([np.cos(np.radians(longitude)), np.sin(np.radians(longitude)), 0.0])
+        lines += [tuple(radius * ray), tuple(FAR * radius * ray)]
+        site = data.results.site
+        name = BODIES.get(str(site.partner), str(site.partner))
+        words = f"{name}, {number((site.partner_distance_m or 0.0) / 1e3)} km"
+        labels.append(_label(f"to {words}", (1.03 * FAR * radius * ray).tolist()))
+    return still("grid", lines, 0.0, QUIET) | _ring(place), labels
+
+
+def _ring(place: Array) -> dict[str, np.ndarray]:
+    """A ring around the aim point, a little above the ground."""
+    up = place / np.linalg.norm(place)
+    east = np.cross(np.eye(3)[np.argmin(np.abs(up))], up)
+    east /= np.linalg.norm(east)
+    turn = np.linspace(0.0, 2.0 * np.pi, 41)[:, None]
+    size = 0.05 * float(np.linalg.norm(place))
+    ring = 1.02 * place + size * (np.cos(turn) * east + np.sin(turn) * np.cross(up, east))
+    return still("mark", [tuple(one) for one in np.stack([ring[:-1], ring[1:]], axis=1).reshape(-1, 3)], 0.0, INK)
+
+
+def _label(words: str, place: Sequence[float]) -> dict[str, Any]:
+    return {"words": words, "place": list(place)}
+
+
+def _partner_longitude(data: PageData) -> float | None:
+    """The east longitude over which the partner stands when the lander arrives [deg]; None where it is not known."""
+    site, given = data.results.site, data.study["site"].get("partner_longitude_deg")
+    if site.partner is None:
+        return None
+    if site.kernels is not None and site.kernels.partner_longitude_deg is not None:
+        return site.kernels.partner_longitude_deg
+    if isinstance(given, int | float):
+        return float(given)
+    # Dimorphos turns once an orbit, and has Didymos over its longitude 0.
+    return 0.0 if data.study["site"]["body"] == "dimorphos" and given is None else None
+
+
+def _ways(data: PageData) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
+    """The ways that a marker moves along, one for each lander, and the places of all of them."""
+    place, status = data.paths
+    if not len(place):
+        return [], {}
+    times, sample = data.path_times
+    starts = np.flatnonzero(np.append(True, np.diff(sample) != 0))
+    counts = np.diff(np.append(starts, len(sample)))
+    ways = [
+        {"words": f"lander {sample[start]}: {status[start]}".replace("_", " "), "first": int(start) * place.shape[1],
+         "flights": int(count)}
+        for start, count in zip(starts, counts, strict=True)
+    ]  # fmt: skip
+    return ways, {
+        "way_place": place.reshape(-1, 3).astype(np.float32), "way_time": times.ravel().astype(np.float32)
+    }  # fmt: skip
+
+
+def _lines(position: Array, status: Sequence[str]) -> dict[str, np.ndarray]:
+    """Ends of the pieces of all ways [2 piece_count, 3], and the colour of each."""
+    ends = np.stack([position[:, :-1], position[:, 1:]], axis=2).reshape(-1, 3)
+    paint = np.array([to_rgb(OUTCOME_COLOURS[word]) for word in status]).reshape(-1, 3)
+    # Two ends of each piece.
+    of_ends = np.repeat(np.rint(255.0 * paint), 2 * (position.shape[1] - 1), axis=0)
+    return {"path_corner": ends.astype(np.float32), "path_paint": of_ends.astype(np.uint8)}
