@@ -19,8 +19,8 @@ BUILT_IN_BODIES = ("didymos", "dimorphos")
 
 
 class RotationSection(Section):
-    """How a body turns that does not keep one face to its partner, as Dimorphos may since the impact of DART: its start,
-    after which Euler's equations of a rigid body under the partner's torque hold."""
+    """How a body turns that does not keep one face to its partner, as Dimorphos may since the impact of DART: its
+    start, after which Euler's equations of a rigid body under the partner's torque hold."""
 
     yaw_deg: Annotated[float, Number("deg", at_least=-180, at_most=180)] = Field(0.0, examples=["30.0"])
     """Turn about z, the axis of the orbit, at the start, away from the attitude that keeps one face to the partner."""
