@@ -87,6 +87,18 @@ class Site:
             return body
         return replace(body, rotation=_rotation(body, self.study.site.rotation, _longest_stay(self.study)))
 
+    @property
+    def rotation_words(self) -> str | None:
+        """What the start of the body's rotation leads to, in words; None for a body that turns uniformly."""
+        start, rotation = self.study.site.rotation, self.body.rotation
+        if start is None or rotation is None:
+            return None
+        x, _, z = (math.degrees(angle) for angle in rotation.largest_angles)
+        return (
+            f"The body turns as [site.rotation] starts it: its long axis goes up to {x:.0f} deg and its pole up to "
+            f"{z:.0f} deg away from where they keep pace with the orbit; landers arrive over {start.days:g} days."
+        )
+
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """Times at which landers arrive [s], [count], of the partner's motion and of the body's rotation.
 

@@ -113,6 +113,14 @@ class AttitudeHistory:
         fastest, largest = (SAFETY * float(np.linalg.norm(one, axis=1).max()) for one in (spin, change))
         return Turning(float(self.step), states, fastest, largest)
 
+    @cached_property
+    def largest_angles(self) -> tuple[float, float, float]:
+        """How far the body's x, y and z axes go from those of the frame [rad]."""
+        whole = np.asarray(self.attitude, dtype=np.float64)
+        cosines = np.einsum("nii->ni", rotation_matrices(whole)).min(axis=0)
+        x, y, z = np.arccos(np.clip(cosines, -1.0, 1.0)).tolist()
+        return x, y, z
+
     def at(self, time: ArrayLike) -> Attitudes:
         """Attitudes at times [s], [count]."""
         part = np.atleast_1d(np.asarray(time, dtype=np.float64)) / self.step

@@ -84,6 +84,7 @@ def test_a_small_yaw_swings_at_the_rate_of_three_times_b_less_a_over_c(longitude
     rate = math.sqrt(3.0 * tidal_rate(body) * (b - a) / c)
     yaw = turns(history).as_euler("ZYX", degrees=True)[:, 0]
     assert yaw == pytest.approx(0.05 * np.cos(rate * times(history)), abs=0.05 * 1e-4)
+    assert np.degrees(history.largest_angles) == pytest.approx([0.05, 0.05, 0.0], abs=1e-4)
 
 
 def test_small_pitch_and_roll_are_the_two_modes_of_the_linear_problem():

@@ -90,8 +90,9 @@ def fly_samples(job: Job) -> None:
             f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
             f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
         )
-    if job.site.warning:
-        job.say(job.site.warning)
+    for words in (job.site.warning, job.site.rotation_words):
+        if words:
+            job.say(words)
     job.folder.write_json("flights.json", _checks(job, start))
     write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")

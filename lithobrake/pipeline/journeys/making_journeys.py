@@ -26,8 +26,9 @@ INTERVAL_ERRORS = 1.645
 
 def make_journeys(job: Job) -> None:
     """Follow every lander and write its touchdowns, flights and end."""
-    if job.site.warning:
-        job.say(job.site.warning)
+    for words in (job.site.warning, job.site.rotation_words):
+        if words:
+            job.say(words)
     if job.design.descents is not None:
         job.say(job.design.descents.sentence())
     journeys = begun(job)
