@@ -83,7 +83,7 @@ class BedSection(Section):
     """How many grains."""
     width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
     """Width along x and y, between the walls or until the ground repeats; at least twice the lander's largest
-    diameter."""
+    diameter, of its main shape, and wider than its parts reach."""
     sides: Literal["walls", "periodic"] = "walls"
     """What is beyond the width: "walls", an open box that a lander may leave across its edge; or "periodic", the same
     ground again, so that nothing is lost laterally, and a lander that goes farther meets ground that it has disturbed.

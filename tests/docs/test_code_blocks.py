@@ -119,9 +119,8 @@ def key_paths(tables: dict[str, object], above: str = "") -> Iterator[tuple[str,
         path = f"{above}.{name}".lstrip(".")
         # Tables with names of the author's own have the keys of all such.
         if above in NAMED_TABLES and isinstance(value, dict):
-            yield from key_paths(value, above)
-            continue
-        if path in known and isinstance(value, dict):
+            yield from ((above, key) for key in value)
+        elif path in known and isinstance(value, dict):
             yield from key_paths(value, path)
         else:
             yield above, name

@@ -3,11 +3,16 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from lithobrake.pipeline import StudyFolder, run_study
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import attitude_terms
+from lithobrake.pipeline.runs.energy_bound import gyrations
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
+from lithobrake.study.touchdown_model import lander
 
 from ...few_grains import few_grains
 
@@ -27,6 +32,26 @@ edges = [0.1, 0.01, 0.01]
 centre = [0.075, 0.0, 0.0]
 density = 500.0
 """
+
+
+def test_gyration_and_attitude_are_those_of_all_parts(tmp_path: Path) -> None:
+    """A sphere alone is the same from all sides; a boom gives it axes, and its inertia to the bound of the spin."""
+    path = tmp_path / "study.toml"
+    path.write_text(few_grains(30, 0.8, 0.05).replace("[surface]", PARTS + "[surface]"))
+    study = StudySource.read(path).study
+    design = DrawnDesign(study)
+    masses = np.array([0.1, 0.2, 0.1])
+    smallest, largest = gyrations(design, {**{key: np.full(3, 1.0) for key in design.medians}, "lander.mass": masses})
+    for k, mass in enumerate(masses):
+        moments = np.linalg.eigvalsh(lander(study, {**design.medians, "lander.mass": mass}).body.inertia) / mass
+        assert (smallest[k], largest[k]) == pytest.approx((moments[0], moments[2]))
+    # A heavier ball with the same boom turns more easily for its mass.
+    assert largest[1] < largest[0]
+    terms = attitude_terms(study)
+    assert terms is not None
+    assert terms.has_sides
+    # The easiest axis is that along the boom.
+    assert abs(terms.axes[0, 0]) > 0.9
 
 
 def test_a_study_of_a_lander_with_parts_has_their_numbers_among_its_inputs(tmp_path: Path) -> None:
