@@ -54,4 +54,5 @@ def test_latitudes_are_those_of_the_ways_from_the_body() -> None:
     assert found["sun"] == pytest.approx([-90.0])
     way = earth_place([EPOCH])[0] - [2.0, 0.0, 0.0]
     assert found["earth"] == pytest.approx([math.degrees(math.asin(way[0] / np.linalg.norm(way)))])
-    assert -80.0 < found["earth"][0] < -70.0
+    # Earth is never farther from the Sun than 30 degrees there.
+    assert -89.0 < found["earth"][0] < -59.0
