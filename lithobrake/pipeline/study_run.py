@@ -39,8 +39,8 @@ def run(
 ) -> StudyResults:
     """Run a study to its end and return its results; reuse what its folder already has.
 
-    study: path of a study file, or its tables as a dict, in which relative paths count from the current folder
-    and numbers may be NumPy's.
+    study: path of a study file, the name of a study that comes with the package ("quick"; `lithobrake examples` lists
+    them), or tables as a dict, in which relative paths count from the current folder and numbers may be NumPy's.
     out: folder of the study; None: runs/NAME, after the name of the file; tables need one.
     workers: number of processes; None: one a core. They import the script that calls this only where it defines the
     model: such a script calls it under `if __name__ == "__main__":`.

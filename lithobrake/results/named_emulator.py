@@ -14,6 +14,7 @@ from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
+    from lithobrake.results.explorer_tables import ExplorerAttitude
 
     Value = float | np.ndarray
 
@@ -25,10 +26,14 @@ class NamedEmulator:
     """The emulator of a study; `model` is the object of lithobrake.emulator behind it, which has its scores."""
 
     def __init__(
-        self, model: "Emulator", units: Mapping[str, str], bound: Callable[[], Mapping[str, float]] = dict
+        self,
+        model: "Emulator",
+        units: Mapping[str, str],
+        bound: Callable[[], Mapping[str, float]] = dict,
+        attitude: "ExplorerAttitude | None" = None,
     ) -> None:
-        """Take over an emulator; units: of inputs by dotted key; bound: gives `ExplorerTables.bound` of its study."""
-        self.model, self._units, self._bound = model, dict(units), bound
+        """Take over an emulator; units: of inputs by dotted key; bound, attitude: of `ExplorerTables` of its study."""
+        self.model, self._units, self._bound, self._attitude = model, dict(units), bound, attitude
 
     @property
     def inputs(self) -> dict[str, str]:
@@ -38,12 +43,16 @@ class NamedEmulator:
     def sample(self, inputs: "Mapping[str, Value]", count: int, seed: int = 0) -> Table:
         """Sample `count` landings at inputs by dotted key, in the study file's units: numbers, or arrays of one length.
 
+        The terms of the lander's attitude ("attitude."), where it has any, may all be left out: each sample then has a
+        random attitude.
         Result: a table with a row for each sample, those of one point one after the other: the inputs, the outcome, and
         outputs [SI], NaN where the lander does not leave the surface.
         Raises ValueError for names that are not those of the emulator, and for values outside their distributions.
         """
         whole_number("count", count, 1)
         x = self._points(inputs)
+        if self._drawn_terms(inputs):
+            x, count = self._with_attitudes(np.repeat(x, count, axis=0), seed), 1
         upper = self._upper(x)
         drawn = self.model.draw(x, count, seed, lower=self.model.runs.lower[0], upper=upper)
         rows, uppers = np.repeat(x, count, axis=0), np.repeat(upper, count, axis=0)
@@ -83,7 +92,10 @@ class NamedEmulator:
         return ", ".join(f"{name} [{unit}]" if unit else name for name, unit in inputs.items())
 
     def _points(self, inputs: "Mapping[str, Value]") -> np.ndarray:
-        """Inputs as points [point_count, input_count]. Raises ValueError for other names, and for no one length."""
+        """Inputs as points [point_count, input_count], NaN for terms of the attitude that are left out.
+
+        Raises ValueError for other names, and for no one length.
+        """
         from lithobrake.vocabulary.plain_text import closest
 
         if not isinstance(inputs, Mapping):
@@ -94,15 +106,41 @@ class NamedEmulator:
         for name in inputs:
             if name not in known:
                 raise ValueError(f"{name!r} is no input of the emulator{closest(name, known)}; {self._all()}")
-        if absent := {name: unit for name, unit in known.items() if name not in inputs}:
+        drawn = self._drawn_terms(inputs)
+        if absent := {name: unit for name, unit in known.items() if name not in {*inputs, *drawn}}:
             raise ValueError(f"inputs lack {self._shown(absent)}; {self._all()}")
-        columns = [numbers(name, inputs[name]) for name in known]
+        columns = [np.array(math.nan) if name in drawn else numbers(name, inputs[name]) for name in known]
         lengths = {column.shape for column in columns} - {()}
         if len(lengths) > 1 or any(len(shape) > 1 for shape in lengths):
             raise ValueError(f"inputs have the shapes {sorted(lengths)}, but must be numbers, or arrays of one length")
         if (0,) in lengths:
             raise ValueError(f"inputs have no point: an array is empty; {self._all()}")
         return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns)))
+
+    def _drawn_terms(self, inputs: "Mapping[str, Value]") -> tuple[str, ...]:
+        """The terms of the attitude, where none of them is given."""
+        terms = () if self._attitude is None else self._attitude.input_names
+        return () if any(name in inputs for name in terms) else terms
+
+    def _with_attitudes(self, x: np.ndarray, seed: int) -> np.ndarray:
+        """Points [point_count, input_count], each with the terms of a random attitude."""
+        from scipy.spatial.transform import Rotation
+
+        from lithobrake.geometry.attitude_terms import AttitudeTerms
+
+        whole_number("seed", seed, 0)
+        law = self._attitude
+        assert law is not None
+        names = tuple(str(number) for number in range(len(law.axes)))
+        terms = AttitudeTerms(np.array(law.axes), names, law.has_sides, law.is_cube)
+        into_frame = Rotation.random(len(x), random_state=np.random.default_rng([seed, 1])).as_matrix()
+        found = terms.at(into_frame[:, 2], into_frame[:, 0])
+        # Rounding may put a term beyond its end.
+        lower, upper = np.array(list(terms.ranges.values())).T
+        places = [list(self.model.runs.inputs).index(name) for name in law.input_names]
+        filled = x.copy()
+        filled[:, places] = np.clip(found, lower, upper)
+        return filled
 
     def _all(self) -> str:
         return f"give all of: {self._shown(self.inputs)}"

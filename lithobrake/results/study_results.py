@@ -62,7 +62,7 @@ _ASKED = {
     "touchdowns": (TOUCHDOWNS, "every landing of the journeys: state in, state out, bed, soil, cost"),
     "rest": ("rest.csv", "where samples end after all bounces"),
     "arcs": ("arcs.csv", "each flight between impacts"),
-    "emulator": ("emulator.json", "samples of landings, at any inputs by their names"),
+    "emulator": ("*emulator.json", "samples of landings, at any inputs by their names"),
     "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
     "median_landing": ("landing.h5", "a landing with its frames"),
     "bed_bodies()": ("beds/bed_0.h5", "the grains of a bed, and how they settled"),
@@ -344,12 +344,21 @@ class StudyResults:
 
     @cached_property
     def emulator(self) -> "NamedEmulator":
-        """The emulator of a drawn study, sampled by the names of its inputs, also at values that were not simulated."""
+        """The emulator of a drawn study, sampled by the names of its inputs, also at values that were not simulated.
+
+        Of a study of journeys that of all their touchdowns. Raises ValueError where these have none.
+        """
         from lithobrake.emulator import load
         from lithobrake.results.named_emulator import NamedEmulator
 
-        path = self._file("emulator.json")
+        is_of_journeys = (self.folder / JOURNEYS).is_file()
+        path = self._file("touchdown_emulator.json" if is_of_journeys else "emulator.json")
+        explorer = self.touchdown_explorer if is_of_journeys else None
+        if is_of_journeys and explorer is None:
+            raise ValueError(f"{self.folder} has no emulator: {self.summary['results']['emulated']['why']}")
         with reading(path, self.remedy):
+            if explorer is not None:
+                return NamedEmulator(load(path), self._units, lambda: explorer.bound, explorer.attitude)
             return NamedEmulator(load(path), self._units, lambda: self.explorer.bound)
 
     @cached_property
@@ -492,7 +501,7 @@ def _html(results: StudyResults) -> str:
 
     from lithobrake.vocabulary.html_table import html_table
 
-    rows = [(name, what) for name, (file, what) in _ASKED.items() if (results.folder / file).exists()]
+    rows = [(name, what) for name, (file, what) in _ASKED.items() if any(results.folder.glob(file))]
     table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)
     if not (results.folder / "summary.json").is_file():
         return f"{table}<p>Not at its end: lithobrake status {escape(shlex.quote(str(results.folder)))}</p>"

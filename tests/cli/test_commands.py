@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from lithobrake import __version__
 from lithobrake.cli import app
+from lithobrake.cli.arguments import EXPERT, EXPORT, LOOK, RUN, START
 from lithobrake.study.known_bodies import known_body
 from lithobrake.study.known_landers import known_lander
 from lithobrake.study.short_study import all_keys, short_study
@@ -25,6 +26,7 @@ def test_help_names_the_commands() -> None:
     assert shown.exit_code == 0
     for name in (
         "new",
+        "examples",
         "plan",
         "run",
         "status",
@@ -41,6 +43,33 @@ def test_help_names_the_commands() -> None:
         "view",
     ):
         assert f" {name} " in shown.stdout
+
+
+def test_help_has_the_commands_in_groups() -> None:
+    shown = RUNNER.invoke(app, ["--help"], env={"COLUMNS": "80"}).stdout
+    places = [shown.index(f" {group} ") for group in (START, RUN, LOOK, EXPORT, EXPERT)]
+    assert places == sorted(places)
+    firsts = [shown.index(f"│ {name} ") for name in ("new", "plan", "report", "export", "rare")]
+    assert all(place < first for place, first in zip(places, firsts, strict=True))
+    assert all(first < place for first, place in zip(firsts, places[1:], strict=False))
+    # No command stands outside of a group.
+    assert "─ Commands ─" not in shown
+    assert max(map(len, shown.splitlines())) <= 80
+
+
+def test_examples_are_listed_and_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    listed = RUNNER.invoke(app, ["examples"]).stdout.splitlines()
+    assert "  quick                     Quick look: CubeSat on Dimorphos" in listed
+    assert max(map(len, listed)) <= 100
+    copied = RUNNER.invoke(app, ["examples", "ball_on_plate"])
+    run_it = "Run it with: lithobrake run ball_on_plate.toml"
+    assert copied.stdout == f"Wrote ball_on_plate.toml, with ball_on_plate.py. {run_it}\n"
+    (tmp_path / "ball_on_plate.toml").write_text("mine")
+    refused = RUNNER.invoke(app, ["examples", "ball_on_plate"])
+    assert (refused.exit_code, (tmp_path / "ball_on_plate.toml").read_text()) == (2, "mine")
+    assert "ball_on_plate.toml exists, and is not replaced" in refused.output
+    assert "did you mean quick?" in RUNNER.invoke(app, ["examples", "quik"]).output
 
 
 @pytest.mark.parametrize("arguments", [["-h"], ["run", "-h"], ["runs", "-h"]])
@@ -169,6 +198,7 @@ def test_a_study_is_refused_before_anything_heavy_is_imported(old: str, new: str
 import atexit, sys
 atexit.register(lambda: print(sorted({heavy} & set(sys.modules))))
 from lithobrake.cli import app
+from lithobrake.cli.arguments import EXPERT, EXPORT, LOOK, RUN, START
 app(["run", sys.argv[1], "--out", sys.argv[2]])
 """
     command = [sys.executable, "-c", code, str(tmp_path / "wrong.toml"), str(tmp_path / "out")]

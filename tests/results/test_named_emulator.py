@@ -8,6 +8,7 @@ import pytest
 from lithobrake import emulator
 from lithobrake.chaos import LogUniform, Uniform
 from lithobrake.results import NamedEmulator
+from lithobrake.results.explorer_tables import ExplorerAttitude
 
 UNITS = {"grain.friction": "-", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
 BOUND = {
@@ -112,6 +113,31 @@ def test_no_sample_leaves_with_more_than_energy_allows_at_its_inputs() -> None:
 def test_inputs_that_do_not_fit_are_refused_by_name(inputs: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         NAMED.sample(inputs, 5)  # type: ignore[arg-type]
+
+
+def test_terms_of_the_attitude_that_are_left_out_are_those_of_random_attitudes() -> None:
+    rng, names = np.random.default_rng(1), ("attitude.upright_z", "attitude.lean_z", "attitude.along_z")
+    x = np.column_stack([rng.uniform(0.2, 0.9, 60), rng.random(60), *rng.uniform(-1.0, 1.0, (2, 60))])
+    terms = {name: Uniform(0.0 if "upright" in name else -1.0, 1.0) for name in names}
+    y = x[:, :1] + rng.random((60, 1))
+    model = emulator.fit(
+        {"grain.friction": Uniform(0.2, 0.9), **terms}, x, y, groups=np.arange(60) // 6, output_names=["penetration"]
+    )
+    law = ExplorerAttitude(names, [[0.0, 0.0, 1.0]], has_sides=False, is_cube=False, sides={})
+    known = NamedEmulator(model, UNITS, attitude=law)
+    table = known.sample({"grain.friction": [0.3, 0.5]}, 4000, seed=2)
+    assert table["grain.friction"].tolist() == [0.3] * 4000 + [0.5] * 4000
+    # Over all rotations: an axis is upright by a third in the mean, and leans neither way.
+    upright, lean, along = (table[name] for name in names)
+    assert np.mean(upright) == pytest.approx(1.0 / 3.0, abs=0.01)
+    assert np.mean(upright**2) == pytest.approx(1.0 / 5.0, abs=0.01)
+    assert (np.mean(lean), np.mean(along)) == pytest.approx((0.0, 0.0), abs=0.02)
+    given = {"grain.friction": 0.3, **dict.fromkeys(names, 0.0)}
+    assert known.sample(given, 3)[names[0]].tolist() == [0.0] * 3
+    with pytest.raises(ValueError, match=r"inputs lack attitude\.along_z; give all of"):
+        known.sample({name: value for name, value in given.items() if name != names[2]}, 3)
+    with pytest.raises(ValueError, match="seed is 'x'"):
+        known.sample({"grain.friction": 0.3}, 3, seed="x")  # type: ignore[arg-type]
 
 
 def test_counts_and_seeds_are_checked() -> None:

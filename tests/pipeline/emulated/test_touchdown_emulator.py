@@ -53,6 +53,16 @@ def rows(results: StudyResults, landers: str) -> list[dict[str, str]]:
     return [row for row in read_rows(results.folder / "emulated.csv", ("landers",), "") if row["landers"] == landers]
 
 
+def test_the_emulator_is_sampled_by_the_names_of_its_inputs(results: StudyResults) -> None:
+    emulator = results.emulator
+    laws = emulator.model.runs.inputs
+    table = emulator.sample({name: law.median for name, law in laws.items()}, 400)
+    assert table.row_count == 400
+    assert table.columns["speed_out"].units == "m/s"
+    assert set(table["outcome"]) <= set(emulator.model.outcome_names)
+    assert "<td>emulator</td>" in results._repr_html_()
+
+
 def test_landers_by_the_emulator_end_as_those_by_landings_do(found: EmulatedJourneys, results: StudyResults) -> None:
     ends = results.results.ends
     assert ends is not None

@@ -8,7 +8,7 @@ from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
-NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "variance", "rebounds")
+NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -45,7 +45,9 @@ def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: St
     assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]
 
 
-def test_a_ball_has_no_sides_to_show(journeys: StudyResults) -> None:
-    for name in ("sides", "tilts"):
-        with pytest.raises(ValueError, match=rf"^plot\.{name} shows sides of the lander, and a ball has none$"):
-            getattr(journeys.plot, name)()
+def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.sides(Figure().subplots())
+    widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
+    assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
+        {name: 100 * one.share for name, one in journeys.results.rest.faces.items()}
+    )
