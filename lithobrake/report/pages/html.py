@@ -42,7 +42,7 @@ def page(title: str, facts: str, content: Content, panels: Mapping[str, Panel], 
 {_contents([section for section, _ in shown])}
 <main>
 {_first_screen(kind, title, facts, content, figures)}
-{"".join(f"{_opening(section)}{inside}</section>{chr(10)}" for section, inside in shown)}{FOOTER}
+{"".join(f"{_opening(section)}{inside}</section>" for section, inside in shown)}{FOOTER}
 </main>
 <script>
 {"".join(own_file(name) for name in scripts)}</script>
@@ -56,7 +56,7 @@ def own_file(name: str) -> str:
     return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
 
 
-def picture(number: str, svg: bytes, alternative: str) -> str:
+def _picture(number: str, svg: bytes, alternative: str) -> str:
     """A picture inside the page that fills the window while its box is ticked.
 
     No second copy of it, and nothing that a browser may block on disk.
@@ -144,7 +144,7 @@ def _panel(number: int | None, panel: Panel) -> str:
     if panel.picture is None or number is None:
         return f'<p class="note"><b>{escape(panel.title)}.</b> {sentence}</p>\n'
     name = f"Figure {number}"
-    shown = picture(name, panel.picture, f"{panel.title}. {panel.sentence}")
+    shown = _picture(name, panel.picture, f"{panel.title}. {panel.sentence}")
     caption = f"<figcaption><b>{name}. {escape(panel.title)}.</b> {sentence}</figcaption>"
     return f'<figure id="figure-{number}">{shown}{caption}</figure>\n'
 

@@ -3,13 +3,13 @@
 import base64
 import io
 from html import escape
-from importlib.resources import files
 
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.figures.track_map import track_map
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_words
+from lithobrake.report.pages.html import own_file
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 
 MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
@@ -21,7 +21,7 @@ def one_journey_page(motion: JourneyMotion) -> str:
     track = motion.track
     shown = list(zip(track.touchdowns, motion.bodies, strict=False))
     title = f"Journey {track.number}"
-    scripts = "".join(_own_file(name) for name in ("pages/page.js", *SCRIPTS, "live/touchdowns.js"))
+    scripts = "".join(own_file(name) for name in ("pages/page.js", *SCRIPTS, "live/touchdowns.js"))
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -29,7 +29,7 @@ def one_journey_page(motion: JourneyMotion) -> str:
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
-{_own_file("pages/style.css")}</style>
+{own_file("pages/style.css")}</style>
 </head>
 <body><main>
 <header>
@@ -48,10 +48,6 @@ def one_journey_page(motion: JourneyMotion) -> str:
 </body>
 </html>
 """
-
-
-def _own_file(name: str) -> str:
-    return files("lithobrake.report").joinpath(name).read_text(encoding="utf-8")
 
 
 def _table(track: JourneyTrack) -> str:
