@@ -1,7 +1,7 @@
 """How often the intervals of a study of journeys hold the truth, on synthetic journeys whose laws are known.
 
     python validation/journey_coverage.py [--studies 1000]
-    python validation/journey_coverage.py --page    the table of docs/estimates.md, from what was made
+    python validation/journey_coverage.py --page    the table of interval_coverage.md, from what was made
 
 A journey has one soil, which acts on all of its touchdowns, and one bed, which it shares with every B-th journey and
 which acts on all of their touchdowns; each touchdown has a place of its own. A touchdown turns the speed by a factor,

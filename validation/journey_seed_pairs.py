@@ -1,7 +1,7 @@
 """Do two studies of journeys that differ in their seed alone say the same? Ten settings, two seeds each.
 
     python validation/journey_seed_pairs.py [--work FOLDER] [--settings 10]
-    python validation/journey_seed_pairs.py --page    the tables of docs/estimates.md, from what was made
+    python validation/journey_seed_pairs.py --page    the tables of interval_coverage.md, from what was made
 
 Each setting changes some keys of scenarios/quick.toml, with 32 journeys on 8 beds of 110 grains. No two studies have a
 seed in common, so none has a bed of another. journey_seed_pairs.csv gets a row a study as it ends; a study that stands

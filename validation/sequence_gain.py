@@ -2,7 +2,7 @@
 
     python validation/sequence_gain.py --repeats 30 --large 20 [--work FOLDER]    real studies, then synthetic ones
     python validation/sequence_gain.py --repeats 0 --large 0                      synthetic ones alone
-    python validation/sequence_gain.py --page                                     the tables of docs/estimates.md
+    python validation/sequence_gain.py --page    the tables of docs/validation/interval_coverage.md
 
 Real: the study of scenarios/first_bounce.toml with 60 landings on 12 beds, one repeat a seed. Each repeat is made twice
 on the same beds: with inputs, impact points, azimuths and attitudes from the sequence, and from independent random
