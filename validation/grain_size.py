@@ -1,4 +1,4 @@
-"""Soil against impact point: how much each moves the rebound, for grains of 1/2 to 1/10 of a lander.
+"""Soil against impact point: how much each moves the rebound, for grains of 1/2 to 1/20 of a lander.
 
     python validation/grain_size.py [--grounds NAME ...] [--work FOLDER] [--out validation]
 
@@ -15,10 +15,10 @@ Writes grain_size_beds.csv, a line for each bed, and grain_size.csv, a line for 
 there already is not done again: delete both to start anew. Beds are kept in the work folder.
 """
 
-import itertools
 import math
 import sys
 import tempfile
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -49,7 +49,10 @@ FLIGHTS, DURATION = 16, 43_200.0
 
 
 class Ground(NamedTuple):
-    """Kind of grain, lander's longest edge over grain, depth [m]; beds, blocks of a way; width over the smallest."""
+    """Kind of grain, lander's longest edge over grain, depth [m]; beds, blocks of a way; width over the smallest.
+
+    paired: blocks on each pair of beds, so that more beds and blocks change none that stand; 0: all are on all beds.
+    """
 
     grain: str
     ratio: float
@@ -57,6 +60,7 @@ class Ground(NamedTuple):
     bed_count: int
     blocks: dict[str, int]
     wider: float = 1.0
+    paired: int = 0
 
 
 # Speed [m/s], incidence [deg].
@@ -68,8 +72,9 @@ GROUNDS = {
     "hulls 2, larger": Ground("hull", 2.0, 0.34, 4, {"steep": 32}, 1.5),
     "spheres 5, larger": Ground("sphere", 5.0, 0.225, 4, {"steep": 32}, 1.5),
     "hulls 5": Ground("hull", 5.0, 0.15, 4, {"steep": 24, "flat": 12}),
-    "spheres 10": Ground("sphere", 10.0, 0.15, 2, {"steep": 4}),
-    "hulls 10": Ground("hull", 10.0, 0.1, 2, {"steep": 8}),
+    "hulls 10": Ground("hull", 10.0, 0.1, 4, {"steep": 12}, paired=8),
+    "spheres 10": Ground("sphere", 10.0, 0.15, 2, {"steep": 4}, paired=4),
+    "hulls 20": Ground("hull", 20.0, 0.06, 2, {"steep": 2}, paired=2),
 }
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "penetration")
 KINDS = dict.fromkeys(("ground", "way", "status"), str) | dict.fromkeys(
@@ -174,16 +179,30 @@ def returns(outcome: Outcome) -> float:
     return float(np.mean(flown.status == "impact"))
 
 
-def landed(ground: Ground, way: str, beds: list[Bed], number: int, key: tuple[int, int, int, int]) -> Row:
-    """Return the row of one landing of a block; key: soil, point, attitude, twin."""
+def bed_of(ground: Ground, number: int, point: int) -> int:
+    """Return the number of the bed that an impact point of a block is on."""
+    if ground.paired:
+        return 2 * (number // ground.paired) + (number + point) % 2
+    return (number + point) % ground.bed_count
+
+
+def landed(ground: Ground, way: str, on: int, poured: Bed, number: int, key: tuple[int, int, int, int]) -> Row:
+    """Return the row of one landing of a block on the bed of that number; key: soil, point, attitude, twin."""
     drawn, (one, point, attitude, twin) = block(number), key
     rock, lander = soil(drawn.soils[one], ground.grain)
-    on = (number + point) % len(beds)
-    x, y = (part * beds[on].width[0] for part in drawn.points[point])
+    x, y = (part * poured.width[0] for part in drawn.points[point])
     given = landing(ground, way, rock, (x + twin * TWIN, y), drawn.attitudes[attitude])
-    outcome, cpu = timed(lambda: land(beds[on], lander, given))
+    outcome, cpu = timed(lambda: land(poured, lander, given))
     row: Row = {"bed": on, "status": outcome.status.value, **{name: outcome.outputs[name] for name in OUTPUTS}}
     return row | {"returns": returns(outcome), "time": outcome.simulated_time, "cpu_s": cpu}
+
+
+def landings_of(ground: Ground) -> Iterator[tuple[str, int, tuple[int, int, int, int]]]:
+    """Yield way, number of the block and key of every landing on a ground."""
+    keys = [(one, point, attitude, 0) for one in (0, 1) for point in (0, 1) for attitude in (0, 1)]
+    keys.insert(1, (0, 0, 0, 1))
+    for way, count in ground.blocks.items():
+        yield from ((way, number, key) for number in range(count) for key in keys)
 
 
 def main() -> None:
@@ -195,13 +214,15 @@ def main() -> None:
     for name in given.grounds:
         ground = GROUNDS[name]
         done = {tuple(row[key] for key in keys) for row in read_rows(table, KINDS)}
-        beds = [bed(name, ground, n, given.work, given.out / "grain_size_beds.csv") for n in range(ground.bed_count)]
-        for way, count in ground.blocks.items():
-            for number, key in itertools.product(range(count), [*itertools.product((0, 1), (0, 1), (0, 1), (0,))]):
-                for one in (key, (0, 0, 0, 1)) if key == (0, 0, 0, 0) else (key,):
-                    if (name, way, number, *one) not in done:
-                        row = dict(zip(keys, (name, way, number, *one), strict=True))
-                        add_row(table, row | landed(ground, way, beds, number, one), 6)
+        beds: dict[int, Bed] = {}
+        for way, number, key in landings_of(ground):
+            if (name, way, number, *key) in done:
+                continue
+            on = bed_of(ground, number, key[1])
+            if on not in beds:
+                beds[on] = bed(name, ground, on, given.work, given.out / "grain_size_beds.csv")
+            row = dict(zip(keys, (name, way, number, *key), strict=True))
+            add_row(table, row | landed(ground, way, on, beds[on], number, key), 6)
         spent = sum(row["cpu_s"] for row in read_rows(table, KINDS))
         write_document(given.out / "grain_size.json", {**origin("validation/grain_size.py"), "cpu_s_of_rows": spent})
         print(name, flush=True)

@@ -142,6 +142,7 @@ def of_steep(found: dict[tuple[str, str], dict[str, Parts]]) -> dict[str, dict[s
 def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
     """Total effects of soil and impact point by ratio: rows of grains, columns of outputs, steep impacts."""
     kinds = {"hull": "hulls", "sphere": "spheres"}
+    ratios = sorted({GROUNDS[name].ratio for name in of_steep(found)})
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.3), layout="constrained", sharey=True, sharex=True)
         for row, (grain, word) in zip(axes, kinds.items(), strict=True):
@@ -153,9 +154,9 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
                     ends = np.array([[max(e.value - e.lower, 0.0), max(e.upper - e.value, 0.0)] for _, e in points]).T
                     axis.errorbar(x, y, ends, color=colour, marker=marker, ms=4.5, capsize=3, lw=1.0, label=label)
                 axis.set_xscale("log")
-                axis.set_xticks([2, 5, 10], ["2", "5", "10"])
+                axis.set_xticks(ratios, [f"{ratio:g}" for ratio in ratios])
                 axis.minorticks_off()
-                axis.set_xlim(1.6, 13)
+                axis.set_xlim(0.8 * ratios[0], 1.3 * ratios[-1])
                 axis.set_ylim(0.0, 1.05)
                 axis.grid(axis="y", color=QUIET, lw=0.2)
                 if grain == "hull":
@@ -270,15 +271,15 @@ LIMITS = """
 ## What this leaves out
 
 - The impact point includes its bed: two impact points of a block lie on two beds where a ground has
-  more than one. Two to four beds a ratio serve all blocks, so intervals hold over soils, impact
-  points and attitudes on these beds, and not fully over beds.
+  more than one. {fewest} to {most} beds a ratio serve all blocks, so intervals hold over soils,
+  impact points and attitudes on these beds, and not fully over beds.
 - All grains of a bed are of one size: boulders among fine grains are impact points of their own.
 - Attitudes are drawn over all rotations. A lander that holds its attitude removes that part.
 - Return fractions are of {flights} flights a landing over {hours:g} h, which is what makes "twins"
   differ there.
 - Few blocks give intervals that are too narrow.
 - Where landers are captured, what is left is of those that leave.
-- A ratio of 20 (12 000 grains and more) costs too much.
+- A ratio of 20 on the smallest ground, 4800 hulls, would take an hour of CPU for two blocks.
 - {missing}
 """
 
@@ -299,7 +300,10 @@ def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
     missing = f"Not run: {', '.join(absent)}." if absent else "All grounds of the script were run."
     made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}."
     spent = sum(row["cpu_s"] for row in (*rows, *beds)) / 60.0
-    limits = LIMITS.format(flights=FLIGHTS, hours=DURATION / 3600.0, missing=missing)
+    counts = Counter(bed["ground"] for bed in beds).values()
+    limits = LIMITS.format(
+        flights=FLIGHTS, hours=DURATION / 3600.0, missing=missing, fewest=min(counts), most=max(counts)
+    )  # fmt: skip
     lines = [HEAD.format(**texts), *part_table(found), TAIL, *landing_table(of, beds), limits]
     return broken("\n".join([*lines, f"{made} {spent:.0f} min of CPU."])) + "\n"
 
