@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, PageTable, Plot, Section, Tile
+from lithobrake.report.content import Content, PageTable, Plot, PageSection, Tile
 from lithobrake.report.figures.difference_figure import ShownDifference, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
@@ -29,8 +29,8 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
     warnings = [words for words in (comparison.note, comparison.why) if words]
     first = sentence(comparison, next(iter(comparison.answers)))
     sections = [
-        Section("Answers", [plot], [_table(comparison)]),
-        Section(
+        PageSection("Answers", [plot], [_table(comparison)]),
+        PageSection(
             "Study files",
             tables=[_settings(comparison)],
             said=[] if comparison.settings else ["They do not differ in any key."],

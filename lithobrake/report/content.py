@@ -64,7 +64,7 @@ class LiveSection:
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A part of the page with an entry in the contents; empty ones are left out.
 
     said: sentences at its beginning; texts: files by title; is_printed: whether it stands on paper too.
@@ -91,7 +91,7 @@ class Content:
     warnings: Sequence[str]
     tiles: Sequence[Tile]
     first: Plot | None
-    sections: Sequence[Section]
+    sections: Sequence[PageSection]
 
     @property
     def plots(self) -> list[Plot]:

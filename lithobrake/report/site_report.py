@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, PageTable, Plot, Section, Tile
+from lithobrake.report.content import Content, PageTable, Plot, PageSection, Tile
 from lithobrake.report.figures.sites_figure import agreement_figure, sites_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
@@ -21,9 +21,9 @@ def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     """Write index.html and its figures into a folder, which is made; returns the page."""
     first = Plot("sites", "Sites", _caption(site_map), lambda: sites_figure(site_map))
     sections = [
-        Section("Sites", tables=[_best(site_map), _table(site_map, site_map.cells, "All sites")]),
+        PageSection("Sites", tables=[_best(site_map), _table(site_map, site_map.cells, "All sites")]),
         *([_of_agreement(site_map)] if site_map.agreement else []),
-        Section("Files", tables=[_provenance()], texts={"The study file": study_text}),
+        PageSection("Files", tables=[_provenance()], texts={"The study file": study_text}),
     ]
     content = Content(site_map.statement, _warnings(site_map), _tiles(site_map), first, sections)
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
@@ -34,13 +34,13 @@ def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     return path
 
 
-def _of_agreement(site_map: SiteMap) -> Section:
+def _of_agreement(site_map: SiteMap) -> PageSection:
     """How the emulator and the study's own landings agree."""
     plot = Plot(
         *("agreement", "Emulator and landings", _agreement_caption(site_map)),
         lambda: agreement_figure(site_map.agreement, site_map.level),
     )
-    return Section("How sure", [plot], [_agreement(site_map)])
+    return PageSection("How sure", [plot], [_agreement(site_map)])
 
 
 def _warnings(site_map: SiteMap) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, Panel, Plot, Section
+from lithobrake.report.content import Content, Panel, Plot, PageSection
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
@@ -43,7 +43,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
         for name in names
     ]
     origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
-    files = Section("Files", tables=origin, texts={"The study file": data.study_text}, is_printed=False)
+    files = PageSection("Files", tables=origin, texts={"The study file": data.study_text}, is_printed=False)
     whole = replace(content, sections=[*content.sections, files])
     panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"

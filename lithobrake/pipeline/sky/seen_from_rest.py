@@ -11,7 +11,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.folder.study_folder import AGAIN
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.sky.where_they_stand import Days, Places, screens, where_it_stands
+from lithobrake.pipeline.sky.where_they_stand import Days, OrbiterPlaces, screens, where_it_stands
 from lithobrake.study import Study
 from lithobrake.study.lander_sides import SIDES
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -76,7 +76,12 @@ def _at_rest(job: Job) -> list[dict[str, float]]:
 
 
 def rows_of(
-    body: "Body", landers: list[dict[str, float]], name: str, stands: Days | Places, mask_deg: float, beam_deg: float
+    body: "Body",
+    landers: list[dict[str, float]],
+    name: str,
+    stands: Days | OrbiterPlaces,
+    mask_deg: float,
+    beam_deg: float,
 ) -> list[list[Any]]:
     """The rows of one body in the sky, in the order of the columns SKY."""
     from lithobrake.smallbody import seen_from
@@ -103,7 +108,7 @@ def rows_of(
     return rows
 
 
-def views(body: "Body", place: np.ndarray, journeys: np.ndarray, stands: Days | Places) -> Iterator[View]:
+def views(body: "Body", place: np.ndarray, journeys: np.ndarray, stands: Days | OrbiterPlaces) -> Iterator[View]:
     """The parts of the time, each day of a body far away, or all of an orbiter's, as places [m], [count, 3], see them.
 
     journeys: which row of its latitudes each place has, [count].
@@ -111,7 +116,7 @@ def views(body: "Body", place: np.ndarray, journeys: np.ndarray, stands: Days | 
     from lithobrake.smallbody import day_directions
     from lithobrake.smallbody.sky import DIRECTIONS
 
-    if isinstance(stands, Places):
+    if isinstance(stands, OrbiterPlaces):
         way = stands.position[None] - place[:, None]
         distance = np.linalg.norm(way, axis=-1)
         (screen,) = screens(body, len(stands.position), 1)

@@ -28,14 +28,14 @@ class Days(NamedTuple):
     latitude: Floats
 
 
-class Places(NamedTuple):
+class OrbiterPlaces(NamedTuple):
     """An orbiter: body-fixed places [m], [place_count, 3], and the part of the time that each stands for."""
 
     position: Floats
     weight: Floats
 
 
-def where_it_stands(study: Study, site: Site, name: SkyBody) -> Days | Places:
+def where_it_stands(study: Study, site: Site, name: SkyBody) -> Days | OrbiterPlaces:
     """Where one of the bodies stands, for all journeys of a study.
 
     Raises ValueError or ImportError where kernels, orbit or states do not tell.
@@ -94,7 +94,7 @@ def _of_kernels(study: Study, target: str, dates: list[datetime]) -> Floats:
     return read_places(study.site.kernels, study.site.kernel_body or study.site.body, target, texts)
 
 
-def _orbiter(study: Study, site: Site) -> Places:
+def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     from lithobrake.smallbody import circle_places
     from lithobrake.smallbody.sky import PLACES
 
@@ -105,13 +105,15 @@ def _orbiter(study: Study, site: Site) -> Places:
         # Each stands for half the time to its neighbours.
         ends = np.concatenate([states.time[:1], 0.5 * (states.time[1:] + states.time[:-1]), states.time[-1:]])
         weight = np.diff(ends)
-        return Places(states.position, weight / weight.sum())
+        return OrbiterPlaces(states.position, weight / weight.sum())
     if orbiter.kernel_name is not None:
-        return Places(_of_kernels(study, orbiter.kernel_name, sky_dates(study, PLACES)), np.full(PLACES, 1.0 / PLACES))
+        return OrbiterPlaces(
+            _of_kernels(study, orbiter.kernel_name, sky_dates(study, PLACES)), np.full(PLACES, 1.0 / PLACES)
+        )
     assert orbiter.altitude is not None
     inclination = 90.0 if orbiter.inclination_deg is None else orbiter.inclination_deg
     place = circle_places(site.body.shape.radius + orbiter.altitude, inclination)
-    return Places(place, np.full(PLACES, 1.0 / PLACES))
+    return OrbiterPlaces(place, np.full(PLACES, 1.0 / PLACES))
 
 
 def screens(body: "Body", count: int, blocks: int) -> "Iterator[Screen | None]":

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, to_rgb
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.ground_map import GroundMap, Panel
+from lithobrake.report.figures.ground_map import GroundMap, MapPanel
 
 Array = NDArray[np.float64]
 # Below this cells would be mostly empty, and each place is a dot.
@@ -24,7 +24,7 @@ def density_colours(colour: str) -> LinearSegmentedColormap:
 
 
 def draw_cells(
-    axes: Axes, ground: GroundMap, places: tuple[Array, Array], panel: Panel | None, norm: LogNorm, colour: str
+    axes: Axes, ground: GroundMap, places: tuple[Array, Array], panel: MapPanel | None, norm: LogNorm, colour: str
 ) -> None:
     """Draw how many places lie in each cell of a panel, or of the half of the body.
 
@@ -36,10 +36,10 @@ def draw_cells(
 
 
 def cell_counts(
-    ground: GroundMap, places: tuple[Array, Array], panel: Panel | None
+    ground: GroundMap, places: tuple[Array, Array], panel: MapPanel | None
 ) -> tuple[Array, tuple[Array, Array], float]:
     """Counts in cells [CELLS, CELLS], the edges of these east and north [m], and the width of a cell [m]."""
-    shown = panel or Panel(0.0, 0.0, ground.edge)
+    shown = panel or MapPanel(0.0, 0.0, ground.edge)
     seen = ground.facing(*places) >= 0.0
     east, north = ground.places(*(one[seen] for one in places))
     edges = np.linspace(-shown.half, shown.half, CELLS + 1)

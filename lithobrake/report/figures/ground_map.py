@@ -72,7 +72,7 @@ class GroundMap:
 
 
 @dataclass(frozen=True)
-class Panel:
+class MapPanel:
     """A square part of a map: its middle [m east and north] and half of its width [m]."""
 
     east: float
@@ -88,7 +88,7 @@ class Panel:
 MARGIN, WIDEST = 1.12, 0.7
 
 
-def panel_around(ground: GroundMap, lines: Sequence[tuple[Array, Array]]) -> Panel | None:
+def panel_around(ground: GroundMap, lines: Sequence[tuple[Array, Array]]) -> MapPanel | None:
     """The panel that holds the middle and these latitudes and longitudes [deg]; None where they lie too far apart."""
     latitude, longitude = (np.concatenate([np.array([middle]), *parts]) for middle, parts in zip(
         (ground.latitude, ground.longitude), zip(*lines, strict=True) if lines else ((), ()), strict=True
@@ -98,7 +98,7 @@ def panel_around(ground: GroundMap, lines: Sequence[tuple[Array, Array]]) -> Pan
     east, north = ground.places(latitude, longitude)
     half = MARGIN * 0.5 * max(float(np.ptp(east)), float(np.ptp(north)), 1e-6 * ground.radius)
     middle = 0.5 * float(east.min() + east.max()), 0.5 * float(north.min() + north.max())
-    return Panel(*middle, half) if half < WIDEST * ground.edge else None
+    return MapPanel(*middle, half) if half < WIDEST * ground.edge else None
 
 
 def step_of(width_deg: float) -> float:

@@ -9,7 +9,7 @@ from matplotlib.patches import Circle, Rectangle
 from matplotlib.patheffects import Normal, Stroke
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.ground_map import LINE_POINTS, GroundMap, Panel, round_length, step_of
+from lithobrake.report.figures.ground_map import LINE_POINTS, GroundMap, MapPanel, round_length, step_of
 from lithobrake.report.figures.style import INK, QUIET, RULE, WASH
 
 Array = NDArray[np.float64]
@@ -20,7 +20,7 @@ WORDS: dict[str, Any] = {"fontsize": 7, "color": QUIET, "path_effects": RIM, "zo
 LINE: dict[str, Any] = {"color": RULE, "linewidth": 0.6, "zorder": 1}
 
 
-def frame_local(axes: Axes, ground: GroundMap, panel: Panel) -> None:
+def frame_local(axes: Axes, ground: GroundMap, panel: MapPanel) -> None:
     """A panel in metres from the middle of its map, with the lines of latitude and longitude that cross it."""
     axes.set_xlim(panel.east - panel.half, panel.east + panel.half)
     axes.set_ylim(panel.north - panel.half, panel.north + panel.half)
@@ -69,7 +69,7 @@ def _multiples(low: float, high: float, step: float) -> Array:
     return step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1.0)
 
 
-def _leaves(x: Array, y: Array, panel: Panel) -> tuple[float, float, bool] | None:
+def _leaves(x: Array, y: Array, panel: MapPanel) -> tuple[float, float, bool] | None:
     """Where a line meets the left edge of a panel, or else its lower one: place, and whether it is the left one."""
     for is_left, along, across, edge, middle in (
         (True, x, y, panel.east - panel.half, panel.north),
@@ -86,7 +86,7 @@ def _leaves(x: Array, y: Array, panel: Panel) -> tuple[float, float, bool] | Non
     return None
 
 
-def _poles(axes: Axes, ground: GroundMap, panel: Panel | None) -> None:
+def _poles(axes: Axes, ground: GroundMap, panel: MapPanel | None) -> None:
     """Both poles as points, as far as they lie on this side of the body, and within a panel."""
     for latitude, name in ((90.0, "N"), (-90.0, "S")):
         at = np.array([latitude]), np.array([0.0])

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.density import MANY, cell_counts, density_colours, density_norm, draw_cells
-from lithobrake.report.figures.ground_map import GroundMap, Panel, panel_around
+from lithobrake.report.figures.ground_map import GroundMap, MapPanel, panel_around
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
 from lithobrake.report.figures.map_marks import SITE_STYLE, draw_edges, fill_regions, mark_site, region_style
 from lithobrake.report.figures.shares import Share, draw_shares
@@ -69,7 +69,7 @@ class PlaceMap:
         """The map about the aim point."""
         return GroundMap(*self.aim, self.radius)
 
-    def panel(self) -> Panel | None:
+    def panel(self) -> MapPanel | None:
         """The part of it that holds the regions, or the landers where there are none; None where they lie apart."""
         lines = [np.array(line).T for one in self.regions for region in one.found for line in region.outlines]
         if not (self.regions and self.regions[0].found):
@@ -112,7 +112,7 @@ def whole_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
     return figure
 
 
-def draw_local(axes: Axes, shown: PlaceMap, panel: Panel, norm: LogNorm) -> None:
+def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> None:
     """Draw a part of the map about the aim point with its frame."""
     ground, outside = shown.ground, 0
     for place, one in enumerate(shown.regions):
@@ -137,14 +137,14 @@ def draw_scale(figure: Figure, axes: Axes, many: Places, norm: LogNorm, width: f
     outline.set_visible(False)
 
 
-def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: Panel | None) -> LogNorm:
+def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: MapPanel | None) -> LogNorm:
     """One scale for the counts of all maps of a figure."""
     return density_norm([
         cell_counts(ground, (one.latitude, one.longitude), panel)[0] for ground in grounds for one in shown.places
     ])  # fmt: skip
 
 
-def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: Panel | None, norm: LogNorm) -> int:
+def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: MapPanel | None, norm: LogNorm) -> int:
     """Draw places as dots, or many of them as counts in cells; returns how many lie outside of the panel."""
     seen = ground.facing(places.latitude, places.longitude) >= 0.0
     east, north = ground.places(places.latitude[seen], places.longitude[seen])

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, Section
+from lithobrake.report.content import Content, Plot, PageSection
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.rare_figure import rare_figure
@@ -37,10 +37,10 @@ def drawn_content(data: DrawnPage) -> Content:
     samples = Plot("outputs", "What may come out", drawn_captions.samples(data), lambda: _samples(data))
     sections = [
         any_study.where(data),
-        Section("When", tables=time_tables(data)),
-        Section("Why", [landings["variance"], *_options(data)], tables.why_tables(data)),
-        Section("How sure", _sure(data), tables.sure_tables(data)),
-        Section("Method", [landings["runs"], samples, landings["landing"]], tables.method_tables(data), live),
+        PageSection("When", tables=time_tables(data)),
+        PageSection("Why", [landings["variance"], *_options(data)], tables.why_tables(data)),
+        PageSection("How sure", _sure(data), tables.sure_tables(data)),
+        PageSection("Method", [landings["runs"], samples, landings["landing"]], tables.method_tables(data), live),
         any_study.appendix(data),
     ]
     return Content(captions.answer(data), warnings(data), tables.tiles(data), any_study.first_map(data), sections)

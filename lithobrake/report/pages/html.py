@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 
-from lithobrake.report.content import Content, LiveSection, PageTable, Panel, Section, Tile
+from lithobrake.report.content import Content, LiveSection, PageTable, Panel, PageSection, Tile
 from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 
 # More rows or lines than this do not fit on a screen of a phone.
@@ -98,21 +98,21 @@ def _warnings(warnings: Sequence[str]) -> str:
     return f'<details class="warnings"><summary>{len(warnings)} warnings</summary>{text}</details>\n'
 
 
-def _contents(sections: Sequence[Section]) -> str:
+def _contents(sections: Sequence[PageSection]) -> str:
     links = [f'<a href="#{_anchor(one)}">{escape(one.title)}</a>' for one in sections]
     return f'<nav aria-label="Contents"><a href="#answer">Answer</a> {" ".join(links)}</nav>' if links else ""
 
 
-def _anchor(section: Section) -> str:
+def _anchor(section: PageSection) -> str:
     return re.sub(r"[^a-z0-9]+", "-", section.title.lower()).strip("-")
 
 
-def _opening(section: Section) -> str:
+def _opening(section: PageSection) -> str:
     kind = "" if section.is_printed else ' class="screen"'
     return f'<section id="{_anchor(section)}"{kind}>\n<h2>{escape(section.title)}</h2>\n'
 
 
-def _section(section: Section, figures: Mapping[str, str]) -> str:
+def _section(section: PageSection, figures: Mapping[str, str]) -> str:
     """What stands under the heading of a section; nothing for an empty one."""
     said = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.said)
     shown = "".join(figures.get(plot.name, "") for plot in section.plots)

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, Section
+from lithobrake.report.content import Content, Plot, PageSection
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, places_by_end, whole_figure
@@ -42,23 +42,23 @@ def journey_content(data: JourneyPage) -> Content:
     return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
 
 
-def _where(data: JourneyPage) -> Section:
+def _where(data: JourneyPage) -> PageSection:
     plots = [
         Plot("whole", "All ends, and the whole body", words.whole_map(data), lambda: _draw_whole(data)),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
     ]
-    return Section("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
+    return PageSection("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
 
 
-def _when(data: JourneyPage) -> Section:
+def _when(data: JourneyPage) -> PageSection:
     plots = [
         Plot("times", "Time to rest and distance", words.times(data), lambda: _draw_times(data)),
         Plot("counts", "Touchdowns and contacts", words.counts(data), lambda: _draw_counts(data)),
     ]
-    return Section("When", plots, tables.time_tables(data))
+    return PageSection("When", plots, tables.time_tables(data))
 
 
-def _why(data: JourneyPage) -> Section:
+def _why(data: JourneyPage) -> PageSection:
     """The parts of the variance, the sides of the lander, and the delivery options, as far as they are known."""
     aim, variance = data.results.aim, _of_landings(data)["variance"]
     first = Plot("variance", "The same of the first touchdown", words.first_variance(data), variance.draw)
@@ -68,27 +68,27 @@ def _why(data: JourneyPage) -> Section:
     ]
     if aim is not None:
         plots.append(Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim)))
-    return Section("Why", plots, tables.side_tables(data))
+    return PageSection("Why", plots, tables.side_tables(data))
 
 
-def _sure(data: JourneyPage) -> Section:
-    return Section("How sure", tables=tables.sure_tables(data))
+def _sure(data: JourneyPage) -> PageSection:
+    return PageSection("How sure", tables=tables.sure_tables(data))
 
 
-def _method(data: JourneyPage) -> Section:
+def _method(data: JourneyPage) -> PageSection:
     """A touchdown and what the first ones gave, and what a reader can try."""
     found = _of_landings(data)
     plots = [
         Plot(name, title, words.of_first_touchdown(found[name].sentence), found[name].draw)
         for name, title in OF_FIRST.items()
     ]
-    return Section("Method", plots, site_tables(data), [*landing_views(data), *touchdown_sections(data)])
+    return PageSection("Method", plots, site_tables(data), [*landing_views(data), *touchdown_sections(data)])
 
 
-def _appendix(data: JourneyPage) -> Section:
+def _appendix(data: JourneyPage) -> PageSection:
     """How the ground was poured, and the tables of the first touchdowns."""
     plots = [Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))]
-    return Section(
+    return PageSection(
         "Appendix",
         plots,
         tables.first_tables(

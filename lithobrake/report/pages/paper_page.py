@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, Section
+from lithobrake.report.content import Content, Plot, PageSection
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
@@ -35,10 +35,10 @@ def paper_content(data: PaperPage) -> Content:
     live = [*landing_views(data), *explorer_sections(data)]
     sections = [
         any_study.where(data),
-        Section("When", tables=time_tables(data)),
-        Section("Why", why, tables.why_tables(data)),
-        Section("How sure", sure, tables.sure_tables(data)),
-        Section("Method", method, tables.method_tables(data), live),
+        PageSection("When", tables=time_tables(data)),
+        PageSection("Why", why, tables.why_tables(data)),
+        PageSection("How sure", sure, tables.sure_tables(data)),
+        PageSection("Method", method, tables.method_tables(data), live),
         any_study.appendix(data),
     ]
     return Content(captions.answer(data), [], tables.tiles(data), any_study.first_map(data), sections)

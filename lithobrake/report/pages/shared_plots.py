@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Plot, Section
+from lithobrake.report.content import Plot, PageSection
 from lithobrake.report.figures.bed_figure import bed_figure
 from lithobrake.report.figures.body_figure import body_figure
 from lithobrake.report.figures.hulls import scene
@@ -49,20 +49,20 @@ def first_map(data: SampledPage) -> Plot:
     return Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: draw_impacts(data))
 
 
-def where(data: SampledPage) -> Section:
+def where(data: SampledPage) -> PageSection:
     """Where landers come down and where they rest."""
     plots = [
         Plot("whole", "All outcomes, and the whole body", captions.whole_map(data), lambda: draw_whole(data)),
         Plot("body", "The same on the body", captions.body(data), lambda: draw_body(data)),
         Plot("rest", "Where it rests", captions.rest(data), lambda: draw_rest(data)),
     ]
-    return Section("Where", plots, place_tables(data), body_views(data), captions.details(data))
+    return PageSection("Where", plots, place_tables(data), body_views(data), captions.details(data))
 
 
-def appendix(data: PageData) -> Section:
+def appendix(data: PageData) -> PageSection:
     """How the ground was poured."""
     plots = [Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))]
-    return Section("Appendix", plots, site_tables(data), is_printed=False)
+    return PageSection("Appendix", plots, site_tables(data), is_printed=False)
 
 
 def draw_bed(data: PageData) -> "Figure | None":

@@ -9,7 +9,7 @@ from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
 
 from lithobrake.report.figures.density import cell_counts, density_norm, draw_cells
-from lithobrake.report.figures.ground_map import GroundMap, Panel, panel_around, step_of
+from lithobrake.report.figures.ground_map import GroundMap, MapPanel, panel_around, step_of
 from lithobrake.report.figures.map_frames import degrees, frame_half, frame_local
 from lithobrake.report.figures.map_marks import mark_site
 from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, whole_figure
@@ -82,7 +82,7 @@ def test_a_graticule_has_some_four_round_steps() -> None:
 
 def test_a_pole_is_a_point_where_it_lies() -> None:
     axes, ground = Figure().add_subplot(), GroundMap(85.0, 0.0, 100.0)
-    frame_local(axes, ground, Panel(0.0, 0.0, 30.0))
+    frame_local(axes, ground, MapPanel(0.0, 0.0, 30.0))
     named = {text.get_text(): text.xy for text in axes.texts if hasattr(text, "xy")}
     assert named["N"] == pytest.approx((0.0, 200.0 * np.sin(np.radians(2.5))))
     assert "S" not in named
@@ -136,7 +136,7 @@ def test_no_place_of_many_is_lost_in_the_cells_of_both_halves() -> None:
 
 def test_the_mark_of_the_aim_point_leaves_the_densest_place_in_sight() -> None:
     random = np.random.default_rng(9)
-    ground, panel = GroundMap(10.0, 20.0, 80.0), Panel(0.0, 0.0, 20.0)
+    ground, panel = GroundMap(10.0, 20.0, 80.0), MapPanel(0.0, 0.0, 20.0)
     # The peak of the density lies right at the aim point.
     places = [np.append(random.normal(middle, 3.0, 2000), np.full(500, middle)) for middle in (10.0, 20.0)]
     figure = Figure(figsize=(4.0, 4.0))

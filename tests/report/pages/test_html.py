@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.content import Content, PageTable, Panel, Plot, Section, Tile
+from lithobrake.report.content import Content, PageTable, Panel, Plot, PageSection, Tile
 from lithobrake.report.pages.html import LONG, page
 from lithobrake.report.words.numbers import area, flat, number, show, unit_scales
 from lithobrake.vocabulary.fate_colours import FATE_COLOURS
@@ -19,9 +19,9 @@ def example() -> str:
     errors = PageTable("Errors", ["output", "MAPE"], [["V+", "1.2 %"]], numbers=frozenset({"MAPE"}))
     versions = PageTable("Versions", ["name", "value"], [["lithobrake", "0.1.0"]])
     sections = [
-        Section("How sure", [drawn("landing", "Landing", "No landing was kept.")], [errors]),
-        Section("Nothing", [drawn("none", "None", "")], [PageTable("Empty", ["a"], [], "Of nothing.")]),
-        Section("Files", tables=[versions], texts={"The study file": 'title = "<one>"'}, is_printed=False),
+        PageSection("How sure", [drawn("landing", "Landing", "No landing was kept.")], [errors]),
+        PageSection("Nothing", [drawn("none", "None", "")], [PageTable("Empty", ["a"], [], "Of nothing.")]),
+        PageSection("Files", tables=[versions], texts={"The study file": 'title = "<one>"'}, is_printed=False),
     ]
     tile = Tile("48.3", "%", "re-impact", "impact")
     bed = drawn("bed", "Bed", 'A "bed" of 3 grains.')
@@ -32,7 +32,7 @@ def example() -> str:
 
 def folds(tables: list[PageTable]) -> list[str]:
     """The parts of a page that can be folded, opening tag first."""
-    section = Section("Tables", tables=tables, texts={"The study file": ""})
+    section = PageSection("Tables", tables=tables, texts={"The study file": ""})
     text = page("Study", "", Content("", [], [], None, [section]), {})
     return re.findall(r"<details.*?</details>", text, flags=re.DOTALL)
 
