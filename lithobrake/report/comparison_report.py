@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, PageTable, Plot, PageSection, Tile
+from lithobrake.report.content import Content, PageSection, PageTable, Plot, Tile
 from lithobrake.report.figures.difference_figure import ShownDifference, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, PageTable, Plot, PageSection, Tile
+from lithobrake.report.content import Content, PageSection, PageTable, Plot, Tile
 from lithobrake.report.figures.sites_figure import agreement_figure, sites_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.report.content import Content, Panel, Plot, PageSection
+from lithobrake.report.content import Content, PageSection, Panel, Plot
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content

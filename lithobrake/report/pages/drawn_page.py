@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, PageSection
+from lithobrake.report.content import Content, PageSection, Plot
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.rare_figure import rare_figure

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from importlib.resources import files
 
-from lithobrake.report.content import Content, LiveSection, PageTable, Panel, PageSection, Tile
+from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Tile
 from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 
 # More rows or lines than this do not fit on a screen of a phone.

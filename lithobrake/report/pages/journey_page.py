@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, PageSection
+from lithobrake.report.content import Content, PageSection, Plot
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, places_by_end, whole_figure

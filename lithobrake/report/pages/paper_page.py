@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Content, Plot, PageSection
+from lithobrake.report.content import Content, PageSection, Plot
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.error_figure import error_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.report.content import Plot, PageSection
+from lithobrake.report.content import PageSection, Plot
 from lithobrake.report.figures.bed_figure import bed_figure
 from lithobrake.report.figures.body_figure import body_figure
 from lithobrake.report.figures.hulls import scene

@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.content import Content, PageTable, Panel, Plot, PageSection, Tile
+from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot, Tile
 from lithobrake.report.pages.html import LONG, page
 from lithobrake.report.words.numbers import area, flat, number, show, unit_scales
 from lithobrake.vocabulary.fate_colours import FATE_COLOURS
