@@ -41,7 +41,9 @@ class SiteGround:
         here = felt(job.site.body, points, time, columns["mass"], columns["spin_period"])
         strength = np.linalg.norm(here, axis=1)
         slope = np.degrees(np.arccos(np.clip(-(here * up).sum(axis=1) / strength, -1.0, 1.0)))
-        light: dict[str, np.ndarray] = {name: _seen(job, name, points, up, random).reshape(-1, PLACES) for name in job.study.sky.bodies}
+        light: dict[str, np.ndarray] = {
+            name: _seen(job, name, points, up, random).reshape(-1, PLACES) for name in job.study.sky.bodies
+        }
         return cls(slope.reshape(-1, PLACES), strength.reshape(-1, PLACES), light)
 
 
