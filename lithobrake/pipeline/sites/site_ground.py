@@ -67,4 +67,5 @@ def _seen(
         job.progress(first, len(points), f"{name} over the sites")
         part = slice(first, first + PLACES)
         found[part] = seen_over_a_day(shape, points[part], up[part], over[part], mask).mean(axis=1)
+    job.progress(len(points), len(points), f"{name} over the sites")
     return found
