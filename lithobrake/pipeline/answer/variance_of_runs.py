@@ -58,7 +58,7 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
     flown = [name for name in FLOWN if job.design.is_flown and np.ptp(runs.inputs[name]) > 0.0]
     told = {name: Empirical(runs.inputs[name].tolist()) for name in flown}
     values = dict(runs.inputs)
-    if job.study.site.roughness_deg and not job.design.is_flown:
+    if job.design.study.site.roughness_deg and not job.design.is_flown:
         # Seen from the ground that each lander meets, its impact has another distribution than the study gives.
         drawn = job.design.delivered_rows
         values |= {name: np.array([row[name] for row in drawn]) for name in job.design.soil_inputs}

@@ -73,4 +73,5 @@ def _seen(job: Job, name: SkyBody, points: np.ndarray, up: np.ndarray, random: n
             @ view.weight
             for view in views(body, points[here], here, stands)
         )
+    job.progress(len(points), len(points), f"{name} over the sites")
     return found
