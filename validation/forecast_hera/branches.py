@@ -31,14 +31,25 @@ ROTATIONS: dict[str, dict[str, Any] | None] = {
 }
 FEWEST_BEDS, LANDERS_A_BED = 12, 3
 STUDY = dict[str, Any]
+# Four booms of 1.5 m [ESA-2024] along the longer edges, 50 g each, rigid; and the ground that they need.
+BOOMS: STUDY = {
+    "bed.width": [4.3, 4.3], "bed.grain_count": 1040,
+    **{
+        f"lander.part.boom_{side}": {"shape": "box", "edges": edges, "centre": centre, "mass": 0.05}
+        for side, edges, centre in (
+            ("front", [1.5, 0.01, 0.01], [0.935, 0.0, 0.0]), ("back", [1.5, 0.01, 0.01], [-0.935, 0.0, 0.0]),
+            ("left", [0.01, 1.5, 0.01], [0.0, 0.865, 0.0]), ("right", [0.01, 1.5, 0.01], [0.0, -0.865, 0.0]),
+        )
+    },
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Branch:
     """A lander on one Dimorphos by one descent.
 
-    weight: of the lander's branches; 0: beside the forecast, to see what it changes. changes: by dotted key; None
-    takes a key away.
+    weight: of the lander's branches; 0: beside the forecast, with so many `landers`, to see what it changes. changes:
+    by dotted key; None takes a key away.
     """
 
     lander: str
@@ -48,6 +59,7 @@ class Branch:
     weight: float
     changes: Mapping[str, Any] = field(default_factory=dict)
     variant: str = ""
+    landers: int = 0
 
     @property
     def name(self) -> str:
@@ -62,11 +74,12 @@ class Branch:
     def tables(self, landers: int) -> STUDY:
         """The tables of its study, with its part of so many landers of all branches, three on each bed."""
         tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
+        count = self.landers or round(self.weight * landers)
         changes = {
             **self.changes, "title": f"{tables['title']}: {self.name}",
             # Every answer is of simulated landings.
-            "journey.emulated_count": 0, "journey.count": round(self.weight * landers),
-            "bed.bed_count": max(FEWEST_BEDS, round(self.weight * landers / LANDERS_A_BED)),
+            "journey.emulated_count": 0, "journey.count": count,
+            "bed.bed_count": max(FEWEST_BEDS, round(count / LANDERS_A_BED)),
         }  # fmt: skip
         return changed(tables, changes)
 
@@ -109,6 +122,11 @@ def branches(lander: str) -> tuple[Branch, ...]:
             Branch(lander, "small libration", "ballistic", aim, SMALL / 4.0, small | ballistic(lander, longitude))
         )
         found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
+    if lander == "juventas":
+        near = {"delivery.longitude_deg": AIMS["near end"]} | turning("small libration") | BOOMS
+        found.append(
+            Branch(lander, "small libration", "at the surface", "near end", 0.0, near, "four booms", FEWEST_BEDS)
+        )
     anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
     found.append(Branch(lander, "tumbling", "at the surface", "", TUMBLING, anywhere | turning("tumbling")))
     return tuple(found)
