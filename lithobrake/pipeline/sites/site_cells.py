@@ -48,7 +48,10 @@ def site_cells(
 
 
 def all_at_rest(landers: SiteLanders, fitted: Refits) -> ShareInterval | None:
-    """Landers at rest over all cells that are answered, as large as each other; None where none is."""
+    """Landers at rest over all cells that are answered, as large as each other; None where none is.
+
+    All cells have the same landers, so their number counts in full between the refits, and bounds are wide.
+    """
     answered = (landers.end == UNKNOWN_END).mean(axis=1) <= MOST_UNKNOWN
     if not answered.any():
         return None
