@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from branches import LANDERS, SCENARIOS, branches
 from forecast import FIRST, HERE, KINDS, TABLE, digest, package_files
+from scipy.stats import rankdata
 
 from lithobrake.analysis.highest_density import highest_density
 from lithobrake.study.touchdown_model import touchdown_version
@@ -183,44 +184,58 @@ def regions(of: Sample) -> list[dict[str, Any]]:
 
 
 def what_decides(of: Sample) -> list[dict[str, Any]]:
-    """For each uncertain number: share at rest, and median time to rest, in its lower and its upper third.
+    """How each uncertain number goes with the end, the time to rest and the first rebound of landers that touch down.
 
-    Thirds are taken within branches. Only numbers that vary in every branch.
+    Rank correlations, within branches; their intervals resample beds.
     """
-    rests = of.column("end") == "at_rest"
+    down = np.isfinite(of.column("speed"))
+    landed = Sample([row for row, one in zip(of.rows, down, strict=True) if one], of.branch[down], of.weight[down])
+    rests = landed.column("end") == "at_rest"
+    outcomes = {
+        "time_s": (landed.column("time_s"), rests),
+        "first_speed_ratio": (landed.column("first_speed_ratio"), down[down]),
+    }
     found = []
     for name in INPUTS:
-        values, thirds = of.column(name), np.full(len(of.rows), 1)
-        for branch in np.unique(of.branch):
-            here = of.branch == branch
-            if not np.isfinite(values[here]).all() or np.ptp(values[here]) == 0.0:
-                break
-            rank = np.argsort(np.argsort(values[here]))
-            thirds[here] = np.minimum(3 * rank // here.sum(), 2)
-        else:
-            found.append({"input": name, **contrast(of, rests, thirds)})
+        values = landed.column(name)
+        lower, upper = (values < np.median(values)), (values >= np.median(values))
+        found.append(
+            {
+                "input": name, "landers": len(values),
+                "at_rest_lower_half": float(rests[lower].mean()), "at_rest_upper_half": float(rests[upper].mean()),
+                **{key: rank_correlation(landed, values, *one) for key, one in outcomes.items()},
+            }
+        )  # fmt: skip
     return found
 
 
-def contrast(of: Sample, rests: np.ndarray, thirds: np.ndarray) -> dict[str, Any]:
-    """Shares at rest in the lower and upper third, their difference with an interval, and median times [s]."""
-    share, variance, medians = [], 0.0, []
-    for third in (0, 2):
-        here = thirds == third
-        weight = of.weight[here] / of.weight[here].sum()
-        one = float((weight * rests[here]).sum())
-        # A lander on either side keeps the error of a share next to 0 or 1 above 0.
-        smoothed = (one * here.sum() + 1.0) / (here.sum() + 2.0)
-        share.append(one)
-        variance += smoothed * (1.0 - smoothed) * float((weight**2).sum()) * design_effect(of, here)
-        chosen = here & rests
-        medians.append(float(quantiles(of.column("time_s")[chosen], of.weight[chosen])[2]) if chosen.any() else None)
-    gap = share[1] - share[0]
-    half = 1.645 * variance**0.5
-    return {
-        "at_rest_lower_third": share[0], "at_rest_upper_third": share[1], "difference": gap,
-        "difference_lower": gap - half, "difference_upper": gap + half, "median_time_s": medians,
-    }  # fmt: skip
+def rank_correlation(of: Sample, one: np.ndarray, other: np.ndarray, chosen: np.ndarray) -> dict[str, float]:
+    """Spearman's correlation of two numbers of chosen landers, ranked within branches, with an interval of 90 %."""
+    first, second, beds = one[chosen], other[chosen], (of.column("bed") + 1000 * of.branch)[chosen]
+    branch, random = of.branch[chosen], np.random.default_rng(SEED)
+    ranks = [within(values, branch) for values in (first, second)]
+    members = [np.flatnonzero(beds == bed) for bed in np.unique(beds)]
+    draws = []
+    for _ in range(500):
+        rows = np.concatenate([members[k] for k in random.integers(len(members), size=len(members))])
+        draws.append(np.corrcoef(ranks[0][rows], ranks[1][rows])[0, 1])
+    lower, upper = np.quantile(draws, (0.05, 0.95))
+    return {"value": float(np.corrcoef(*ranks)[0, 1]), "lower": float(lower), "upper": float(upper)}
+
+
+def within(values: np.ndarray, branch: np.ndarray) -> np.ndarray:
+    """Ranks of values among those of their branch, less their mean, over how many there are."""
+    found = np.zeros(len(values))
+    for one in np.unique(branch):
+        here = branch == one
+        found[here] = (rankdata(values[here]) - 0.5 * (here.sum() + 1.0)) / here.sum()
+    return found
+
+
+def touched_down(of: Sample) -> dict[str, int]:
+    """How many landers touched down on Dimorphos, and how many of these came to rest there."""
+    down = np.isfinite(of.column("speed"))
+    return {"landers": int(down.sum()), "at_rest": int((of.column("end")[down] == "at_rest").sum())}
 
 
 def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
@@ -250,6 +265,7 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
         scored[name] = [float(one) for one in shares(resting, name, given)[0]]
     return {
         "landers": len(of.rows),
+        "touched_down": touched_down(of),
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
         "regions": regions(resting),

@@ -34,8 +34,9 @@ Chance of each side being down, of the landers at rest. Axes of the boxes as in 
 """,
     "decides": """## What decides it
 
-Share at rest among the landers with the lowest and highest third of each uncertain number, within branches, and median
-time to rest there. A difference whose interval holds 0 is not shown to be one.
+Of the landers that touch down: the share at rest in the lower and upper half of each uncertain number, and
+its rank correlation (within branches, 90 % interval over beds) with the time to rest and with the first rebound
+speed over impact speed. An interval that holds 0 shows no connection.
 """,
     "branches": """## By branch
 

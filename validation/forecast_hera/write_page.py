@@ -116,16 +116,17 @@ def branches_table(landers: Answers) -> str:
 
 
 def decides_table(landers: Answers) -> str:
-    """What moves the share at rest and the time to rest."""
+    """What goes with the end, the time to rest and the first rebound."""
     rows = []
     for name in landers:
-        for one in sorted(landers[name]["soil"]["what_decides"], key=lambda one: -abs(one["difference"])):
-            times = [f"{value / 60.0:.0f}" if value is not None else "-" for value in one["median_time_s"]]
-            low, gap, high = (100 * one[f"difference{end}"] for end in ("_lower", "", "_upper"))
-            shares = [f"{one[f'at_rest_{third}_third']:.0%}" for third in ("lower", "upper")]
-            words = f"{gap:+.0f} ({low:+.0f} to {high:+.0f})"
-            rows.append([name.capitalize(), INPUT_WORDS[one["input"]], *shares, words, " to ".join(times)])
-    head = ("lander", "input", "at rest, lower third", "upper third", "difference [points]", "median minutes to rest")
+        for one in sorted(landers[name]["soil"]["what_decides"], key=lambda one: -abs(one["time_s"]["value"])):
+            halves = f"{one['at_rest_lower_half']:.0%}, {one['at_rest_upper_half']:.0%}"
+            ranks = [
+                f"{found['value']:+.2f} ({found['lower']:+.2f} to {found['upper']:+.2f})"
+                for found in (one["time_s"], one["first_speed_ratio"])
+            ]
+            rows.append([name.capitalize(), INPUT_WORDS[one["input"]], halves, *ranks])
+    head = ("lander", "input", "at rest: lower, upper half", "time to rest", "first speed ratio")
     return table(head, rows)
 
 
@@ -164,7 +165,15 @@ def digests_table(digests: dict[str, Any]) -> str:
 def first_line(landers: Answers) -> str:
     """The answer."""
     said = [f"{name.capitalize()} with {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
-    return f"They come to rest on Dimorphos: {', '.join(said)} (90 % intervals)."
+    hits = [
+        f"{of['soil']['touched_down']['at_rest']} of the {of['soil']['touched_down']['landers']} landers of "
+        f"{name.capitalize()}"
+        for name, of in landers.items()
+    ]
+    return (
+        f"They come to rest on Dimorphos: {', '.join(said)} (90 % intervals). Of those that touch down at all, "
+        f"{' and '.join(hits)} do."
+    )
 
 
 def page(document: dict[str, Any]) -> str:
