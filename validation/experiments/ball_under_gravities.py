@@ -4,8 +4,8 @@
 
 The beads are of one modulus under every gravity and settle anew under each, so that no similarity makes the answer.
 Stiffer beads repeat the fast drops under Earth's gravity. Beads that pull on each other settle under Earth's gravity,
-most of which is then taken off, as in [Murdoch-2017]; two speeds meet them under two gravities. Froude number: speed at
-the first touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not run again.
+most of which is then taken off; balls at two speeds meet them under two gravities. Froude number: speed at the first
+touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not run again.
 
 Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the
 speed and no gravity).
@@ -59,7 +59,7 @@ KINDS = {
     "plain": Kind(BED, tuple(itertools.product(SHARES, FROUDE))),
     "stiffer": Kind(STIFF, ((1.0, 2.5), (1.0, 6.0))),
     # 0.157 and 0.626 m/s under both.
-    "pulling": Kind(PULLING, ((0.1, 0.5), (0.1, 2.0), (0.025, 1.0), (0.025, 4.0)), eased=True),
+    "pulling": Kind(PULLING, ((0.1, 0.5), (0.1, 2.0), (0.025, 4.0), (0.025, 1.0)), eased=True),
 }
 
 

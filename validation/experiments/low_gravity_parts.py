@@ -75,8 +75,9 @@ def balls_part() -> tuple[Lines, str]:
         line("ball: exponent of depth over gravity at one Froude number (Sunday)", 0.0, of_gravity, 0.05, "0"),
         line("ball: exponent of duration, in sqrt(D/g), over gravity (Sunday)", 0.0, of_time, 0.05, "0",
              "ball: stiffer"),
-        line("ball: exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0"),
-        line("ball: exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1"),
+        line("ball: exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0",
+             "ball: pulling"),
+        line("ball: exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1", "ball: pulling"),
     ]  # fmt: skip
     of_balls(rows, FIGURES / "ball_under_gravities.png")
     heads = ("beads", "gravity over Earth's", "Froude number", "speed [m/s]", "depth below first touch [cm]",

@@ -132,7 +132,9 @@ Purpose: two rules that contradict each other. [Sunday-2022]: depth and duration
 Set-up: a ball of 10 cm and 2700 kg/m3 on beads of eleven sizes about 1 cm in a box of 26 by 26 by
 14 cm, 2500 kg/m3, friction 0.4, restitution 0.8, modulus 3e6 Pa under every gravity; each bed
 settled under its own. "Stiffer" beads have ten times the modulus, on ground that repeats after
-26 cm. Depth is counted from the first touch; the exponents are those of one product of powers.
+26 cm; so has the ground of "pulling" beads, whose contacts pull by 300 Pa on the square of a bead's
+diameter, and which settled under Earth's gravity, most of which was then taken off. Depth is
+counted from the first touch; the exponents are those of one product of powers.
 
 ![balls](experiments/ball_under_gravities.png)
 

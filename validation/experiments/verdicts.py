@@ -162,8 +162,7 @@ def balls() -> str:
     text = (
         "Depth follows the Froude number, as Sunday found; so at one speed a ball comes the deeper the less the "
         f"gravity. Murdoch's Froude numbers are 0.06 to 2.8; ours below 3 alone give {said(by_gravity)} for gravity "
-        f"and {said(by_speed)} for speed. Both rules cannot hold for one material that does not pull; why sand "
-        "differs, no row here shows."
+        f"and {said(by_speed)} for speed. Both rules cannot hold for one material that does not pull. {pulling(every)}"
     )
     swapped = [
         next((other for other in stiff if (other["share"], other["froude"]) == (row["share"], row["froude"])), row)
@@ -173,6 +172,20 @@ def balls() -> str:
     return text + (
         " Under Earth's gravity the beads are too soft for the fast balls, which bounce. With the two drops on ten "
         f"times stiffer beads in their place, the exponent of duration is {said(found)}."
+    )
+
+
+def pulling(every: list[Row]) -> str:
+    """Balls on beads that pull: exponents, and depths of the fast balls."""
+    rows = of_kind(every, "pulling")
+    reach = column(rows, "depth") + column(rows, "touch_height")
+    by_speed, by_gravity = powers(reach, column(rows, "speed"), column(rows, "share"))
+    fast = reach[column(rows, "speed") > column(rows, "speed").mean()]
+    return (
+        f"On beads that pull ({len(rows)} drops) they are {by_gravity.value:.3f} and {by_speed.value:.3f}: less "
+        "gravity does not make the ball come deeper any more, and speed counts more. The fast balls come "
+        f"{100.0 * fast.min():.2f} and {100.0 * fast.max():.2f} cm deep under the two gravities; what the slow ones "
+        "come is the size of a bead, and chance."
     )
 
 
