@@ -17,7 +17,7 @@ from lithobrake.report.figures.map_marks import draw_ellipses, fitting, mark_sit
 from lithobrake.report.figures.runs_figure import draw_rebounds
 from lithobrake.report.figures.style import DELIVERY, END_COLOURS, figure_style
 from lithobrake.report.figures.variance_figure import draw_parts, part_handles
-from lithobrake.report.page_data import JourneyPage, PaperPage, RunsPage, SampledPage, page_results
+from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, SampledPage, page_results
 from lithobrake.report.pages import drawn_page, journey_page, shared_plots
 from lithobrake.report.words.journey_captions import END_ROWS, END_WORDS
 from lithobrake.vocabulary.screen import in_lines
@@ -110,7 +110,7 @@ class StudyPlots:
     def rebounds(self, ax: Axes | None = None) -> Axes:
         """Speed and elevation after the touchdown of each landing that left, or of each first one of a journey."""
         page = self._page
-        if not isinstance(page, RunsPage):
+        if isinstance(page, PaperPage):
             raise ValueError(f"{self._study.folder} is of a paper study, without drawn landings")
         landings = drawn_page.landings_of_runs(page)
         with _axes(ax, (5.2, 4.2)) as axes:
@@ -119,7 +119,7 @@ class StudyPlots:
         return axes
 
     @cached_property
-    def _page(self) -> "PaperPage | RunsPage | SampledPage":
+    def _page(self) -> PaperPage | DrawnPage | JourneyPage:
         return page_results(self._study)
 
     def _journeys(self, name: str) -> JourneyPage:
