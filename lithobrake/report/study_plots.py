@@ -115,7 +115,7 @@ class StudyPlots:
         return axes
 
     @cached_property
-    def _page(self) -> "PaperPage | DrawnPage | JourneyPage":
+    def _page(self) -> PaperPage | DrawnPage | JourneyPage:
         return page_results(self._study)
 
     def _journeys(self, name: str) -> JourneyPage:
