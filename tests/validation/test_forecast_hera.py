@@ -56,14 +56,14 @@ def test_chances_weigh_branches_and_nothing_is_impossible():
 
     names = [one.name for one in branches("juventas")]
     found = sample(
-        rows({name: {"at_rest": 8} if "tumbling" not in name else {"escaped": 8} for name in names}), "juventas", "soil"
+        rows({name: {"at_rest": 8} if "rolling" not in name else {"escaped": 8} for name in names}), "juventas", "soil"
     )
     weights = branch_weights(found, "juventas", at_rest=False)
     assert weights.sum() == pytest.approx(1.0)
     mean, draws = shares(found, "end", weights)
     # Perks' prior: a quarter of a lander at each end.
-    tumbling = next(one.weight for one in branches("juventas") if "tumbling" in one.name)
-    assert mean[ENDS.index("at_rest")] == pytest.approx((1.0 - tumbling) * 8.25 / 9.0 + tumbling * 0.25 / 9.0)
+    rolling = next(one.weight for one in branches("juventas") if "rolling" in one.name)
+    assert mean[ENDS.index("at_rest")] == pytest.approx((1.0 - rolling) * 8.25 / 9.0 + rolling * 0.25 / 9.0)
     assert mean.sum() == pytest.approx(1.0)
     assert (mean > 0.0).all()
     assert draws.mean(axis=0) == pytest.approx(mean, abs=0.01)
@@ -72,7 +72,7 @@ def test_chances_weigh_branches_and_nothing_is_impossible():
 def test_landers_of_one_bed_count_less():
     from answers import CORRELATION, design_effect, sample
 
-    landers = rows({"tumbling, at the surface": {"at_rest": 6}})
+    landers = rows({"rolling, at the surface": {"at_rest": 6}})
     assert design_effect(sample(landers, "juventas", "soil"), np.ones(6, dtype=bool)) == 1.0
     for row in landers:
         row["bed"] = row["bed"] % 2

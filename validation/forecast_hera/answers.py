@@ -56,18 +56,18 @@ class Sample(NamedTuple):
         return np.array([row[name] for row in self.rows])
 
 
-def sample(rows: list[Row], lander: str, ground: str, *, beside: bool = False) -> Sample:
+def sample(rows: list[Row], lander: str, ground: str) -> Sample:
     """The landers of one spacecraft on a ground, each with its part of the weight of its branch.
 
-    A journey that failed says nothing of the lander, and is left out. beside: with branches that have no weight.
+    A journey that failed says nothing of the lander, and is left out.
     """
-    known = {one.name: (number, one.weight) for number, one in enumerate(branches(lander)) if one.weight or beside}
+    known = {one.name: (number, one.weight) for number, one in enumerate(branches(lander))}
     own = [
         row for row in rows
         if (row["lander"], row["ground"]) == (lander, ground) and row["branch"] in known and row["end"] in ENDS
     ]  # fmt: skip
     branch = np.array([known[row["branch"]][0] for row in own])
-    counts = np.bincount(branch, minlength=len(branches(lander)))
+    counts = np.bincount(branch, minlength=len(known))
     weight = np.array([known[row["branch"]][1] for row in own]) / counts[branch]
     return Sample(own, branch, weight / weight.sum())
 
@@ -269,7 +269,7 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
         "regions": regions(resting),
-        "by_branch": by_branch(sample(rows, lander, ground, beside=True), lander),
+        "by_branch": by_branch(of, lander),
         "what_decides": what_decides(of) if ground == "soil" else [],
         "scored": scored,
     }

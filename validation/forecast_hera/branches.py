@@ -22,34 +22,23 @@ LANDERS = ("juventas", "milani")
 # Towards Didymos, and away from it: the ends of the long axis.
 AIMS = {"near end": 0.0, "far end": 180.0}
 # [Richardson-2024] and others: likely excited, perhaps tumbling; how likely is judgement.
-SMALL, LARGE, TUMBLING = 0.40, 0.25, 0.35
-# Angles from the synchronous attitude at the begin of a history [deg]; a lander arrives at any time of it.
-ROTATIONS: dict[str, dict[str, Any] | None] = {
+SMALL, LARGE, ROLLING = 0.40, 0.25, 0.35
+# Angles from the synchronous attitude at the beginning of 30 days [deg]; a lander arrives at any time of them. A yaw
+# alone would stay one for so long as rounding lets it.
+ROTATIONS = {
     "small libration": {"yaw_deg": 7.0},
-    "large libration": {"yaw_deg": 30.0},
-    "tumbling": {"yaw_deg": 30.0, "roll_deg": 60.0},
+    "large libration": {"yaw_deg": 20.0, "pitch_deg": 1.0, "roll_deg": 2.0},
+    "rolling": {"yaw_deg": 30.0, "roll_deg": 60.0},
 }
 FEWEST_BEDS, LANDERS_A_BED = 12, 3
 STUDY = dict[str, Any]
-# Four booms of 1.5 m [ESA-2024] along the longer edges, 50 g each, rigid; and the ground that they need.
-BOOMS: STUDY = {
-    "bed.width": [4.3, 4.3], "bed.grain_count": 1040,
-    **{
-        f"lander.part.boom_{side}": {"shape": "box", "edges": edges, "centre": centre, "mass": 0.05}
-        for side, edges, centre in (
-            ("front", [1.5, 0.01, 0.01], [0.935, 0.0, 0.0]), ("back", [1.5, 0.01, 0.01], [-0.935, 0.0, 0.0]),
-            ("left", [0.01, 1.5, 0.01], [0.0, 0.865, 0.0]), ("right", [0.01, 1.5, 0.01], [0.0, -0.865, 0.0]),
-        )
-    },
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Branch:
     """A lander on one Dimorphos by one descent.
 
-    weight: of the lander's branches; 0: beside the forecast, with so many `landers`, to see what it changes. changes:
-    by dotted key; None takes a key away.
+    weight: of the lander's branches. changes: by dotted key; None takes a key away.
     """
 
     lander: str
@@ -58,13 +47,11 @@ class Branch:
     aim: str
     weight: float
     changes: Mapping[str, Any] = field(default_factory=dict)
-    variant: str = ""
-    landers: int = 0
 
     @property
     def name(self) -> str:
         """As it stands in tables."""
-        return ", ".join(one for one in (self.rotation, self.descent, self.aim, self.variant) if one)
+        return ", ".join(one for one in (self.rotation, self.descent, self.aim) if one)
 
     @property
     def folder(self) -> str:
@@ -74,7 +61,7 @@ class Branch:
     def tables(self, landers: int) -> STUDY:
         """The tables of its study, with its part of so many landers of all branches, three on each bed."""
         tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
-        count = self.landers or round(self.weight * landers)
+        count = round(self.weight * landers)
         changes = {
             **self.changes, "title": f"{tables['title']}: {self.name}",
             # Every answer is of simulated landings.
@@ -122,13 +109,8 @@ def branches(lander: str) -> tuple[Branch, ...]:
             Branch(lander, "small libration", "ballistic", aim, SMALL / 4.0, small | ballistic(lander, longitude))
         )
         found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
-    if lander == "juventas":
-        near = {"delivery.longitude_deg": AIMS["near end"]} | turning("small libration") | BOOMS
-        found.append(
-            Branch(lander, "small libration", "at the surface", "near end", 0.0, near, "four booms", FEWEST_BEDS)
-        )
     anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
-    found.append(Branch(lander, "tumbling", "at the surface", "", TUMBLING, anywhere | turning("tumbling")))
+    found.append(Branch(lander, "rolling", "at the surface", "", ROLLING, anywhere | turning("rolling")))
     return tuple(found)
 
 

@@ -52,11 +52,11 @@ def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
                     latitude, longitude = np.array(line).T
                     ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=width)
             own = [row for row in rows if (row["lander"], row["ground"], row["end"]) == (name, "soil", "at_rest")]
-            for rotation, colour in zip(("small", "large", "tumbling"), (SOIL, "#e69f00", "#a8659a"), strict=True):
+            for rotation, colour in zip(("small", "large", "rolling"), (SOIL, "#e69f00", "#a8659a"), strict=True):
                 here = [row for row in own if row["branch"].startswith(rotation)]
                 ax.plot(
                     [row["longitude_deg"] for row in here], np.sin(np.radians([row["latitude_deg"] for row in here])),
-                    "o", ms=2.6, color=colour, label=rotation if rotation == "tumbling" else f"{rotation} libration",
+                    "o", ms=2.6, color=colour, label=rotation if rotation == "rolling" else f"{rotation} libration",
                 )  # fmt: skip
             ax.plot([0.0, 180.0, -180.0], [0.0] * 3, "+", ms=11, mew=1.8, color=DELIVERY, label="aims")
             ticks = np.array([-90, -60, -30, 0, 30, 60, 90])

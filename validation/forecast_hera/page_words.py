@@ -41,9 +41,11 @@ speed over impact speed. An interval that holds 0 shows no connection.
     "branches": """## By branch
 
 What is not a number is a branch: how Dimorphos turns since the impact of DART, how the lander comes
-down, and to which end of the long axis. Weights are judgement. Small and large libration start 7 and
-30 degrees of yaw off the attitude in which the long axis points to Didymos; tumbling starts with 30
-degrees of yaw and 60 of roll. A lander arrives at any time of 30 days of that motion. At the surface:
+down, and to which end of the long axis. Weights are judgement. Small libration starts 7 degrees of
+yaw off the attitude in which the long axis points to Didymos, and keeps to that; large libration
+starts with 20 of yaw, 1 of pitch and 2 of roll, and its pole goes up to 45 degrees away; rolling
+starts with 30 of yaw and 60 of roll: the pole turns over, while the long axis stays within 36 degrees of
+Didymos. A lander arrives at any time of 30 days of that motion. At the surface:
 speed, angle and place at the first contact are drawn, as after a controlled descent. Ballistic:
 released 200 m from the centre on the way to a vertical touchdown, 1.25 times as fast as the least,
 with errors of 90 m and 2 cm/s (3 sigma) in each direction [Celik-2019]. A lander that misses
@@ -76,7 +78,8 @@ counts.
 
 LEFT_OUT = """## What is left out
 
-- The booms of Juventas (four of 1.5 m) and the wings of both: the lander is its body. A boom may touch first.
+- The booms of Juventas (four of 1.5 m) and the wings of both: the lander is its body. A boom may touch first. Parts of a
+  lander [can be given](howto/lander_parts.md), but with booms a bed must be three times as wide.
 - The mass of a lander is spread evenly over its box, but for the place of the centre of mass.
 - Grains are stones of 0.18 to 0.25 m, and softer than rock, so that steps are long. Finer grains between them, if there
   are any, take more energy from a lander; a stone larger than the lander gives more back.
