@@ -78,8 +78,8 @@ counts.
 
 LEFT_OUT = """## What is left out
 
-- The booms of Juventas (four of 1.5 m) and the wings of both: the lander is its body. A boom may touch first. Parts of a
-  lander [can be given](howto/lander_parts.md), but with booms a bed must be three times as wide.
+- The booms of Juventas (four of 1.5 m) and the wings of both: the lander is its body. A boom may touch first. A lander
+  [can have parts](howto/lander_parts.md), but with booms a bed must be three times as wide.
 - The mass of a lander is spread evenly over its box, but for the place of the centre of mass.
 - Grains are stones of 0.18 to 0.25 m, and softer than rock, so that steps are long. Finer grains between them, if there
   are any, take more energy from a lander; a stone larger than the lander gives more back.
