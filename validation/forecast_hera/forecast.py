@@ -31,7 +31,7 @@ HERE = Path(__file__).parent
 TABLE = "landers.csv"
 WORDS = ("lander", "branch", "ground", "end", "face")
 KINDS = dict.fromkeys(WORDS, str)
-COUNTS = {"soil": 240, "hard": 800}  # landers of all branches
+COUNTS = {"soil": 240, "hard": 400}  # landers of all branches
 # Columns of the first touchdown, by what the table calls them.
 FIRST = {
     "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
