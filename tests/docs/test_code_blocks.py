@@ -22,8 +22,8 @@ from lithobrake.cli import app
 from lithobrake.study import known_keys
 
 LANGUAGES = {"python", "sh", "toml", "json", "text", "math"}
-# Blocks that say why they are not run: one that takes minutes, the rest other people's programs, kernels, a cluster.
-LEFT_OUT = 9
+# Blocks that say why they are not run: two that take minutes, the rest other people's programs, kernels, a cluster.
+LEFT_OUT = 10
 PAGES_WITH_PYTHON = [page for page in PAGES if any(block.language == "python" for block in blocks(page))]
 COMMANDS = typer.main.get_command(app)
 
