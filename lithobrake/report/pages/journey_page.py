@@ -76,26 +76,28 @@ def _sure(data: JourneyPage) -> PageSection:
 
 
 def _method(data: JourneyPage) -> PageSection:
-    """A touchdown and what the first ones gave, and what a reader can try."""
-    found = _of_landings(data)
-    plots = [
-        Plot(name, title, words.of_first_touchdown(found[name].sentence), found[name].draw)
-        for name, title in OF_FIRST.items()
-    ]
+    """A touchdown, and what a reader can try."""
+    plots = [_of_first(data, "landing")]
     return PageSection("Method", plots, site_tables(data), [*landing_views(data), *touchdown_sections(data)])
 
 
 def _appendix(data: JourneyPage) -> PageSection:
-    """How the ground was poured, and the tables of the first touchdowns."""
-    plots = [Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))]
+    """What the first touchdowns gave, how the ground was poured, and the tables of the first touchdowns."""
+    bed = Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))
     return PageSection(
         "Appendix",
-        plots,
+        [_of_first(data, "runs"), bed],
         tables.first_tables(
             [*drawn_tables.sure_tables(data), *drawn_tables.why_tables(data), *drawn_tables.method_tables(data)]
         ),
         is_printed=False,
     )
+
+
+def _of_first(data: JourneyPage, name: str) -> Plot:
+    """A figure of a drawn study that is of first touchdowns here."""
+    found = _of_landings(data)[name]
+    return Plot(name, OF_FIRST[name], words.of_first_touchdown(found.sentence), found.draw)
 
 
 def _of_landings(data: JourneyPage) -> dict[str, Plot]:

@@ -16,7 +16,8 @@ def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, journeys: Study
     axes = Figure().subplots()
     assert getattr(journeys.plot, name)(ax=axes) is axes
     assert axes.has_data()
-    assert axes.get_xlabel()
+    # The half of a body has a title in place of axes.
+    assert axes.get_xlabel() or (name == "map" and axes.get_title())
     assert f"{name}()" in repr(journeys.plot)
 
 
