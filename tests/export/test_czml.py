@@ -83,7 +83,7 @@ def test_intervals_follow_each_other_and_clock_and_colour_are_those_of_the_study
         assert all(before[1] == after[0] for before, after in pairwise(ways))
         rests = packet["name"].endswith(": at rest")
         assert (ways[-1][1] == pytest.approx(end, abs=1e-5)) == rests
-        assert packet["point"]["color"]["rgba"] == [31, 158, 120, 255] if rests else [200, 85, 61, 255]
+        assert packet["point"]["color"]["rgba"] == [42, 168, 132, 255] if rests else [178, 58, 46, 255]
         assert all(part["referenceFrame"] == "FIXED" for part in packet["position"])
 
 

@@ -153,7 +153,8 @@ class Assembly(NamedTuple):
 def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
     """Return mass, centre of mass and inertia of homogeneous parts, each a shape and its mass [kg].
 
-    All shapes are given in one frame; where parts overlap, the mass of both is there. Source: [Landau-1976], section 32.
+    All shapes are given in one frame; where parts overlap, the mass of both is there.
+    Source: [Landau-1976], section 32.
     """
     mass = sum(mass for _, mass in parts)
     centre = sum((mass * shape.centroid for shape, mass in parts), np.zeros(3)) / mass
