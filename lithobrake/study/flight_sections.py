@@ -40,9 +40,7 @@ class SiteSection(Section):
     body: str = "didymos"
     """"didymos" or "dimorphos" (built in, in any case), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel
     of SPICE) around the body's centre; the path counts from the study file."""
-    extents: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
-        default=None, examples=["[193.0, 148.0, 120.0]"]
-    )
+    extents: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = None
     """Extents of a built-in body along its axes x, y and z, in place of its own; write site.mass too."""
     name: str | None = None
     """Name of the body of a mesh, for report and exports; absent: it has none."""
