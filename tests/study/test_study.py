@@ -524,7 +524,8 @@ def test_what_only_the_flight_reads_may_be_uncertain() -> None:
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)
 def test_the_studies_of_the_repository_are_studies(path: Path) -> None:
     same = ("one_place", "paper", "drawn_700", "drawn_170", "first_bounce")
-    counts = {"aim": 6, "sites": 6, "release": 4, "philae": 4, "quick": 6, "mission": 10} | dict.fromkeys(same, 5)
+    counts = {"aim": 6, "sites": 6, "release": 4, "philae": 4, "quick": 6, "mission": 10, "juventas": 17, "milani": 17}
+    counts |= dict.fromkeys(same, 5)
     assert len(uncertain(read_study(path).touchdown_values())) == counts[path.stem]
 
 
