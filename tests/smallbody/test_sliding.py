@@ -20,7 +20,7 @@ class Slab(Body):
 
     slope: float = 0.0
 
-    def effective_acceleration(self, points, *, mass=None, spin_period=None):
+    def effective_acceleration(self, points, *, mass=None, spin_period=None, time=0.0):
         """The same [m/s2] at all points [m], [..., 3]."""
         return np.broadcast_to(PULL * np.array([math.sin(self.slope), 0.0, -math.cos(self.slope)]), points.shape).copy()
 

@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from harness import Row
 
-from lithobrake.report.figures.style import DELIVERY, END_COLOURS, INK, QUIET, RULE, figure_style
+from lithobrake.report.figures.style import INK, QUIET, RULE, TRAINING, figure_style
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 SOIL, HARD = END_COLOURS[JourneyEnd.AT_REST], QUIET
@@ -58,7 +59,7 @@ def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
                     [row["longitude_deg"] for row in here], np.sin(np.radians([row["latitude_deg"] for row in here])),
                     "o", ms=2.6, color=colour, label=rotation if rotation == "rolling" else f"{rotation} libration",
                 )  # fmt: skip
-            ax.plot([0.0, 180.0, -180.0], [0.0] * 3, "+", ms=11, mew=1.8, color=DELIVERY, label="aims")
+            ax.plot([0.0, 180.0, -180.0], [0.0] * 3, "+", ms=11, mew=1.8, color=TRAINING, label="aims")
             ticks = np.array([-90, -60, -30, 0, 30, 60, 90])
             ax.set_yticks(np.sin(np.radians(ticks)), [str(one) for one in ticks])
             ax.set_xticks(range(-180, 181, 45))
