@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from lithobrake.results.shares import Estimate, ShareInterval
+from lithobrake.vocabulary.outcomes import JourneyEnd
 
 # Names of SiteEnds.
-SHARES = ("at_rest", "partner", "escaped", "under_way")
+SHARES = tuple(end.value for end in (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY))
 MEDIANS = ("time_s", "distance_m")
 
 

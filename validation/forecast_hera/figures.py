@@ -44,14 +44,13 @@ def draw_shares(landers: dict[str, Any], path: Path) -> None:
 
 
 def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
-    """Places of rest on soil, with the smallest regions that hold half and 95 % of them (cylinder of equal area)."""
+    """Places of rest on soil, with the smallest region that holds half of them (cylinder of equal area)."""
     with figure_style():
         figure, axes = plt.subplots(len(landers), 1, figsize=(7.6, 7.4), sharex=True, constrained_layout=True)
         for ax, (name, of) in zip(axes, landers.items(), strict=True):
-            for one, width in zip(of["soil"]["regions"], (1.8, 1.0), strict=True):
-                for line in one["outlines"]:
-                    latitude, longitude = np.array(line).T
-                    ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=width)
+            for line in of["soil"]["regions"][0]["outlines"]:
+                latitude, longitude = np.array(line).T
+                ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=1.8)
             own = [row for row in rows if (row["lander"], row["ground"], row["end"]) == (name, "soil", "at_rest")]
             for rotation, colour in zip(("small", "large", "rolling"), (SOIL, "#e69f00", "#a8659a"), strict=True):
                 here = [row for row in own if row["branch"].startswith(rotation)]
@@ -67,7 +66,7 @@ def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
             ax.set_xlim(-180, 180)
             ax.set_ylim(-1, 1)
             ax.set_ylabel("latitude [deg]")
-            ax.set_title(f"{name.capitalize()}: places of rest, with the regions of 50 and 95 %")
+            ax.set_title(f"{name.capitalize()}: places of rest, and the smallest region with half of them")
         axes[-1].set_xlabel("east longitude [deg]; 0 faces Didymos while Dimorphos turns with its orbit")
         axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.1), ncols=4)
         figure.savefig(path)

@@ -162,6 +162,13 @@ def digests_table(digests: dict[str, Any]) -> str:
     return table(("what", "SHA-256"), rows + [[words, f"`{digests[key]}`"] for key, words in DIGEST_WORDS.items()])
 
 
+def by_part(text: str) -> str:
+    """Text with its paragraphs filled, and its commands as they are."""
+    before, commands, after = text.partition("```sh")
+    inside, fence, rest = after.partition("```")
+    return f"{broken(before)}\n\n{commands}{inside}{fence}\n\n{broken(rest)}"
+
+
 def first_line(landers: Answers) -> str:
     """The answer."""
     said = [f"{name.capitalize()} with {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
@@ -193,7 +200,7 @@ def page(document: dict[str, Any]) -> str:
         broken(METHOD["branches"]), branches_table(landers),
         broken(METHOD["priors"]), (HERE / "priors.md").read_text(encoding="utf-8").strip(),
         broken(METHOD["falsified"].format(unlikely=UNLIKELY)), falsified_table(landers),
-        SCORING.strip(), broken(LEFT_OUT), REPRODUCE.strip(), digests_table(document["sha256"]),
+        by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE), digests_table(document["sha256"]),
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 
