@@ -55,8 +55,8 @@ Dimorphos counts among the ends.
 """,
     "falsified": """## What would speak against it
 
-Observations to which the forecast gives less than {unlikely:.0%}, and what hard ground gives them. One of them is a
-reason to doubt the model; two of one lander refute it.
+Observations to which the forecast gives less than {unlikely:.0f} %, and what hard ground gives them. One of them is a
+reason to doubt the model; several, of both landers, are reason to drop it.
 """,
 }
 

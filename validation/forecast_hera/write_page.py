@@ -85,7 +85,7 @@ def numbers_table(landers: Answers) -> str:
 def regions_table(landers: Answers) -> str:
     """Where."""
     rows = [
-        [name.capitalize(), f"{one['share']:.0%}", f"{one['area_m2']:.3g}", f"{one['largest_extent_m']:.0f}"]
+        [name.capitalize(), f"{100 * one['share']:.0f} %", f"{one['area_m2']:.3g}", f"{one['largest_extent_m']:.0f}"]
         for name in landers
         for one in landers[name]["soil"]["regions"]
     ]
@@ -96,7 +96,10 @@ def regions_table(landers: Answers) -> str:
 
 def faces_table(landers: Answers) -> str:
     """Which side is down."""
-    rows = [[name.capitalize(), *(f"{one:.0%}" for one in landers[name]["soil"]["scored"]["face"])] for name in landers]
+    rows = [
+        [name.capitalize(), *(f"{100 * one:.0f} %" for one in landers[name]["soil"]["scored"]["face"])]
+        for name in landers
+    ]
     return table(("lander", *(f"{face} down" for face in FACES)), rows)
 
 
@@ -120,7 +123,7 @@ def decides_table(landers: Answers) -> str:
     rows = []
     for name in landers:
         for one in sorted(landers[name]["soil"]["what_decides"], key=lambda one: -abs(one["time_s"]["value"])):
-            halves = f"{one['at_rest_lower_half']:.0%}, {one['at_rest_upper_half']:.0%}"
+            halves = f"{100 * one['at_rest_lower_half']:.0f}, {100 * one['at_rest_upper_half']:.0f} %"
             ranks = [
                 f"{found['value']:+.2f} ({found['lower']:+.2f} to {found['upper']:+.2f})"
                 for found in (one["time_s"], one["first_speed_ratio"])
@@ -199,7 +202,7 @@ def page(document: dict[str, Any]) -> str:
         broken(METHOD["decides"]), decides_table(landers),
         broken(METHOD["branches"]), branches_table(landers),
         broken(METHOD["priors"]), (HERE / "priors.md").read_text(encoding="utf-8").strip(),
-        broken(METHOD["falsified"].format(unlikely=UNLIKELY)), falsified_table(landers),
+        broken(METHOD["falsified"].format(unlikely=100 * UNLIKELY)), falsified_table(landers),
         by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE), digests_table(document["sha256"]),
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
