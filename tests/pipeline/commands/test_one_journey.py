@@ -82,7 +82,9 @@ def test_a_journey_of_a_study_makes_each_touchdown_again(
     results: StudyResults, followed: tuple[OneJourney, list[str]]
 ) -> None:
     journey, (found, _) = results.journey(NUMBER), followed
-    assert journey.track.lines() == found.track.lines() == str(journey).splitlines()[1:]
+    assert journey.track.lines() == found.track.lines()
+    # It breaks its lines to fit a screen.
+    assert " ".join(str(journey).splitlines()[1:]).split() == " ".join(journey.track.lines()).split()
     last = len(found.landings) - 1
     outcome = journey.landing(last, frame_count=5)
     assert outcome.outputs == pytest.approx(found.landings[last].outcome.outputs, rel=0.0, nan_ok=True)
