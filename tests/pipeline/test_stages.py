@@ -29,6 +29,8 @@ ELSEWHERE = (
     "pipeline/runs/kernels.py",
     # inputs of the first touchdowns of journeys, which the keys of runs hold
     *("pipeline/design/local_ground.py", "pipeline/design/descents.py", "pipeline/design/correlated_arrivals.py"),
+    # figures that results hand themselves on to where a user asks for them, and no stage does
+    "report/study_plots.py",
     "__init__.py",
 )
 
