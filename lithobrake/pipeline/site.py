@@ -216,8 +216,7 @@ def _body(study: Study) -> "Body":
 def _built_in(name: str, partner: bool, extents: tuple[float, float, float] | None) -> "Body":
     from lithobrake import smallbody
 
-    given = {} if extents is None else {"extents": extents}
-    body: Body = getattr(smallbody, name)(partner=partner, **given)
+    body: Body = getattr(smallbody, name)(partner=partner, extents=extents)
     return body
 
 

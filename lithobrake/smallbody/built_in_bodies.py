@@ -18,11 +18,11 @@ DIDYMOS_EXTENTS, DIMORPHOS_EXTENTS = (851.0, 849.0, 620.0), (177.0, 174.0, 116.0
 RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
 
 
-def didymos(*, partner: bool = True, extents: Sequence[float] = DIDYMOS_EXTENTS) -> Body:
+def didymos(*, partner: bool = True, extents: Sequence[float] | None = None) -> Body:
     """(65803) Didymos: a top shape with an equatorial ridge, extents 851 x 849 x 620 m, 5.32e11 kg, 2.2600 h.
 
     partner: Dimorphos attracts and may be hit; False leaves Didymos alone, as the published landing dispersion does.
-    extents: others along x, y and z [m]; the mass stays.
+    extents: others along x, y and z [m], None: these; the mass stays.
 
     The flanks are an ellipsoid; the ridge stands 20 m above it, narrowing over 12 degrees of latitude. Both are choices
     within the 15 m by which the extents are known; no boulder or crater is drawn. The pole is DIDYMOS_POLE.
@@ -35,11 +35,11 @@ def didymos(*, partner: bool = True, extents: Sequence[float] = DIDYMOS_EXTENTS)
     return replace(_didymos(extents), partner=other)
 
 
-def dimorphos(*, partner: bool = True, extents: Sequence[float] = DIMORPHOS_EXTENTS) -> Body:
+def dimorphos(*, partner: bool = True, extents: Sequence[float] | None = None) -> Body:
     """Dimorphos: an ellipsoid of extents 177 x 174 x 116 m, 4.3e9 kg, turning in 11.3674 h, its orbit's period.
 
     partner: Didymos attracts and may be hit; it stands over longitude 0 at all times. False leaves Dimorphos alone.
-    extents: others along x, y and z [m]; the mass stays.
+    extents: others along x, y and z [m], None: these; the mass stays.
 
     One face towards Didymos is assumed, not measured: the impact of DART may have set it tumbling. Its shape is that
     before the impact. The orbit is taken as a circle (published eccentricity below 0.03) in the equator of Didymos; its
@@ -54,12 +54,14 @@ def dimorphos(*, partner: bool = True, extents: Sequence[float] = DIMORPHOS_EXTE
     return replace(_dimorphos(extents), partner=other)
 
 
-def _didymos(extents: Sequence[float] = DIDYMOS_EXTENTS) -> Body:
-    return Body(top_shape(extents, ridge_height=20.0, name="didymos"), 5.32e11, 2.26 * 3600.0, "didymos")
+def _didymos(extents: Sequence[float] | None = None) -> Body:
+    return Body(
+        top_shape(extents or DIDYMOS_EXTENTS, ridge_height=20.0, name="didymos"), 5.32e11, 2.26 * 3600.0, "didymos"
+    )
 
 
-def _dimorphos(extents: Sequence[float] = DIMORPHOS_EXTENTS) -> Body:
-    shape = top_shape(extents, ridge_height=0.0, name="dimorphos")
+def _dimorphos(extents: Sequence[float] | None = None) -> Body:
+    shape = top_shape(extents or DIMORPHOS_EXTENTS, ridge_height=0.0, name="dimorphos")
     return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
 
 

@@ -107,8 +107,7 @@ def _volume(study: Study) -> float:
     if site.body in BUILT_IN_BODIES:
         from lithobrake import smallbody
 
-        given = {} if site.extents is None else {"extents": site.extents}
-        return float(getattr(smallbody, site.body)(partner=False, **given).shape.volume)
+        return float(getattr(smallbody, site.body)(partner=False, extents=site.extents).shape.volume)
     # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.geometry.mesh_files import read_mesh
