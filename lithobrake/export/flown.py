@@ -217,4 +217,9 @@ def refuse_rotation(results: StudyResults) -> None:
 def body_name(results: StudyResults) -> str:
     """The name of the body as other programs take it: capitals, digits and underscores."""
     site = results.study["site"]
-    return re.sub(r"\W+", "_", site.get("name") or Path(site["body"]).stem, flags=re.ASCII).upper()
+    return plain_name(site.get("name") or Path(site["body"]).stem)
+
+
+def plain_name(name: str) -> str:
+    """A name as other programs take it: capitals, digits and underscores."""
+    return re.sub(r"\W+", "_", name, flags=re.ASCII).upper()

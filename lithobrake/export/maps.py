@@ -29,6 +29,7 @@ GDAL_NODATA = 42113
 RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
 BAND_UNIT = "1/m2"
 WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"
+NOTE = f"{WORDS}; coordinates in degrees, longitude first"
 # Of each impact and of each place of rest, and what those columns hold that are no floats.
 PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
 REST_PROPERTIES = ("sample", "ground", "time_s", "rebounds", "path_length")
@@ -194,13 +195,18 @@ def _write_points(results: StudyResults, path: Path, what: str, table: Table, na
         }
         for row in range(table.row_count)
     ]
+    write_features(frame, path, what, features, units={name: table.columns[name].units for name in names})
+
+
+def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[Any], **more: Any) -> None:
+    """Write features as GeoJSON in the frame of the body; more: members that say more of them."""
     # The newest standard knows the Earth alone; the member of the one before says which body this is.
-    content: dict[str, Any] = {
+    content = {
         "type": "FeatureCollection",
         "name": f"{what} on {frame.body}",
         "crs": {"type": "name", "properties": {"name": frame.wkt}},
-        "note": f"{WORDS}; coordinates in degrees, longitude first",
-        "units": {name: table.columns[name].units for name in names},
+        "note": NOTE,
+        **more,
         "features": features,
     }
     with atomic_path(path) as draft:

@@ -1,12 +1,10 @@
 """The sites of a map as polygons for other programs: GeoJSON in the geographic frame of the body's own."""
 
-import json
 import math
-import re
 from pathlib import Path
 
-from lithobrake.export.maps import WORDS, MapFrame
-from lithobrake.files.atomic import atomic_path
+from lithobrake.export.flown import plain_name
+from lithobrake.export.maps import NOTE, MapFrame, write_features
 from lithobrake.results.site_map import SiteMap
 
 UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: nine places in ten of the cell"
@@ -23,8 +21,7 @@ def write_site_cells(site_map: SiteMap, place: Path) -> Path:
     Borders of cells are lines of constant latitude or longitude, as straight lines in these coordinates are.
     """
     radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
-    name = re.sub(r"\W+", "_", site_map.body, flags=re.ASCII).upper()
-    frame, path = MapFrame(name, radius), site_cells_file(place)
+    frame, path = MapFrame(plain_name(site_map.body), radius), site_cells_file(place)
     features = []
     for number, cell in enumerate(site_map.cells):
         south, north, west, east = cell.bounds_deg
@@ -37,13 +34,5 @@ def write_site_cells(site_map: SiteMap, place: Path) -> Path:
                 "properties": cell.row,
             }
         ]
-    content = {
-        "type": "FeatureCollection",
-        "name": f"sites on {frame.body}",
-        "crs": {"type": "name", "properties": {"name": frame.wkt}},
-        "note": f"{WORDS}; coordinates in degrees, longitude first; {UNITS}",
-        "features": features,
-    }
-    with atomic_path(path) as draft:
-        draft.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
+    write_features(frame, path, "sites", features, note=f"{NOTE}; {UNITS}")
     return path
