@@ -94,7 +94,9 @@ def local_figure(shown: PlaceMap) -> Figure:
     if many:
         width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
         bar = figure.add_axes((LEFT / WIDTH, (rows - 0.14) / height, 0.7, 0.1 / height))
-        draw_scale(figure, bar, many, norm, width)
+        scale = draw_scale(figure, many, norm, width, cax=bar, orientation="horizontal")
+        scale.ax.xaxis.label.set_fontsize(8)
+        scale.outline.set_visible(False)
     figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.03, 0.01), borderpad=0.0, borderaxespad=0.0)
     return figure
 
@@ -128,13 +130,11 @@ def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> N
         axes.text(0.975, 0.03, f"{outside} outside", transform=axes.transAxes, **style)
 
 
-def draw_scale(figure: Figure, axes: Axes, many: Places, norm: LogNorm, width: float) -> None:
-    """The colour bar of counts in cells of a width [m]."""
-    colours = density_colours(many.colour)
-    bar = figure.colorbar(ScalarMappable(norm, colours), cax=axes, orientation="horizontal", format="%g")
-    bar.set_label(f"{many.words} in a cell {width:.2g} m wide", fontsize=8)
-    outline: Any = bar.outline
-    outline.set_visible(False)
+def draw_scale(figure: Any, many: Places, norm: LogNorm, width: float, **place: Any) -> Any:
+    """The colour bar of counts in cells of a width [m], at a place as of Figure.colorbar."""
+    words = f"{many.words} in a cell {width:.2g} m wide"
+    bar: Any = figure.colorbar(ScalarMappable(norm, density_colours(many.colour)), format="%g", label=words, **place)
+    return bar
 
 
 def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: MapPanel | None) -> LogNorm:
@@ -192,8 +192,7 @@ def draw_map(axes: Axes, shown: PlaceMap) -> None:
     many = next((one for one in shown.places if one.are_many), None)
     if many:
         width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
-        bar = axes.figure.colorbar(ScalarMappable(norm, density_colours(many.colour)), ax=axes, format="%g", shrink=0.7)
-        bar.set_label(f"{many.words} in a cell {width:.2g} m wide")
+        draw_scale(axes.figure, many, norm, width, ax=axes, shrink=0.7)
     axes.legend(handles=_handles(shown), loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
 
 
