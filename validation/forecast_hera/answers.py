@@ -55,6 +55,16 @@ class Sample(NamedTuple):
         """Values of a column."""
         return np.array([row[name] for row in self.rows])
 
+    @property
+    def beds(self) -> np.ndarray:
+        """Bed of each, by a number that no other branch has."""
+        return self.column("bed") + 1000 * self.branch
+
+    def where(self, chosen: np.ndarray) -> "Sample":
+        """The chosen landers, booleans [count]."""
+        rows = [row for row, one in zip(self.rows, chosen, strict=True) if one]
+        return Sample(rows, self.branch[chosen], self.weight[chosen])
+
 
 def sample(rows: list[Row], lander: str, ground: str) -> Sample:
     """The landers of one spacecraft on a ground, each with its part of the weight of its branch.
@@ -136,12 +146,6 @@ def estimate(mean: float, draws: np.ndarray) -> dict[str, float]:
     return {"share": float(mean), "lower": float(lower), "upper": float(upper)}
 
 
-def at_rest(of: Sample) -> Sample:
-    """Those that come to rest."""
-    chosen = of.column("end") == "at_rest"
-    return Sample([row for row, one in zip(of.rows, chosen, strict=True) if one], of.branch[chosen], of.weight[chosen])
-
-
 def quantiles(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Weighted quantiles at LEVELS."""
     order = np.argsort(values)
@@ -153,7 +157,7 @@ def number(of: Sample, name: str) -> dict[str, Any]:
     """Quantiles of a number of the landers at rest, and those of its median over beds drawn anew."""
     values = of.column(name)
     random, medians = np.random.default_rng(SEED), []
-    beds = of.column("bed") + 1000 * of.branch
+    beds = of.beds
     unique = np.unique(beds)
     members = {one: np.flatnonzero(beds == one) for one in unique}
     by_branch = [unique[unique // 1000 == one] for one in np.unique(unique // 1000)]
@@ -188,13 +192,9 @@ def what_decides(of: Sample) -> list[dict[str, Any]]:
 
     Rank correlations, within branches; their intervals resample beds.
     """
-    down = np.isfinite(of.column("speed"))
-    landed = Sample([row for row, one in zip(of.rows, down, strict=True) if one], of.branch[down], of.weight[down])
+    landed = those_down(of)
     rests = landed.column("end") == "at_rest"
-    outcomes = {
-        "time_s": (landed.column("time_s"), rests),
-        "first_speed_ratio": (landed.column("first_speed_ratio"), down[down]),
-    }
+    known = {"time_s": rests, "first_speed_ratio": np.ones_like(rests)}
     found = []
     for name in INPUTS:
         values = landed.column(name)
@@ -203,17 +203,16 @@ def what_decides(of: Sample) -> list[dict[str, Any]]:
             {
                 "input": name, "landers": len(values),
                 "at_rest_lower_half": float(rests[lower].mean()), "at_rest_upper_half": float(rests[upper].mean()),
-                **{key: rank_correlation(landed, values, *one) for key, one in outcomes.items()},
+                **{key: rank_correlation(landed.where(one), name, key) for key, one in known.items()},
             }
         )  # fmt: skip
     return found
 
 
-def rank_correlation(of: Sample, one: np.ndarray, other: np.ndarray, chosen: np.ndarray) -> dict[str, float]:
-    """Spearman's correlation of two numbers of chosen landers, ranked within branches, with an interval of 90 %."""
-    first, second, beds = one[chosen], other[chosen], (of.column("bed") + 1000 * of.branch)[chosen]
-    branch, random = of.branch[chosen], np.random.default_rng(SEED)
-    ranks = [within(values, branch) for values in (first, second)]
+def rank_correlation(of: Sample, one: str, other: str) -> dict[str, float]:
+    """Spearman's correlation of two columns, ranked within branches, with an interval of 90 %."""
+    ranks, random = [within(of.column(name), of.branch) for name in (one, other)], np.random.default_rng(SEED)
+    beds = of.beds
     members = [np.flatnonzero(beds == bed) for bed in np.unique(beds)]
     draws = []
     for _ in range(500):
@@ -232,14 +231,19 @@ def within(values: np.ndarray, branch: np.ndarray) -> np.ndarray:
     return found
 
 
+def those_down(of: Sample) -> Sample:
+    """Those that touch down on Dimorphos."""
+    return of.where(np.isfinite(of.column("speed")))
+
+
 def touched_down(of: Sample) -> dict[str, int]:
     """How many landers touched down on Dimorphos, and how many of these came to rest there."""
-    down = np.isfinite(of.column("speed"))
-    return {"landers": int(down.sum()), "at_rest": int((of.column("end")[down] == "at_rest").sum())}
+    ends = those_down(of).column("end")
+    return {"landers": len(ends), "at_rest": int((ends == "at_rest").sum())}
 
 
 def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
-    """Ends of each branch, and of each rotation and descent."""
+    """Ends of each branch."""
     found = []
     for number_, branch in enumerate(branches(lander)):
         only = np.zeros(len(branches(lander)))
@@ -258,7 +262,7 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
     """All answers of one lander on one ground."""
     of = sample(rows, lander, ground)
     mean, draws = shares(of, "end", branch_weights(of, lander, at_rest=False))
-    resting = at_rest(of)
+    resting = of.where(of.column("end") == "at_rest")
     given = branch_weights(of, lander, at_rest=True)
     scored = {"end": [float(one) for one in mean]}
     for name in (*BINS, "cell", *(("face",) if ground == "soil" else ())):

@@ -7,7 +7,7 @@ lander's branches add up to 1; they are judgement, not measurement, so every ans
 import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -46,7 +46,7 @@ class Branch:
     descent: str
     aim: str
     weight: float
-    changes: Mapping[str, Any] = field(default_factory=dict)
+    changes: Mapping[str, Any]
 
     @property
     def name(self) -> str:
