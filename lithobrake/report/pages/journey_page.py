@@ -1,5 +1,6 @@
 """The page of a study of journeys: where and when they end, why, how sure that is, and the first touchdown."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,7 +39,11 @@ OF_FIRST = {"landing": "A first touchdown", "runs": "What the first touchdowns g
 def journey_content(data: JourneyPage) -> Content:
     """All that the page shows of the study."""
     first = Plot("ends", "Where the landers rest", words.rest_map(data), lambda: local_figure(place_map(data)))
-    sections = [_where(data), _when(data), _why(data), _sure(data), _method(data), _appendix(data)]
+    found = {plot.name: plot for plot in landing_plots(data)}
+    sections = [
+        *(_where(data), _when(data), _why(data, found), _sure(data)),
+        *(_method(data, found), _appendix(data, found)),
+    ]
     return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
 
 
@@ -58,9 +63,9 @@ def _when(data: JourneyPage) -> PageSection:
     return PageSection("When", plots, tables.time_tables(data))
 
 
-def _why(data: JourneyPage) -> PageSection:
+def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     """The parts of the variance, the sides of the lander, and the delivery options, as far as they are known."""
-    aim, variance = data.results.aim, _of_landings(data)["variance"]
+    aim, variance = data.results.aim, found["variance"]
     first = Plot("variance", "The same of the first touchdown", words.first_variance(data), variance.draw)
     plots = [
         Plot("end_variance", "What decides the ends", words.end_variance(data), lambda: _draw_ends(data)),
@@ -75,18 +80,18 @@ def _sure(data: JourneyPage) -> PageSection:
     return PageSection("How sure", tables=tables.sure_tables(data))
 
 
-def _method(data: JourneyPage) -> PageSection:
+def _method(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     """A touchdown, and what a reader can try."""
-    plots = [_of_first(data, "landing")]
+    plots = [_of_first(found, "landing")]
     return PageSection("Method", plots, site_tables(data), [*landing_views(data), *touchdown_sections(data)])
 
 
-def _appendix(data: JourneyPage) -> PageSection:
+def _appendix(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     """What the first touchdowns gave, how the ground was poured, and the tables of the first touchdowns."""
     bed = Plot("bed", "How the ground was made", captions.bed(data), lambda: draw_bed(data))
     return PageSection(
         "Appendix",
-        [_of_first(data, "runs"), bed],
+        [_of_first(found, "runs"), bed],
         tables.first_tables(
             [*drawn_tables.sure_tables(data), *drawn_tables.why_tables(data), *drawn_tables.method_tables(data)]
         ),
@@ -94,14 +99,9 @@ def _appendix(data: JourneyPage) -> PageSection:
     )
 
 
-def _of_first(data: JourneyPage, name: str) -> Plot:
-    """A figure of a drawn study that is of first touchdowns here."""
-    found = _of_landings(data)[name]
-    return Plot(name, OF_FIRST[name], words.of_first_touchdown(found.sentence), found.draw)
-
-
-def _of_landings(data: JourneyPage) -> dict[str, Plot]:
-    return {plot.name: plot for plot in landing_plots(data)}
+def _of_first(found: Mapping[str, Plot], name: str) -> Plot:
+    """A figure of a drawn study that is of first touchdowns here; found: those of a drawn study, by name."""
+    return Plot(name, OF_FIRST[name], words.of_first_touchdown(found[name].sentence), found[name].draw)
 
 
 def place_map(data: JourneyPage) -> PlaceMap:
