@@ -103,3 +103,22 @@ def test_quantiles_weigh_landers():
 
     values, weight = np.array([3.0, 1.0, 2.0]), np.array([1.0, 1.0, 8.0])
     assert quantiles(values, weight)[LEVELS.index(0.5)] == pytest.approx(2.0)
+
+
+def test_ranks_are_those_within_branches() -> None:
+    """Each branch falls, while both together rise."""
+    from answers import Sample, rank_correlation
+
+    branch = np.repeat([0, 1], 20)
+    speed = np.concatenate([np.arange(20.0), 100.0 + np.arange(20.0)])
+    time = np.concatenate([-np.arange(20.0), 1000.0 - np.arange(20.0)])
+    rows = [{"speed": a, "time_s": b, "bed": k} for k, (a, b) in enumerate(zip(speed, time, strict=True))]
+    found = rank_correlation(Sample(rows, branch, np.ones(40)), "speed", "time_s")
+    assert [found[key] for key in ("value", "lower", "upper")] == pytest.approx([-1.0, -1.0, -1.0])
+
+
+def test_who_misses_dimorphos_does_not_touch_down() -> None:
+    from answers import Sample, touched_down
+
+    rows = [{"speed": 0.05, "end": "at_rest"}, {"speed": 0.05, "end": "partner"}, {"speed": np.nan, "end": "escaped"}]
+    assert touched_down(Sample(rows, np.zeros(3), np.ones(3))) == {"landers": 2, "at_rest": 1}
