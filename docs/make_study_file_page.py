@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 from lithobrake.study import Study, known_keys
 from lithobrake.study.quantity import DISTRIBUTIONS, MaybeUncertain, Number, Numbers
 from lithobrake.study.template import toml_value
-from lithobrake.study.units import limits, table
+from lithobrake.study.units import is_named, limits, table
 
 LINE = 100  # characters, as on every page of the documentation
 HEAD = """# The study file
@@ -142,7 +142,7 @@ def page() -> str:
     lines = [HEAD.rstrip(), *DISTRIBUTION_ROWS, "", LOG_NORMAL, "", "## Above all sections", *TABLE, *rows(top)]
     for name, field in Study.model_fields.items():
         if (model := table(field)) is not None:
-            lines += section(name, model)
+            lines += section(f"{name}.NAME" if is_named(field) else name, model)
     return "\n".join([*lines, ""])
 
 

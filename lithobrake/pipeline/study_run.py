@@ -12,6 +12,7 @@ from lithobrake.campaign.model_server import PREFIX
 from lithobrake.chaos.threads import one_thread
 from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.folder.notes import NAME
 from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.state import grouped, read_state
@@ -99,6 +100,7 @@ def run_study(
     shown = shown or Silent()
     study = with_site_gravity(source.study, source.name)
     stages_until(study, until)
+    Soils(Site(study)).refuse(source.name)
     refuse_others_folder(source, out)
     if study.solver.command:
         what = "model of a server, which every run that is still to be made asks"

@@ -59,8 +59,8 @@ def bodies_again(
 def landing_study(folder: Path) -> Study:
     """The study of a folder, as far as a landing reads it."""
     # Nothing of a landing follows from the shape of the body, from the states from which landers were flown to the
-    # ground, or from the sky; no file of these need be where this folder was taken.
-    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key != "sky"}
+    # ground, or from the sky; no file of these need be where this folder was taken. Its soil is among its inputs.
+    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key not in ("sky", "soil")}
     site, delivery = (tables.get(name, {}) for name in ("site", "delivery"))
     tables["site"] = {key: value for key, value in site.items() if key not in OF_FILES}
     if "states" in delivery:

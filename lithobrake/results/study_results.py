@@ -21,6 +21,7 @@ from lithobrake.vocabulary.quantities import (
     JOURNEY_TOUCHDOWN,
     PAPER_DESIGNS,
     RUN,
+    SOIL,
     TOUCHDOWN,
     TOUCHDOWN_COST,
     Quantity,
@@ -49,7 +50,7 @@ SUMMARY_FORMAT = 4
 _RUN = ("key", "outcome")
 _PLACES = ("sample", "status", "latitude_deg", "longitude_deg")
 # Columns that hold no numbers.
-_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face"}
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
@@ -227,8 +228,9 @@ class StudyResults:
         """Every landing of the journeys: number, state in, state out, bed, soil and cost (docs/journeys.md)."""
         columns = tuple(JOURNEY_TOUCHDOWN)
         rows = self._journey_rows(TOUCHDOWNS, columns)
+        columns += tuple(SOIL) if "soil" in self.study else ()
         joined = joined_touchdowns(rows, self._rows(TOUCHDOWN_RUNS, _RUN), self.ledger)
-        known = RUN | TOUCHDOWN | JOURNEY_TOUCHDOWN | TOUCHDOWN_COST
+        known = RUN | TOUCHDOWN | JOURNEY_TOUCHDOWN | SOIL | TOUCHDOWN_COST
         return self._table("touchdown", joined, columns, known)
 
     def journey(self, number: int) -> "StudyJourney":

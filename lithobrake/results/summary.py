@@ -27,6 +27,7 @@ from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, 
 from lithobrake.results.side_results import SideResults
 from lithobrake.results.site_results import BedNumbers, SiteResults
 from lithobrake.results.sky_results import SkyResults
+from lithobrake.results.soil_results import SoilResults
 from lithobrake.vocabulary.screen import short_repr
 
 
@@ -94,6 +95,8 @@ class DrawnResults:
     """by sun and earth what the landers at rest see of it; empty where the study does not ask"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
+    soils: Mapping[str, SoilResults] = field(default_factory=dict)
+    """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
     regions: tuple[RestRegion, ...] = ()
     """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty with [journey], and for few"""
     __repr__ = short_repr

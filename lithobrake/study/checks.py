@@ -19,6 +19,7 @@ from lithobrake.study.lander_solids import lander_radius, main_radius
 from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
 from lithobrake.study.quantity import reach
 from lithobrake.study.rotation_checks import rotation_problems
+from lithobrake.study.soil_checks import soil_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -40,6 +41,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _limit_state_problems(study)
     yield from aim_problems(study)
     yield from journey_problems(study)
+    yield from soil_problems(study)
     yield from _touchdown_problems(study)
     yield from rotation_problems(study)
     yield from body_problems(study)

@@ -109,11 +109,11 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
                 yield from _tables(f"{path}.{name}".lstrip("."), kind)
 
 
-def _with_file(table: Any, folder: Path) -> Any:
+def _with_file(table: Any, folder: Path, key: str = "file") -> Any:
     """A table whose file, if it has one, is counted from a folder."""
-    if not isinstance(table, Mapping) or not isinstance(table.get("file"), str):
+    if not isinstance(table, Mapping) or not isinstance(table.get(key), str):
         return table
-    return {**table, "file": str(folder / table["file"])}
+    return {**table, key: str(folder / table[key])}
 
 
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -133,6 +133,9 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         table = result.get(section)
         if isinstance(table, dict) and isinstance(table.get(key), list):
             table[key] = [str(folder / name) if isinstance(name, str) else name for name in table[key]]
+    soil = result.get("soil")
+    if isinstance(soil, dict):
+        result["soil"] = {name: _with_file(region, folder, "facets") for name, region in soil.items()}
     sky = result.get("sky")
     if isinstance(sky, dict) and isinstance(orbiter := sky.get("orbiter"), Mapping):
         states = orbiter.get("states")

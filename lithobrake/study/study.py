@@ -6,7 +6,7 @@ A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobra
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import BaseModel, PrivateAttr, model_validator
+from pydantic import BaseModel, Field, PrivateAttr, model_validator
 
 from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, BedSection, default_bed_count
 from lithobrake.study.design_sections import (
@@ -32,6 +32,7 @@ from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 from lithobrake.study.question_sections import AimSection, LimitStatesSection
 from lithobrake.study.site_kernels import kernel_values
 from lithobrake.study.sky_section import SkySection
+from lithobrake.study.soil_section import SoilSection
 
 
 class Study(Section):
@@ -43,6 +44,7 @@ class Study(Section):
     """Everything random follows from this number."""
     bed: BedSection
     grain: GrainSection
+    soil: dict[str, SoilSection] = Field(default={})
     lander: LanderSection
     delivery: DeliverySection | None = None
     impact: ImpactSection
@@ -92,6 +94,10 @@ class Study(Section):
         most = None if self.design.half_width is None else self.design.most_runs
         counts = {"run_count": run_count, "largest_run_count": most}
         return self.model_copy(update={"design": self.design.model_copy(update=counts)})
+
+    def on_soil(self, region: str) -> "Study":
+        """The same study with the soil of one of its regions for [grain]."""
+        return self.model_copy(update={"grain": self.grain.model_copy(update=self.soil[region].grain.values())})
 
     @property
     def function(self) -> str | None:

@@ -39,7 +39,10 @@ def sections() -> Iterator[str]:
     """The text of each key of a study that is no table, and of each table with its keys, in their order."""
     for name, field in Study.model_fields.items():
         model = table(field)
-        yield _section(name, model) if model else _key(name, field)
+        if model and is_named(field):
+            yield _named_table(f"{name}.NAME", field).lstrip()
+        else:
+            yield _section(name, model) if model else _key(name, field)
 
 
 def commented(section: str) -> str:

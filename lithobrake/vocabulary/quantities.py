@@ -172,6 +172,10 @@ JOURNEY_TOUCHDOWN = {
     **{f"position_{axis}": Quantity("m", f"place of the impact along {axis}", FIXED) for axis in "xyz"},
     **{f"velocity_{axis}": Quantity("m/s", f"velocity of the impact along {axis}", FIXED) for axis in "xyz"},
 }
+# Where a touchdown is among the regions that have a soil of their own: a column of studies that have any, and the name
+# of the ground that has none.
+SOIL = {"soil": Quantity("", "region of the study file whose soil the lander meets; elsewhere: that of [grain]")}
+ELSEWHERE = "elsewhere"
 # Of the landers at delivery options (docs/aiming.md).
 AIM_FILE, AIM_COLUMNS = "aim.csv", ("ground", "aim", "refit", "status", "time_s", "distance")
 # The end of a lander whose impact the emulator does not know, and for which no landing is made.

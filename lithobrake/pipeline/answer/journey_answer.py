@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from lithobrake.analysis import LEVEL
 from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile
+from lithobrake.results.soil_results import SoilResults
 from lithobrake.results.summary import DrawnResults
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -26,7 +27,7 @@ def journey_answer(study: Study, results: DrawnResults) -> list[str]:
     ]
     if at_rest.why is not None:
         said.append(at_rest.why)
-    return [*said, *_rest(rest)]
+    return [*said, *_rest(rest), *_soils(results.soils)]
 
 
 def _others(ends: Mapping[str, EndShare]) -> str:
@@ -56,6 +57,16 @@ def _rest(rest: JourneyRest) -> list[str]:
         listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
         said.append("Side down: " + ", ".join(f"{name} {with_interval(one)}" for name, one in listed) + ".")
     return said
+
+
+def _soils(soils: Mapping[str, SoilResults]) -> list[str]:
+    """How many touchdowns there are on the soil of each region, and how many of them end at rest."""
+    listed = [
+        f"{name} ({percent(one.area_share)} of the surface) {one.touchdowns} touchdowns"
+        + (f", of which {with_interval(one.rests)} come to rest" if one.rests else "")
+        for name, one in soils.items()
+    ]
+    return [f"By soil: {'; '.join(listed)}."] if listed else []
 
 
 def _hours(one: RestQuantile) -> str:

@@ -13,6 +13,7 @@ from lithobrake.pipeline.answer.landing_results import write_results
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.shares_over_refits import Refits
 from lithobrake.pipeline.answer.sky_results import sky_results
+from lithobrake.pipeline.answer.soil_shares import soil_shares
 from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -43,6 +44,7 @@ def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: E
         journeys=len(table.end),
         touchdowns=table.touchdowns,
         emulated=emulated,
+        soils=soil_shares(job, table),
         sides=with_journeys(job.study, dict(found.sides), runs, touchdowns, landed),
         end_variance_shares=parts_of_journeys(job, runs, landed),
     )

@@ -7,8 +7,9 @@ import numpy as np
 from lithobrake.analysis import variance_shares
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.typed_estimates import variance_parts
-from lithobrake.pipeline.design.drawn_design import FLOWN
+from lithobrake.pipeline.design.drawn_design import FLOWN, GRAIN
 from lithobrake.pipeline.design.lander_attitude import independent_terms
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.run_results import VarianceParts
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
-SOIL = ("grain.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
+SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
 Inputs = dict[str, tuple["Distribution", np.ndarray]]
 
 
@@ -62,7 +63,19 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
         # Seen from the ground that each lander meets, its impact has another distribution than the study gives.
         drawn = job.design.delivered_rows
         values |= {name: np.array([row[name] for row in drawn]) for name in job.design.soil_inputs}
-    return {name: (law, values[name]) for name, law in (job.design.soil_inputs | told).items()}
+    found = {name: (law, values[name]) for name, law in (job.design.soil_inputs | told).items()}
+    return found | _soil_inputs(job, runs)
+
+
+def _soil_inputs(job: Job, runs: DesignRuns) -> Inputs:
+    """The soils that each journey draws, whatever the regions of its touchdowns; nothing where there is one soil."""
+    if not job.study.soil:
+        return {}
+    journeys, soils = runs.inputs["journey"].astype(int).tolist(), Soils(job.site)
+    own, drawn = [job.design.delivered_rows[journey] for journey in journeys], soils.drawn(journeys)
+    of_grain = {name: law for name, law in job.design.soil_inputs.items() if name.startswith(GRAIN)}
+    elsewhere = {name: (law, np.array([one[name] for one in own])) for name, law in of_grain.items()}
+    return elsewhere | {name: (law, drawn[name]) for name, law in soils.inputs.items()}
 
 
 def _delivery_inputs(job: Job, runs: DesignRuns) -> Inputs:

@@ -9,7 +9,9 @@ from typing import Any
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.folder.study_folder import AGAIN
+from lithobrake.results.intact import STUDY_FILE
 from lithobrake.results.journey_tables import JOURNEYS, TOUCHDOWNS
+from lithobrake.study import StudyError, load_tables
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 
 NUMBER, TOUCHDOWN = "journey", "touchdown"
@@ -18,8 +20,9 @@ ENDS: dict[str, JourneyEnd] = {
     TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST,
     TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY,
 }
-# What stays the same over the touchdowns of a journey: its soil, lander and bed.
-KEPT = ("grain.", "lander.", "solver.")
+# What stays the same over the touchdowns of a journey: its lander, its bed, and its soil where regions have none of
+# their own.
+SOIL, KEPT = "grain.", ("lander.", "solver.")
 # Stands for the moment at which a touchdown will have ended: after all others, as text.
 _LATER = "~"
 
@@ -70,11 +73,13 @@ def touchdown_keys(path: Path, every: Sequence[Record], asked: Collection[str], 
         return {row["key"] for row in read_rows(path / TOUCHDOWNS, ("key",), AGAIN)}
     last: dict[frozenset[tuple[str, float]], Record] = {}
     found: set[str] = set()
+    same = KEPT if _has_soils(path) else (SOIL, *KEPT)
     of_journeys = [record for record in every if NUMBER in record.inputs]
     for record in sorted(of_journeys, key=lambda one: (one.inputs[TOUCHDOWN], one.ended or _LATER)):
-        before = last.get(_kept(record))
+        kept = _kept(record, same)
+        before = last.get(kept)
         if record.key in asked or (before is not None and _goes_on(before, record)):
-            last[_kept(record)] = record
+            last[kept] = record
             found.add(record.key)
     return found
 
@@ -108,8 +113,17 @@ def _goes_on(before: Record, record: Record) -> bool:
     return follows and before.ended is not None and before.ended <= (record.ended or _LATER)
 
 
-def _kept(record: Record) -> frozenset[tuple[str, float]]:
-    """What the touchdowns of one journey share."""
+def _has_soils(path: Path) -> bool:
+    """Whether the study of a folder gives regions a soil of their own; not where its copy of the study is no study."""
+    try:
+        return "soil" in load_tables(path / STUDY_FILE)
+    except StudyError:
+        # What is wrong with the copy stands in the state of the folder.
+        return False
+
+
+def _kept(record: Record, kept: tuple[str, ...]) -> frozenset[tuple[str, float]]:
+    """What the touchdowns of one journey share: the bed, and numbers whose keys begin so."""
     inputs: Mapping[str, float] = record.inputs
-    same = (NUMBER, "bed", *(name for name in inputs if name.startswith(KEPT)))
+    same = (NUMBER, "bed", *(name for name in inputs if name.startswith(kept)))
     return frozenset((name, inputs[name]) for name in same if name in inputs)

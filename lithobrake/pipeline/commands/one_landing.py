@@ -8,11 +8,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.local_ground import on_local_ground
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.kernels import compile_kernels
-from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing
 from lithobrake.vocabulary.plain_text import closest
@@ -83,6 +84,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
     study = with_site_gravity(study, "the study")
+    Soils(Site(study)).refuse("the study")
     values = _values(study, number)
     own = OF_JOURNEYS if study.journey is not None else ()
     free = {key: value for key, value in values.items() if key not in own}
@@ -93,6 +95,11 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
         raise ValueError(
             f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
             "(delivery.states, delivery.release), whose first impact follows from there; change the study file"
+        )
+    if study.soil and any(key.startswith(GRAIN) for key in changed):
+        raise ValueError(
+            f"--set names {', '.join(changed)}; allowed: nothing of grain in a study with [soil], whose touchdowns "
+            "take the soil of where they are; change the study file"
         )
     _refuse(study, free | changed)
     if study.journey is None:

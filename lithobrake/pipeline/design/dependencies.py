@@ -9,6 +9,7 @@ import numpy as np
 from lithobrake import __version__
 from lithobrake.campaign import Command, run_key
 from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.pipeline.design.soils import soil_dependencies
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
@@ -113,6 +114,7 @@ def design_dependencies(study: Study) -> dict[str, Any]:
         "drawn": _drawn_dependencies(study),
         "fixed": fixed,
         "inputs": laws,
+        **soil_dependencies(study),
     }
 
 

@@ -14,6 +14,7 @@ from lithobrake.pipeline.design.free_rotation import lander_inertia, turned_in_f
 from lithobrake.pipeline.design.local_ground import on_ground
 from lithobrake.pipeline.design.release_draws import released_states
 from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_uniforms, roughness
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.contact_checks import contact_problems
@@ -120,6 +121,7 @@ class Descents:
             row = rows[lander] | self._impact(lander)
             found.append(row | self._attitude(lander, row))
         start = flights.start
+        found = Soils(Site(self.study)).on_soil(found, flights.position[down])
         return on_ground(
             flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
             start.spin_period[down],
@@ -212,6 +214,7 @@ def _refuse_fast(study: Study, speed: np.ndarray) -> None:
     """Raise StudyError where the fastest lander comes in too fast for any contact [m/s]."""
     if not len(speed) or not study.has_soil:
         return
-    fastest = study.impact.model_copy(update={"speed": float(speed.max())})
-    if wrong := list(contact_problems(study.model_copy(update={"impact": fastest}))):
-        raise StudyError(wrong)
+    fastest = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": float(speed.max())})})
+    for one in (fastest, *map(fastest.on_soil, study.soil)):
+        if wrong := list(contact_problems(one)):
+            raise StudyError(wrong)

@@ -33,7 +33,7 @@ from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, give
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
-AZIMUTH = "impact.azimuth_deg"
+AZIMUTH, GRAIN = "impact.azimuth_deg", "grain."
 # Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
 # an azimuth that is given leaves the others as they were.
 DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
@@ -119,7 +119,7 @@ class DrawnDesign:
     @cached_property
     def delivered_rows(self) -> list[dict[str, float]]:
         """The same as the study draws them: an impact against the facets of the body's shape, under no acceleration of
-        the place.
+        the place, on [grain] in whatever region.
         """
         return self._delivered(self.rows_at(self.beds, self._points(len(self.beds))), 0)
 
@@ -137,6 +137,11 @@ class DrawnDesign:
         if row is None:
             raise ValueError(f"lander {run + 1} of the study never touches down; choose another")
         return row
+
+    def own_soil(self, run: int) -> dict[str, float]:
+        """The numbers of [grain] that a run draws, by dotted key, whatever the region that it comes down in."""
+        (row,) = self.rows_at([0], self._points(1, skip=run))
+        return {name: value for name, value in row.items() if name.startswith(GRAIN)}
 
     @property
     def shown_row(self) -> dict[str, float]:

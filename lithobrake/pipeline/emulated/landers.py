@@ -7,8 +7,9 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.arrival import FLATTEST_DEG
+from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
-from lithobrake.pipeline.design.local_ground import AZIMUTH, felt, friction_of, ground_inputs
+from lithobrake.pipeline.design.local_ground import AZIMUTH, friction_of, ground_inputs
 from lithobrake.pipeline.design.rough_ground import roughness
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals

@@ -37,6 +37,10 @@ ALONG, ASIDE, DURATION, _ = TO_REST
 OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL = ("impact.", "surface.")
+ONE_SOIL = (
+    "The study has no emulator of its touchdowns: it would have one soil for all of the body, and [soil] gives regions "
+    "their own."
+)
 # How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
 FACTOR, DEGREES = 1.1, 5.0
 LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
@@ -146,7 +150,7 @@ class TouchdownEmulator:
 def fit_touchdowns(job: Job) -> str | None:
     """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
     runs = with_attitude(job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN))
-    why = _why_none(runs)
+    why = ONE_SOIL if job.study.soil else _why_none(runs)
     if why is not None:
         job.folder.write_json(FILE, {"why": why})
         return why

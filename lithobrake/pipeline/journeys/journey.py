@@ -11,8 +11,9 @@ from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
+from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
-from lithobrake.pipeline.design.local_ground import felt, friction_of, ground_inputs
+from lithobrake.pipeline.design.local_ground import friction_of, ground_inputs
 from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
 from lithobrake.pipeline.journeys.journey_model import on_ground
 from lithobrake.pipeline.journeys.resting_attitude import side_down
@@ -149,6 +150,7 @@ class Journey:
         x, y, turn, *gradient = random.random(5).tolist()
         incidence = self._meet_ground(flight, gradient)
         azimuth = 360.0 * turn
+        self.row = {**self.row, **self.model.soil(self.number, self.origin)}
         arrival = {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - self.time,
@@ -195,6 +197,7 @@ class Journey:
             "longitude_deg": longitude,
             **{f"position_{axis}": float(value) for axis, value in zip("xyz", place, strict=True)},
             **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", self._incoming(), strict=True)},
+            **self.model.soil_column(place),
         }
 
     def _incoming(self) -> np.ndarray:

@@ -10,8 +10,10 @@ import numpy as np
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.free_rotation import lander_inertia
 from lithobrake.pipeline.design.rough_ground import roughness
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study.touchdown_model import PLACE
+from lithobrake.vocabulary.quantities import SOIL
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights, Shape
@@ -73,6 +75,25 @@ class JourneyModel:
             return row[PLACE[0]], row[PLACE[1]]
         (west, east), (south, north) = self.design.region
         return west + x * (east - west), south + y * (north - south)
+
+    @cached_property
+    def soils(self) -> Soils:
+        """The soils of the regions of the body."""
+        return Soils(self.site)
+
+    def soil(self, journey: int, place: np.ndarray) -> dict[str, float]:
+        """The numbers of the grains that a lander meets at a place [m], [3], by dotted key; none where no region has a
+        soil of its own, and all ground is what the lander met first.
+        """
+        if not self.design.study.soil:
+            return {}
+        own = self.design.own_soil(journey)
+        (met,) = self.soils.on_soil([own | {"journey": float(journey)}], place[None])
+        return {key: met[key] for key in own}
+
+    def soil_column(self, place: np.ndarray) -> dict[str, str]:
+        """The region of a touchdown at a place [m], [3], as its table has it; nothing where there are no regions."""
+        return dict(zip(SOIL, self.soils.at(place[None]), strict=True)) if self.design.study.soil else {}
 
     def fly(
         self, position: np.ndarray, velocity: np.ndarray, left: float, start: float, mass: float, spin_period: float

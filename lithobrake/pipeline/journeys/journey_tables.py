@@ -15,6 +15,7 @@ from lithobrake.vocabulary.quantities import (
     JOURNEY,
     JOURNEY_TOUCHDOWN,
     JOURNEYS_FILE,
+    SOIL,
     TOUCHDOWNS_FILE,
 )
 
@@ -25,7 +26,8 @@ def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     """Write journeys.csv, touchdowns.csv and arcs.csv."""
     write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
-    write_table(folder, TOUCHDOWNS_FILE, tuple(JOURNEY_TOUCHDOWN), touchdowns, JOURNEY_TOUCHDOWN)
+    columns = JOURNEY_TOUCHDOWN | (SOIL if any(journey.model.design.study.soil for journey in journeys) else {})
+    write_table(folder, TOUCHDOWNS_FILE, tuple(columns), touchdowns, columns)
     flights = [[row[name] for name in ARC] for journey in journeys for row in _flights(journey)]
     write_table(folder, FLIGHTS_FILE, tuple(ARC), flights, ARC)
 

@@ -10,6 +10,7 @@ from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedBoulders, PlannedGrains, PlannedTile
 from lithobrake.pipeline.planning.planned_ground import PlannedGround
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.planned_soils import PlannedSoils
 from lithobrake.pipeline.planning.runs_a_bed import RunsABed
 
 
@@ -38,6 +39,7 @@ class Plan:
     tile            of ground that repeats; None where it does not
     site_slope_deg  of the ground at the site, against gravity and rotation together
     ground          of the first touchdowns of journeys; None for other studies
+    soils           of regions of the body; None where it has one soil
     delivery        how landers that are delivered as states reach the ground, in a sentence; None for others
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
@@ -61,6 +63,7 @@ class Plan:
     boulders: PlannedBoulders | None = None
     tile: PlannedTile | None = None
     ground: PlannedGround | None = None
+    soils: PlannedSoils | None = None
     delivery: str | None = None
     inference: ExpectedInference | None = None
 

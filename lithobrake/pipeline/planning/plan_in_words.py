@@ -28,6 +28,7 @@ def plan_lines(plan: Plan) -> list[str]:
         lines += [f"  {plan.basis}"]
     lines += [_site(plan.site_slope_deg)]
     lines += [plan.ground.line()] if plan.ground else []
+    lines += [plan.soils.line()] if plan.soils else []
     lines += [plan.delivery] if plan.delivery else []
     lines += [plan.tile.line()] if plan.tile else []
     lines += [plan.grains.line()] if plan.grains else []

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.folder.owner import refuse_others_folder
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.inference.expected_inference import ExpectedInference
@@ -28,6 +29,7 @@ from lithobrake.pipeline.planning.planned_beds import (
 )
 from lithobrake.pipeline.planning.planned_ground import planned_ground
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
+from lithobrake.pipeline.planning.planned_soils import planned_soils
 from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.touchdown_runs import known_runs
@@ -52,6 +54,7 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     source = StudySource.read(path)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
+    Soils(Site(study)).refuse(source.name)
     plan = plan_of(grown(DrawnDesign(study), folder), Site(study), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
 
@@ -111,6 +114,7 @@ def plan_of(
         boulders=planned_boulders(study),
         tile=planned_tile(study),
         ground=planned_ground(design),
+        soils=planned_soils(site),
         delivery=_delivery(design),
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
 from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.design.local_ground import felt
+from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.sky.seen_from_rest import views
 from lithobrake.pipeline.sky.where_they_stand import Days, where_it_stands

@@ -1,6 +1,6 @@
 """The mark of a place on a map, and the edges of regions of highest density."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -27,6 +27,9 @@ SITE_STYLE: dict[str, Any] = {
     "markeredgewidth": 1.6,
     "path_effects": [Stroke(linewidth=3.4, foreground="white"), Normal()],
 }
+# Of the edges of regions with a soil of their own.
+SOIL_STYLE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (1.0, 1.6))}
+Outlines = Sequence[Sequence[tuple[float, float]]]
 # Beyond this a region is dashed.
 LARGE_SHARE = 0.9
 
@@ -57,3 +60,10 @@ def draw_edges(axes: Axes, regions: Sequence[RestRegion], ground: GroundMap, col
             x, y = ground.line(*np.array(line).T)
             axes.plot(x, y, color="white", linewidth=2.4, zorder=3.5, alpha=0.8)
             axes.plot(x, y, region_style(region), color=colour, linewidth=1.3, zorder=4)
+
+
+def draw_soils(axes: Axes, soils: Mapping[str, Outlines], ground: GroundMap) -> None:
+    """The edges of regions with a soil of their own, latitude and longitude [deg], on this half of the body."""
+    for lines in soils.values():
+        for line in lines:
+            axes.plot(*ground.line(*np.array(line).T), zorder=2.5, **SOIL_STYLE)

@@ -1,7 +1,7 @@
 """Where landers end: their places and the smallest regions that hold them, about the aim point and all around."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,16 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.density import MANY, cell_counts, density_colours, density_norm, draw_cells
 from lithobrake.report.figures.ground_map import GroundMap, MapPanel, panel_around
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
-from lithobrake.report.figures.map_marks import SITE_STYLE, draw_edges, fill_regions, mark_site, region_style
+from lithobrake.report.figures.map_marks import (
+    SITE_STYLE,
+    SOIL_STYLE,
+    Outlines,
+    draw_edges,
+    draw_soils,
+    fill_regions,
+    mark_site,
+    region_style,
+)
 from lithobrake.report.figures.shares import Share, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.regions import RestRegion
@@ -56,13 +65,15 @@ class Regions:
 class PlaceMap:
     """What a map shows: places and regions by outcome, the aim point [deg], and the radius of the body there [m].
 
-    The first regions are filled, of the others the edges are drawn.
+    The first regions are filled, of the others the edges are drawn. soils: latitude and longitude [deg] along the edges
+    of regions with a soil of their own, by name.
     """
 
     places: Sequence[Places]
     regions: Sequence[Regions]
     aim: tuple[float, float]
     radius: float
+    soils: Mapping[str, Outlines] = field(default_factory=dict)
 
     @property
     def ground(self) -> GroundMap:
@@ -121,6 +132,7 @@ def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> N
         if place == 0 and not any(places.are_many for places in shown.places):
             fill_regions(axes, one.found, ground, one.colour)
         draw_edges(axes, one.found, ground, one.colour)
+    draw_soils(axes, shown.soils, ground)
     for places in shown.places:
         outside += _draw_places(axes, places, ground, panel, norm)
     mark_site(axes, 0.0, 0.0)
@@ -173,6 +185,7 @@ def _draw_half(axes: Axes, shown: PlaceMap, ground: GroundMap, norm: LogNorm, ti
     disc = frame_half(axes, ground, title)
     for one in shown.regions:
         draw_edges(axes, one.found, ground, one.colour)
+    draw_soils(axes, shown.soils, ground)
     for places in shown.places:
         _draw_places(axes, places, ground, None, norm)
     for line in axes.lines:
@@ -208,6 +221,9 @@ def _handles(shown: PlaceMap) -> list[Line2D]:
         for region in one.found:
             words, style = f"smallest region with {percent(region.share)} of {one.of}", region_style(region)
             handles.append(Line2D([], [], linestyle=style, color=one.colour, linewidth=1.3, label=words))
+    if any(shown.soils.values()):
+        named = ", ".join(name for name, lines in shown.soils.items() if lines)
+        handles.append(Line2D([], [], label=f"edges of soils ({named})", **SOIL_STYLE))
     handles.append(Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11}))
     return handles
 

@@ -73,7 +73,7 @@ def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     ]
     if aim is not None:
         plots.append(Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim)))
-    return PageSection("Why", plots, tables.side_tables(data))
+    return PageSection("Why", plots, [*tables.soil_tables(data), *tables.side_tables(data)])
 
 
 def _sure(data: JourneyPage) -> PageSection:
@@ -116,6 +116,7 @@ def place_map(data: JourneyPage) -> PlaceMap:
         regions=regions,
         aim=(site.latitude_deg, site.longitude_deg),
         radius=float(np.linalg.norm(site.place_m)),
+        soils={name: one.outlines for name, one in data.results.soils.items()},
     )
 
 

@@ -160,6 +160,23 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
     return [PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))] if rows else []
 
 
+def soil_tables(data: JourneyPage) -> list[PageTable]:
+    """What becomes of the landers by the soil of the region that they come down in; none for a study of one soil."""
+    columns = ["soil", "part of the surface", "touchdowns", "of these at rest", "of all journeys at rest there"]
+    rows = [
+        [
+            name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests) if one.rests else "",
+            with_interval(one.at_rest),
+        ]
+        for name, one in data.results.soils.items()
+    ]  # fmt: skip
+    note = (
+        "By the region of the study file in which a lander comes down; elsewhere the soil is that of [grain]. In "
+        f"brackets {percent(LEVEL)} intervals, of each region by itself."
+    )
+    return [PageTable("By soil", columns, rows, note, frozenset(columns[1:]))] if rows else []
+
+
 def sure_tables(data: JourneyPage) -> list[PageTable]:
     """How the journeys ended, by landings and by the emulator."""
     return [_ends(data)]

@@ -62,6 +62,8 @@ def rest_map(data: JourneyPage) -> str:
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     said += _delivery(data)
+    if len(data.results.soils) > 1:
+        said.append("Dotted: edges of the regions that have a soil of their own, to a degree.")
     return " ".join(said) or "Each dot is a lander."
 
 

@@ -14,8 +14,8 @@ import lithobrake
 from lithobrake.export import Push, export_study, write_push
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
-from lithobrake.pipeline.design.local_ground import felt
 from lithobrake.pipeline.journeys.stages import journey_dependencies
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import Flights, Launch, fly, hop, rotation_history, tumble

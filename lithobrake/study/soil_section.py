@@ -1,0 +1,87 @@
+"""The tables of the study file that give regions of the body a soil of their own."""
+
+import re
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field
+
+from lithobrake.study.material_sections import (
+    Cohesion,
+    Density,
+    Friction,
+    PoissonRatio,
+    Restitution,
+    SurfaceEnergy,
+    YoungModulus,
+)
+from lithobrake.study.quantity import Numbers, Scalar, Section, Uncertain
+from lithobrake.vocabulary.plain_text import show
+
+Between = tuple[float, float]
+
+
+class SoilGrainSection(Section):
+    """What the grains of a region are made of, where that differs from [grain]; sizes are those of [bed] everywhere."""
+
+    density: Density | None = None
+    """Density of the rock; absent, here and below: that of [grain]."""
+    young_modulus: YoungModulus | None = None
+    """Young's modulus."""
+    poisson_ratio: PoissonRatio | None = None
+    """Poisson's ratio."""
+    restitution: Restitution | None = None
+    """Coefficient of restitution between grains."""
+    friction: Friction | None = Field(default=None, examples=['{ distribution = "uniform", lower = 0.2, upper = 0.4 }'])
+    """Coefficient of friction."""
+    rolling_friction: Friction | None = None
+    """Resistance to rolling."""
+    spinning_friction: Friction | None = None
+    """Resistance to spinning about the contact normal."""
+    cohesion_force: Cohesion | None = None
+    """Pull of every contact, whatever its size."""
+    surface_energy: SurfaceEnergy | None = None
+    """Pull of a contact in proportion to its radius."""
+
+    def values(self) -> dict[str, Scalar]:
+        """The numbers that differ, by their names in [grain]."""
+        given = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in given.items() if isinstance(value, float | Uncertain)}
+
+
+class SoilSection(Section):
+    """A soil of a region of the body, with [journey]; any number of regions, each in a table [soil.NAME] of its own. A
+    region is the ground within all of its bounds; where regions overlap the first in the file counts, and where there
+    is none [grain]. Beds are those of [bed] and [grain] everywhere: a touchdown in the region is made on one of them
+    with the region's materials. A lander has one draw of the soil of each region, which it meets again whenever it
+    comes back."""
+
+    latitude_deg: Annotated[Between, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
+    """Between which planetocentric latitudes it lies; absent, here and below: at any."""
+    longitude_deg: Annotated[Between, Numbers("deg", at_least=-360, at_most=360, count=2)] | None = None
+    """From which longitude eastward to which; [170, -170] goes across 180."""
+    slope_deg: Annotated[Between, Numbers("deg", at_least=0, at_most=180, count=2, ascending=True)] | None = None
+    """Between which slopes its facets lie, at their centres against gravity, rotation and the partner's tide at the
+    medians of [site]; above 90 the ground does not hold what lies on it."""
+    facets: str | None = Field(default=None, examples=['"ponds.csv"'])
+    """Text file, counted from the study file, with the numbers of its facets in the shape of the body, from 0, one a
+    line."""
+    grain: SoilGrainSection
+
+    @property
+    def has_bounds(self) -> bool:
+        """Whether anything says where it lies."""
+        return any(one is not None for one in (self.latitude_deg, self.longitude_deg, self.slope_deg, self.facets))
+
+
+def facet_numbers(path: Path) -> tuple[int, ...]:
+    """The numbers in a file of facets. Raises ValueError for a line that is none, or no number at all; OSError."""
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
+        text = line.strip()
+        if text and not re.fullmatch(r"\d{1,9}", text, re.ASCII):
+            raise ValueError(f"line {number} is {show(text)}; allowed: a whole number from 0; mend that line")
+        found += [int(text)] if text else []
+    if not found:
+        raise ValueError("it has no facet; write their numbers, from 0, one a line")
+    return tuple(found)

@@ -1,0 +1,300 @@
+"""Regions of a body with a soil of their own: where they lie, what is drawn for them, and what landers meet there."""
+
+import math
+from copy import deepcopy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.pipeline import run_study
+from lithobrake.pipeline.commands.one_landing import landing_inputs
+from lithobrake.pipeline.commands.site_maps import map_sites
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.planning.planned_soils import planned_soils
+from lithobrake.pipeline.runs.solver import function_identity
+from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.results import StudyResults
+from lithobrake.results.summary import DrawnResults
+from lithobrake.study import Study, StudyError
+from lithobrake.study.source import StudySource
+from lithobrake.vocabulary.quantities import ELSEWHERE
+
+from ...smallbody.meshes import sphere_mesh
+
+RADIUS, DENSITY, FREQUENCY = 80.0, 2000.0, 8
+# The least restitution with which a lander bounces off.
+BOUNCES = 0.2
+SINK = {"latitude_deg": [-90.0, 0.0], "grain": {"restitution": 0.1}}
+STRIP = {
+    "latitude_deg": [0.0, 90.0],
+    "longitude_deg": [-20.0, 60.0],
+    "grain": {"friction": {"distribution": "uniform", "lower": 0.2, "upper": 0.3}},
+}
+TABLES: dict[str, Any] = {
+    "seed": 3,
+    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
+    "grain": {
+        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
+        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
+    },
+    "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
+    "delivery": {
+        "latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
+        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
+        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
+        "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0},
+    },
+    "journey": {"count": 24, "duration": 20000.0},
+    "flight": {"gravity": "exact"},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A ball as a mesh."""
+    vertices, faces = sphere_mesh(FREQUENCY)
+    path = tmp_path_factory.mktemp("body") / "ball.obj"
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (RADIUS * vertices).tolist()]
+    path.write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist())]) + "\n")
+    return path
+
+
+def tables(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a study on that ball, which turns slowly."""
+    found = deepcopy(TABLES)
+    mass = DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3
+    found["site"] = {"body": str(body), "mass": mass, "spin_period": 1e7}
+    for name, table in changes.items():
+        found.setdefault(name, {}).update(table)
+    return found | ({"soil": soil} if soil else {})
+
+
+def read(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> Study:
+    return StudySource.of_tables(tables(body, soil, **changes)).study
+
+
+def soils(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> Soils:
+    return Soils(Site(read(body, soil, **changes)))
+
+
+def touchdown(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """A landing that is captured by ground of little restitution, and of a slow lander; others fly on."""
+    speed, incidence = inputs["impact.speed"], math.radians(inputs["impact.incidence_deg"])
+    along, up = 0.8 * speed * math.sin(incidence), inputs["grain.restitution"] * speed * math.cos(incidence)
+    if inputs["grain.restitution"] < BOUNCES or up < 0.004:
+        return {"outcome": "captured", "outputs": {"contacts": 1.0}}
+    names = ("speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z")
+    values = (math.hypot(along, up), math.atan2(up, along), 0.1, along, 0.0, up)
+    return {"outcome": "clear", "outputs": dict(zip(names, values, strict=True))}
+
+
+@pytest.fixture(scope="module")
+def made(body_file: Path, tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """A study whose southern half captures every lander, and whose north has a strip with another friction."""
+    folder = tmp_path_factory.mktemp("soils") / "out"
+    given = tables(body_file, {"sink": SINK, "strip": STRIP})
+    return lithobrake.run(given, folder, workers=1, model=touchdown, report=False)
+
+
+def run_touchdowns(given: dict[str, Any], folder: Path) -> None:
+    source = StudySource.of_tables(given, function_identity(touchdown))
+    run_study(source, folder, until="runs", worker_count=1, model=touchdown)
+
+
+def band(south: float, north: float) -> float:
+    """The part of a sphere between two latitudes [deg]."""
+    return 0.5 * (math.sin(math.radians(north)) - math.sin(math.radians(south)))
+
+
+def test_bounds_have_the_areas_of_a_sphere(body_file: Path) -> None:
+    wedge = {"latitude_deg": [-20.0, 35.0], "longitude_deg": [170.0, -150.0], "grain": {"friction": 0.3}}
+    belt = {"latitude_deg": [-20.0, 35.0], "grain": {"friction": 0.4}}
+    found = soils(body_file, {"wedge": wedge, "belt": belt}).area_shares()
+    assert sum(found.values()) == pytest.approx(1.0, abs=1e-12)
+    # Facets of this mesh lie up to a hundredth of the radius below the sphere.
+    assert found["wedge"] == pytest.approx(band(-20.0, 35.0) * 40.0 / 360.0, abs=2e-3)
+    # The first in the file counts where both hold the ground.
+    assert found["belt"] == pytest.approx(band(-20.0, 35.0) * 320.0 / 360.0, abs=4e-3)
+    assert found[ELSEWHERE] == pytest.approx(1.0 - band(-20.0, 35.0), abs=4e-3)
+
+
+def test_places_lie_where_their_latitudes_and_longitudes_say(body_file: Path) -> None:
+    found = soils(body_file, {"far": {"longitude_deg": [170.0, -170.0], "grain": {"friction": 0.3}}})
+    longitude = np.array([169.0, 171.0, 180.0, -171.0, -169.0, 0.0])
+    points = found.site.body.shape.surface_point(np.zeros(6), longitude)
+    assert found.at(points) == [ELSEWHERE, "far", "far", "far", ELSEWHERE, ELSEWHERE]
+
+
+def test_slopes_are_those_of_gravity_and_rotation(body_file: Path) -> None:
+    # On a ball that turns at w times the rate of a grazing orbit, squared, the ground at a latitude slopes by this.
+    w = 0.6
+    period = 2.0 * math.pi / math.sqrt(w * 6.6743e-11 * DENSITY * 4.0 / 3.0 * math.pi)
+
+    def slope(latitude: np.ndarray) -> np.ndarray:
+        return np.arctan2(w * np.sin(latitude) * np.cos(latitude), 1.0 - w * np.cos(latitude) ** 2)
+
+    heights = np.linspace(-1.0, 1.0, 100_001)
+    steep = math.radians(20.0)
+    expected = float((slope(np.abs(np.arcsin(heights))) > steep).mean())
+    region = {"slope_deg": [20.0, 180.0], "grain": {"friction": 0.3}}
+    found = soils(body_file, {"steep": region}, site={"spin_period": period}).area_shares()["steep"]
+    assert 0.2 < expected < 0.6
+    assert found == pytest.approx(expected, abs=0.03)
+
+
+def test_facets_are_those_of_the_file(body_file: Path, tmp_path: Path) -> None:
+    (tmp_path / "ponds.csv").write_text("7\n\n12\n13\n")
+    found = soils(body_file, {"ponds": {"facets": str(tmp_path / "ponds.csv"), "grain": {"friction": 0.3}}})
+    shape = found.site.body.shape
+    area = shape.facet_sizes**2
+    assert found.area_shares()["ponds"] == pytest.approx(area[[7, 12, 13]].sum() / area.sum())
+    centres = shape.corners.mean(axis=1)[[7, 8, 13]]
+    assert found.at(centres) == ["ponds", ELSEWHERE, "ponds"]
+
+
+def test_a_further_region_changes_no_draw(body_file: Path) -> None:
+    alone = soils(body_file, {"strip": STRIP}).drawn(range(6))["soil.strip.grain.friction"]
+    grain = {**STRIP["grain"], "cohesion_force": {"distribution": "log_uniform", "lower": 1e-6, "upper": 1e-5}}
+    both = soils(body_file, {"sink": SINK, "strip": {**STRIP, "grain": grain}})
+    drawn = both.drawn([5, 2])
+    assert drawn["soil.strip.grain.friction"].tolist() == alone[[5, 2]].tolist()
+    assert drawn["soil.sink.grain.restitution"].tolist() == [0.1, 0.1]
+    assert len(set(alone.tolist())) == 6
+    assert ((alone > 0.2) & (alone < 0.3)).all()
+
+
+def test_every_touchdown_is_on_the_soil_of_its_place(made: StudyResults, body_file: Path) -> None:
+    table = made.touchdowns
+    north, east = table["latitude_deg"] > 0.0, table["longitude_deg"]
+    strip = north & (east >= -20.0) & (east <= 60.0)
+    expected = np.where(~north, "sink", np.where(strip, "strip", ELSEWHERE))
+    assert table["soil"].tolist() == expected.tolist()
+    assert set(expected.tolist()) == {"sink", "strip", ELSEWHERE}
+    assert (table["grain.restitution"] == np.where(north, 0.5, 0.1)).all()
+    study = with_site_gravity(read(body_file, {"sink": SINK, "strip": STRIP}))
+    in_strip, design = Soils(Site(study)).drawn(range(24))["soil.strip.grain.friction"], DrawnDesign(study)
+    journey = table["journey"].astype(int)
+    own = np.array([design.own_soil(number)["grain.friction"] for number in range(24)])
+    # One draw of a journey for the strip, wherever it was before, and one for all other ground.
+    assert table["grain.friction"].tolist() == np.where(strip, in_strip[journey], own[journey]).tolist()
+    back = [n for n in range(24) if len(set(table["soil"][journey == n].tolist())) > 1]
+    assert back
+
+
+def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
+    results = made.results
+    assert isinstance(results, DrawnResults)
+    assert results.ends is not None
+    found, table = results.soils, made.touchdowns
+    assert list(found) == ["sink", "strip", ELSEWHERE]
+    assert sum(one.touchdowns for one in found.values()) == table.row_count
+    assert sum(one.at_rest.share for one in found.values()) == pytest.approx(results.ends["at_rest"].share)
+    sink, rest = found["sink"], found[ELSEWHERE]
+    assert sink.rests is not None
+    assert rest.rests is not None
+    assert sink.rests.share == 1.0
+    assert sink.rests.count == sink.touchdowns == (table["soil"] == "sink").sum()
+    assert sink.area_share == pytest.approx(0.5, abs=2e-3)
+    # Elsewhere a lander bounces at its first touchdown at least.
+    assert rest.rests.share <= 0.5
+    assert rest.rests.upper is None or rest.rests.upper < 0.9
+    assert any(line.startswith("By soil: sink (50 % of the surface)") for line in results.answer)
+    south = np.array([point for line in sink.outlines for point in line])
+    assert np.abs(south[:, 0]).max() < 1.0
+
+
+def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
+    journey = {"count": 8}
+    everywhere = {"latitude_deg": [-90.0, 90.0], "grain": {"restitution": 0.5}}
+    run_touchdowns(tables(body_file, {}, journey=journey), tmp_path / "one")
+    run_touchdowns(tables(body_file, {"all": everywhere}, journey=journey), tmp_path / "all")
+    for name in ("journeys.csv", "arcs.csv", "designs/drawn.csv", "designs/touchdowns.csv"):
+        assert (tmp_path / "all" / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
+    plain, named = ((tmp_path / name / "touchdowns.csv").read_text().splitlines() for name in ("one", "all"))
+    assert named == [f"{plain[0]},soil", *(f"{line},all" for line in plain[1:])]
+
+
+def test_the_plan_states_the_regions(body_file: Path, tmp_path: Path) -> None:
+    found = planned_soils(Site(read(body_file, {"sink": SINK})))
+    assert found is not None
+    assert found.aim == "sink"
+    assert found.line().startswith("Soils: sink 50.0 %, elsewhere 50.0 % of the surface; the aim point is in sink.")
+    assert planned_soils(Site(read(body_file, {}))) is None
+
+
+FRICTION = {"friction": 0.3}
+WRONG: dict[str, tuple[dict[str, Any], str]] = {
+    "no bounds": ({"a": {"grain": FRICTION}}, r"soil\.a has no bounds; allowed: one at least of latitude_deg"),
+    "no soil": ({"a": {"latitude_deg": [0.0, 1.0], "grain": {}}}, r"soil\.a\.grain is empty"),
+    "reversed": (
+        {"a": {"latitude_deg": [1.0, 0.0], "grain": FRICTION}},
+        r"latitude_deg is .*write the smaller one first",
+    ),
+    "no width": ({"a": {"longitude_deg": [10.0, 370.0], "grain": FRICTION}}, r"longitude_deg is \[10, 370\]; allowed"),
+    "a size": (
+        {"a": {"slope_deg": [0, 1], "grain": {"diameter": 0.1}}},
+        r"soil\.a\.grain\.diameter is not a known key",
+    ),
+    "a name": ({"elsewhere": {"slope_deg": [0, 1], "grain": FRICTION}}, r"soil\.elsewhere is no name"),
+    "a range": (
+        {"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
+        r"soil\.a\.grain\.restitution is 1\.5; allowed",
+    ),
+    "soft": ({"a": {"slope_deg": [0, 1], "grain": {"young_modulus": 1e-3}}}, r"soil\.a: impact\.speed reaches"),
+    "no file": ({"a": {"facets": "/nowhere.csv", "grain": FRICTION}}, r"soil\.a\.facets: /nowhere\.csv: No such file"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_study_of_no_such_regions_is_refused(case: str, body_file: Path) -> None:
+    soil, words = WRONG[case]
+    with pytest.raises(StudyError, match=words):
+        read(body_file, soil)
+
+
+def test_lines_of_facets_are_numbers(body_file: Path, tmp_path: Path) -> None:
+    path = tmp_path / "ponds.csv"
+    path.write_text("facet\n3\n")
+    with pytest.raises(StudyError, match=r"line 1 is 'facet'; allowed: a whole number from 0"):
+        read(body_file, {"a": {"facets": str(path), "grain": FRICTION}})
+    path.write_text("3\n")
+    assert read(body_file, {"a": {"facets": str(path), "grain": FRICTION}}).soil["a"].has_bounds
+
+
+def test_regions_without_ground_are_refused_before_anything_runs(body_file: Path, tmp_path: Path) -> None:
+    count = 8 * FREQUENCY**2
+    (tmp_path / "ponds.csv").write_text(f"{count}\n")
+    with pytest.raises(StudyError, match=rf"soil\.a\.facets has {count}; allowed: 0 to {count - 1}"):
+        soils(body_file, {"a": {"facets": str(tmp_path / "ponds.csv"), "grain": FRICTION}}).refuse("study.toml")
+    hidden = {"a": SINK, "b": {"latitude_deg": [-30.0, -20.0], "grain": FRICTION}}
+    with pytest.raises(StudyError, match=r"^study\.toml: soil\.b holds no ground of this body"):
+        run_touchdowns(tables(body_file, hidden), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_what_knows_one_soil_is_refused(body_file: Path, tmp_path: Path) -> None:
+    given = tables(body_file, {"sink": SINK})
+    del given["journey"]
+    with pytest.raises(StudyError, match=r"soil\.sink is .* and the study has no \[journey\]"):
+        StudySource.of_tables(given | {"rest": {"count": 0}})
+    with pytest.raises(StudyError, match=r"^study\.toml: aim\.grid asks the emulator of the touchdowns"):
+        read(body_file, {"sink": SINK}, aim={"grid": {"delivery.speed": [0.03, 0.04]}})
+    with pytest.raises(StudyError, match=r"journey\.emulated_count = 100 asks the emulator"):
+        read(body_file, {"sink": SINK}, journey={"emulated_count": 100})
+    source = StudySource.of_tables(tables(body_file, {"sink": SINK}), function_identity(touchdown))
+    with pytest.raises(ValueError, match=r"sites follows landers by the emulator .* \[soil\]"):
+        map_sites(source, tmp_path / "out", cell_count=24, lander_count=40, worker_count=1, model=touchdown)
+    with pytest.raises(ValueError, match=r"--set names grain\.friction; allowed: nothing of grain"):
+        landing_inputs(read(body_file, {"sink": SINK}), ["grain.friction=0.4"])
+
+
+def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:
+    results = made.results
+    assert isinstance(results, DrawnResults)
+    assert results.emulated is not None
+    assert results.emulated.why is not None
+    assert "[soil] gives regions their own" in results.emulated.why
