@@ -31,8 +31,9 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         place = place[:2] + place[3:]
     key, table = ".".join(place), ".".join(place[:-1])
     kind, found, context = error["type"], error.get("input"), error.get("ctx", {})
-    # A table with a name of the user's own has the keys of all such.
-    known = known_keys.get(table, known_keys.get(".".join(place[:-2]), ()) if len(place) > 2 else ())
+    # A table with a name of the user's own has the keys of all such, and so have the tables in it.
+    named = (".".join(place[:-2]), ".".join([*place[:1], *place[2:-1]])) if len(place) > 2 else ()
+    known = next((known_keys[one] for one in (table, *named) if one in known_keys), ())
     if kind == "quantity":
         return f"{key} {error['msg']}"
     if kind == "extra_forbidden":

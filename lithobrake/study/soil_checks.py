@@ -21,6 +21,11 @@ def soil_problems(study: Study) -> Iterator[str]:
             "no [journey]: all its landings are on [grain]; add [journey], or leave [soil] out"
         )
         return
+    if study.design.side_runs:
+        yield (
+            "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions their "
+            "own; leave one of the two out"
+        )
     yield from _emulator_problems(study)
     for name, soil in study.soil.items():
         yield from _region_problems(name, soil)

@@ -1,10 +1,12 @@
 """The tables of the study file that give regions of the body a soil of their own."""
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from lithobrake.study.material_sections import (
     Cohesion,
@@ -67,6 +69,16 @@ class SoilSection(Section):
     """Text file, counted from the study file, with the numbers of its facets in the shape of the body, from 0, one a
     line."""
     grain: SoilGrainSection
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_sizes(cls, table: Any) -> Any:
+        """Say of sizes why a region has none; all else that is wrong is left for the fields to refuse."""
+        grain = table.get("grain") if isinstance(table, Mapping) else None
+        if isinstance(table, Mapping) and ("bed" in table or (isinstance(grain, Mapping) and "diameter" in grain)):
+            words = "gives sizes of grains; allowed: materials alone, as beds are poured once for all of the body"
+            raise PydanticCustomError("quantity", "{text}", {"text": f"{words}; make a study for each of the sizes"})
+        return table
 
     @property
     def has_bounds(self) -> bool:

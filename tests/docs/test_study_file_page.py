@@ -1,5 +1,6 @@
 """The page of the study file is what its script makes of the schema, and has every key with its unit and range."""
 
+import re
 import runpy
 from typing import Any
 
@@ -19,7 +20,9 @@ def script() -> dict[str, Any]:
 
 def rows(section: str) -> dict[str, str]:
     """The row of each key of a section."""
-    text = PAGE.read_text(encoding="utf-8").partition(f"## `[{section}]`\n")[2].partition("\n## ")[0]
+    # A section whose tables have names of the user's own is headed by one of these.
+    heading = rf"## `\[{section}(?:\.NAME)?\]`\n"
+    text = re.split(heading, PAGE.read_text(encoding="utf-8"))[1].partition("\n## ")[0]
     return {line.split("`")[1]: line for line in text.splitlines() if line.startswith("| `")}
 
 

@@ -106,7 +106,7 @@ def test_every_key_has_a_meaning_in_a_template(text: str) -> None:
     for path, names in known_keys().items():
         # The kinds of size distribution stand in the words of bed.diameter, for boulders as for grains.
         for name in names if path not in ("bed.diameter", "bed.boulders.diameter") else ():
-            shown = f"{name} =", f"[{name}]", f"[{path}.{name}.NAME]"
+            shown = f"{name} =", f"[{name}]", f"[{f'{path}.{name}'.lstrip('.')}.NAME]"
             assert any(one in text for one in shown), f"{path}.{name}"
 
 

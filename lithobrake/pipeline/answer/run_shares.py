@@ -8,7 +8,7 @@ from lithobrake.analysis import LEVEL, IntervalEstimate, quantile_estimates, reg
 from lithobrake.pipeline.answer.missing_landings import KNOWN, LOST, left_in_flight
 from lithobrake.pipeline.answer.scope import why_no_interval
 from lithobrake.pipeline.answer.typed_estimates import counted, fraction
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.fly.flights import QUANTILES
 from lithobrake.pipeline.fly.run_flights import FATES, RunFlights, RunImpacts
 from lithobrake.pipeline.fly.run_sites import FLIGHT_COUNT
@@ -107,6 +107,9 @@ def _moved(one: CountedShare, share: float) -> CountedShare:
 def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> ReturnFraction:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
     inputs = DrawnDesign(study).inputs
+    if study.soil:
+        # On the soils of regions the grains of a run follow another law than the study gives for [grain].
+        inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
     terms = regression_terms(inputs, runs.columns(list(inputs)))
     bed, why = runs.inputs["bed"], why_no_interval(study)
     return fraction(share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why))

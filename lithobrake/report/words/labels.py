@@ -20,6 +20,8 @@ SYMBOLS = {
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 # An input of a part of the lander.
 PART_KEY = r"lander\.part\.(?P<part>[\w-]+)\.(?P<key>\w+)"
+# A number of a region with a soil of its own.
+REGION_KEY = r"soil\.(?P<name>[\w-]+)\.(?P<key>grain\.\w+)"
 INPUT_LABELS = {
     "grain.young_modulus": "Young's modulus $E$, grains",
     "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
@@ -98,6 +100,8 @@ def input_label(name: str, unit: str = "") -> str:
     if part := re.fullmatch(PART_KEY, name):
         own = INPUT_LABELS.get(f"lander.{part['key']}", part["key"].replace("_", " "))
         return f"{own.removesuffix(', lander')}, {part['part']}"
+    if region := re.fullmatch(REGION_KEY, name):
+        return f"{input_label(region['key']).removesuffix(', grains')}, {region['name']}"
     words = name.removeprefix("solver.inputs.").replace("_", " ").replace(".", ": ")
     label = INPUT_LABELS.get(name, words.removesuffix(" deg"))
     shown = re.sub(r"(\d)", r"$^\1$", unit)
