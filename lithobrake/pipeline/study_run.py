@@ -92,8 +92,7 @@ def run_study(
     worker_count: number of processes here; None: one a core.
     scheduler: address of a Dask scheduler, whose workers make the runs instead.
     model: makes the touchdowns in place of the soil.
-    shown: shows the progress.
-    keeps_logs: each run leaves a log in the folder.
+    shown: shows the progress. keeps_logs: each run leaves a log in the folder.
     Raises ValueError for a study that is refused, a folder that is not the study's or cannot be written, too few runs
     with outputs.
     """

@@ -274,7 +274,7 @@ def test_a_study_of_no_such_regions_is_refused(case: str, body_file: Path) -> No
 def test_lines_of_facets_are_numbers(body_file: Path, tmp_path: Path) -> None:
     path = tmp_path / "ponds.csv"
     path.write_text("facet\n3\n")
-    with pytest.raises(StudyError, match=r"line 1 is 'facet'; allowed: a whole number from 0"):
+    with pytest.raises(StudyError, match=r'line 1 is "facet"; allowed: a whole number from 0'):
         read(body_file, {"a": {"facets": str(path), "grain": FRICTION}})
     path.write_text("3\n")
     assert read(body_file, {"a": {"facets": str(path), "grain": FRICTION}}).soil["a"].has_bounds
@@ -295,7 +295,7 @@ def test_what_knows_one_soil_is_refused(body_file: Path, tmp_path: Path) -> None
     given = tables(body_file, {"sink": SINK})
     del given["journey"]
     with pytest.raises(StudyError, match=r"soil\.sink is .* and the study has no \[journey\]"):
-        StudySource.of_tables(given | {"rest": {"count": 0}})
+        StudySource.of_tables(given | {"surface": {"gravity": 5e-5}})
     with pytest.raises(StudyError, match=r"^study\.toml: aim\.grid asks the emulator of the touchdowns"):
         read(body_file, {"sink": SINK}, aim={"grid": {"delivery.speed": [0.03, 0.04]}})
     with pytest.raises(StudyError, match=r"journey\.emulated_count = 100 asks the emulator"):
