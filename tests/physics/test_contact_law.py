@@ -113,22 +113,22 @@ def plate_on_cubes(ratio, refinement):
     world.add_body(plate, stuff, (0, 0, edge + 0.05), mass=250.0)
     world.add_plane((0, 0, 0), (0, 0, 1), stuff)
     world.drag = 20.0
-    world.run(duration=0.75)
+    world.run(duration=1.5)
     world.drag = 0.0
     return world
 
 
-def slid(world, share, window):
-    """Distance that the plate slides in a window of time [s], and in the one after, on a slope whose tangent is a share
-    of the friction; and the acceleration of a rigid block there.
+def slid(world, share):
+    """Distance that the plate slides in a second, and in the second after, on a slope whose tangent is a share of the
+    friction; and the acceleration of a rigid block there.
     """
     angle = math.atan(share * FRICTION)
     for slope in np.linspace(0.0, angle, 100):
         world.gravity = (GRAVITY * math.sin(slope), 0, -GRAVITY * math.cos(slope))
-        world.run(duration=0.005)
+        world.run(duration=0.01)
     places = [world.position[3, 0]]
     for _ in range(2):
-        world.run(duration=window)
+        world.run(duration=1.0)
         places.append(world.position[3, 0])
     return *np.diff(places), GRAVITY * (math.sin(angle) - FRICTION * math.cos(angle))
 
@@ -136,11 +136,11 @@ def slid(world, share, window):
 @pytest.mark.parametrize("ratio", [10.0, 100.0])
 def test_a_heavy_plate_sticks_to_small_cubes(ratio):
     """Below the friction angle it gives a little and stays, above it slides as a rigid block does, at two steps."""
-    for refinement in (1.0, 1.5):
+    for refinement in (1.0, 1.25):
         settled = plate_on_cubes(ratio, refinement)
-        first, later, acceleration = slid(copy.deepcopy(settled), 1.1, window=0.5)
-        assert later - first == pytest.approx(0.25 * acceleration, rel=0.01)
-        given, after, _ = slid(settled, 0.9, window=1.0)
+        first, later, acceleration = slid(copy.deepcopy(settled), 1.1)
+        assert later - first == pytest.approx(acceleration, rel=0.01)
+        given, after, _ = slid(settled, 0.9)
         assert 0.0 < given < 0.1 * acceleration
         assert abs(after) < 0.01 * acceleration
 
