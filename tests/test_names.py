@@ -2,12 +2,12 @@
 
 import ast
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
-TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
 # Both are public: what a grain is, and what a body is.
 SAME_NAME_ON_PURPOSE = {"Shape"}
 # Lines beside the docstring; a kernel, which a call would slow down, may have twice as many.
@@ -26,8 +26,14 @@ LOOKED_FOR = {
 }  # fmt: skip
 
 
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """The syntax trees of all files of the package."""
+    return {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
+
+
 def test_each_class_is_defined_once() -> None:
-    names = Counter(node.name for tree in TREES.values() for node in tree.body if isinstance(node, ast.ClassDef))
+    names = Counter(node.name for tree in trees().values() for node in tree.body if isinstance(node, ast.ClassDef))
     assert {name for name, count in names.items() if count > 1} <= SAME_NAME_ON_PURPOSE
 
 
@@ -44,7 +50,7 @@ def lines_of(function: ast.FunctionDef) -> int:
 
 
 def test_functions_are_short() -> None:
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef):
                 marks = " ".join(ast.unparse(mark) for mark in node.decorator_list)

@@ -1,6 +1,7 @@
 """Errors of an emulator's conditional law against the synthetic truth, in squared Wasserstein distances."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -23,8 +24,9 @@ DIRECTIONS = np.random.default_rng(7).standard_normal((40, 5))
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
 
 
+@cache
 def fitted(truth: Truth, run_count: int, bed_count: int, seed: int) -> emulator.Emulator:
-    """An emulator of one synthetic study; the azimuth rides."""
+    """An emulator of one synthetic study, fitted once for all tests that ask for it; the azimuth rides."""
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
     return emulator.fit(
         INPUTS, x, y, groups=bed, outcome=outcome, outcomes=OUTCOMES, lower=LOWER, upper=UPPER,

@@ -100,9 +100,9 @@ def test_a_bound_that_is_far_bends_nothing(centre: float, distant: tuple[int, ..
 def test_an_emulator_does_not_lose_to_its_runs() -> None:
     """On laws without inputs that count, chosen laws hardly pass the gate, and those that do cost little."""
     inputs, passed = inputs_of(4), 0
-    for seed in range(10):
+    for seed in range(6):
         random = np.random.default_rng(seed)
         x = latin_hypercube(inputs, 100, seed=seed)
         passed += emulator.fit(inputs, x, random.gamma(2.0, size=100)).follows_inputs
-    # By luck a gain is above its error in 16 of 100; more than four of ten with probability 0.01.
-    assert passed <= 4
+    # By luck a gain is above its error in 16 of 100; more than two of six with probability 0.06.
+    assert passed <= 2

@@ -39,9 +39,9 @@ def test_inputs_are_found_where_they_count() -> None:
 
 
 def test_without_effects_hardly_any_study_finds_one() -> None:
-    # 90 % of studies find none; of 20, with probability 0.989, no more than 5 do.
-    found = [any(fitted(0.0, 1.0, 100, seed).found_inputs().values()) for seed in range(20)]
-    assert sum(found) <= 5
+    # 90 % of studies find none; of 12, with probability 0.974, no more than 3 do.
+    found = [any(fitted(0.0, 1.0, 100, seed).found_inputs().values()) for seed in range(12)]
+    assert sum(found) <= 3
 
 
 def test_a_level_must_be_a_probability() -> None:

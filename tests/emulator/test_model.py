@@ -1,5 +1,6 @@
 """The public face of an emulator: what it is given, what it draws, what it refuses."""
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -28,47 +29,51 @@ def runs(seed: int = 0) -> dict[str, Any]:
     }  # fmt: skip
 
 
-MODEL = emulator.fit(INPUTS, **runs())
+@cache
+def fitted() -> emulator.Emulator:
+    return emulator.fit(INPUTS, **runs())
+
+
 X = np.random.default_rng(5).random((40, 2))
 UPPER = np.column_stack([1.0 + X[:, 0], np.full((40, 2), np.inf)])
 
 
 def test_draws_have_their_shape_and_come_again() -> None:
-    first, again = (MODEL.sample(X, 100, seed=3, upper=UPPER) for _ in range(2))
+    first, again = (fitted().sample(X, 100, seed=3, upper=UPPER) for _ in range(2))
     assert first.shape == (40, 100, 3)
     np.testing.assert_array_equal(first, again)
-    assert (MODEL.sample(X, 100, seed=4, upper=UPPER) != first).any()
-    assert MODEL.sample(X[:0], 5, upper=UPPER[:0]).shape == (0, 5, 3)
+    assert (fitted().sample(X, 100, seed=4, upper=UPPER) != first).any()
+    assert fitted().sample(X[:0], 5, upper=UPPER[:0]).shape == (0, 5, 3)
 
 
 def test_outputs_are_there_where_the_outcome_has_them() -> None:
-    draws = MODEL.draw(X, 500, upper=UPPER)
-    stopped = draws.outcome == MODEL.outcome_names.index("stopped")
+    draws = fitted().draw(X, 500, upper=UPPER)
+    stopped = draws.outcome == fitted().outcome_names.index("stopped")
     assert np.isnan(draws.y[stopped]).all()
     assert not np.isnan(draws.y[~stopped]).any()
     assert (draws.row[stopped] == -1).all()
-    chances = MODEL.outcome_probability(X)[:, MODEL.outcome_names.index("stopped")]
+    chances = fitted().outcome_probability(X)[:, fitted().outcome_names.index("stopped")]
     # Five standard deviations of 20 000 draws.
     assert abs(stopped.mean() - chances.mean()) < 5.0 * np.sqrt(0.125 * 0.875 / stopped.size)
 
 
 def test_it_shows_itself_in_a_notebook() -> None:
-    shown = MODEL._repr_html_()
-    assert MODEL.statement in shown
+    shown = fitted()._repr_html_()
+    assert fitted().statement in shown
     stopped = int((runs()["outcome"] == "stopped").sum())
     assert f"<td>stopped</td><td>{stopped}</td>" in shown
-    skill, covered = MODEL.scores.crps_skill[0], MODEL.scores.band_90[0]
+    skill, covered = fitted().scores.crps_skill[0], fitted().scores.band_90[0]
     assert f"<td>speed</td><td>{skill:.4g}</td><td>{covered:.4g}</td>" in shown
 
 
 def test_riders_come_unchanged_with_their_row() -> None:
-    draws = MODEL.draw(X, 200, upper=UPPER)
+    draws = fitted().draw(X, 200, upper=UPPER)
     there = draws.row >= 0
     np.testing.assert_array_equal(draws.y[there][:, 2], draws.row[there])
 
 
 def test_no_draw_leaves_bounds_that_follow_the_inputs() -> None:
-    speed, spin = np.moveaxis(MODEL.sample(X, 25_000, upper=UPPER)[:, :, :2], 2, 0)
+    speed, spin = np.moveaxis(fitted().sample(X, 25_000, upper=UPPER)[:, :, :2], 2, 0)
     assert np.nanmin(speed) > 0.0
     assert (np.nanmax(speed, axis=1) < UPPER[:, 0]).all()
     assert np.nanmin(spin) > 0.0
@@ -76,16 +81,18 @@ def test_no_draw_leaves_bounds_that_follow_the_inputs() -> None:
 
 def test_bounds_at_new_inputs_are_asked_for_only_where_they_differed() -> None:
     with pytest.raises(ValueError, match=r"upper is missing"):
-        MODEL.sample(X, 1)
+        fitted().sample(X, 1)
     with pytest.raises(ValueError, match=r"upper must be finite for the same outputs"):
-        MODEL.sample(X, 1, upper=2.0)
+        fitted().sample(X, 1, upper=2.0)
 
 
 def test_a_law_is_followed_and_said() -> None:
-    medians = np.nanmedian(MODEL.sample([[0.5, 0.1], [0.5, 0.9]], 4000, upper=[1.5, np.inf, np.inf])[:, :, 0], axis=1)
+    medians = np.nanmedian(
+        fitted().sample([[0.5, 0.1], [0.5, 0.9]], 4000, upper=[1.5, np.inf, np.inf])[:, :, 0], axis=1
+    )
     assert medians[1] > medians[0] + 0.2
-    assert MODEL.follows_inputs
-    assert "better" in MODEL.statement
+    assert fitted().follows_inputs
+    assert "better" in fitted().statement
 
 
 def test_without_a_law_draws_are_runs() -> None:
@@ -116,20 +123,20 @@ def test_a_gain_within_its_standard_error_is_no_law() -> None:
 
 
 def test_refits_differ_by_whole_groups() -> None:
-    refits = MODEL.refits(30, seed=2)
+    refits = fitted().refits(30, seed=2)
     for refit in refits:
         by_group = refit.weights.reshape(-1, 12)
         assert (by_group == by_group[0]).all()
         assert refit.weights.sum() == COUNT
     slopes = [refit.law.location[2, 0] for refit in refits]
-    assert 0.0 < np.std(slopes) < abs(MODEL.law.location[2, 0])
-    again = MODEL.refits(30, seed=2)[-1]
+    assert 0.0 < np.std(slopes) < abs(fitted().law.location[2, 0])
+    again = fitted().refits(30, seed=2)[-1]
     np.testing.assert_array_equal(again.sample(X, 3, upper=UPPER), refits[-1].sample(X, 3, upper=UPPER))
 
 
 def test_a_refit_with_weights_of_one_is_the_fit() -> None:
-    same = MODEL.reweighted(np.ones(COUNT))
-    np.testing.assert_array_equal(same.sample(X, 10, upper=UPPER), MODEL.sample(X, 10, upper=UPPER))
+    same = fitted().reweighted(np.ones(COUNT))
+    np.testing.assert_array_equal(same.sample(X, 10, upper=UPPER), fitted().sample(X, 10, upper=UPPER))
 
 
 def test_an_output_that_is_always_the_same_stays_so() -> None:
@@ -152,11 +159,11 @@ def test_an_output_that_is_always_the_same_stays_so() -> None:
 )
 def test_weights_that_count_no_runs_are_refused(weights: Any, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        MODEL.reweighted(weights)
+        fitted().reweighted(weights)
 
 
 def test_a_seed_that_is_none_is_refused() -> None:
-    for call in (MODEL.refits, lambda count, seed: MODEL.sample(X, count, seed, upper=UPPER)):
+    for call in (fitted().refits, lambda count, seed: fitted().sample(X, count, seed, upper=UPPER)):
         with pytest.raises(ValueError, match="seed is 'x', but must be a whole number"):
             call(2, "x")  # type: ignore[arg-type]
 

@@ -1,6 +1,7 @@
 """Stochastic expansions: laws that are known come back, densities and draws are of one law, bad input is refused."""
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -49,12 +50,20 @@ def bounded_runs(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
 
 
 CHOSEN: dict[str, Any] = {"degree": 1, "latent": "normal"}
-LINE = emulator.fit_stochastic_expansion(ONE_INPUT, *runs_of(ONE_INPUT, line))
-BOUNDED = emulator.fit_stochastic_expansion(ONE_INPUT, *bounded_runs(), lower=0.0, upper=0.4, **CHOSEN)
-POSITIVE = emulator.fit_stochastic_expansion(MARKET, *runs_of(MARKET, price), lower=0.0, **CHOSEN)
-BRANCHING = emulator.fit_stochastic_expansion(ONE_INPUT, *runs_of(ONE_INPUT, branching))
-MODELS = {"line": LINE, "bounded": BOUNDED, "positive": POSITIVE, "branching": BRANCHING}
-POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for name in MODELS}
+# Arguments of the fits of models that several tests look at.
+FITS: dict[str, tuple[Any, Any, dict[str, Any]]] = {
+    "line": (ONE_INPUT, runs_of(ONE_INPUT, line), {}),
+    "bounded": (ONE_INPUT, bounded_runs(), {"lower": 0.0, "upper": 0.4, **CHOSEN}),
+    "positive": (MARKET, runs_of(MARKET, price), {"lower": 0.0, **CHOSEN}),
+    "branching": (ONE_INPUT, runs_of(ONE_INPUT, branching), {}),
+}
+POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for name in FITS}
+
+
+@cache
+def fitted(name: str) -> emulator.StochasticExpansion:
+    inputs, runs, given = FITS[name]
+    return emulator.fit_stochastic_expansion(inputs, *runs, **given)
 
 
 @pytest.mark.parametrize("place", [-0.8, 0.0, 0.8])
@@ -62,13 +71,13 @@ def test_a_law_of_its_own_class_is_found(place: float) -> None:
     spread = 0.5 + 0.2 * place
     # Of a law that is a line over x, the standard error at x in units of the spread; four of them are allowed.
     error = 4.0 * spread * np.sqrt((1.0 + 3.0 * place**2) / RUNS)
-    draws = LINE.sample([[place]], 100_000)[0]
-    assert abs(LINE.mean([[place]])[0] - (1.0 + place)) < error
+    draws = fitted("line").sample([[place]], 100_000)[0]
+    assert abs(fitted("line").mean([[place]])[0] - (1.0 + place)) < error
     assert abs(draws.std() - spread) < error / np.sqrt(2.0)
     for level in (0.05, 0.5, 0.95):
         exact = stats.norm.ppf(level, 1.0 + place, spread)
         of_quantile = np.sqrt(level * (1.0 - level)) / stats.norm.pdf(stats.norm.ppf(level))
-        assert abs(LINE.quantile([[place]], [level])[0, 0] - exact) < error * of_quantile
+        assert abs(fitted("line").quantile([[place]], [level])[0, 0] - exact) < error * of_quantile
 
 
 @pytest.mark.parametrize(
@@ -91,9 +100,9 @@ def test_it_is_nearer_than_a_normal_with_the_right_mean_and_spread(inputs: Any, 
     assert np.mean(errors) < np.mean(errors_of_normal)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", FITS)
 def test_density_quantiles_and_draws_are_of_one_law(name: str) -> None:
-    model, x = MODELS[name], POINTS[name]
+    model, x = fitted(name), POINTS[name]
     low, high = model.quantile(x, [1e-9, 1.0 - 1e-9])[0]
     y = np.linspace(low, high, 20_001)
     density = model.density(x, y)[0]
@@ -105,41 +114,47 @@ def test_density_quantiles_and_draws_are_of_one_law(name: str) -> None:
     assert stats.kstest(draws, lambda values: model.cdf(x, values)[0]).pvalue > 0.01
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", FITS)
 def test_the_likelihood_is_that_of_the_density(name: str) -> None:
-    model = MODELS[name]
+    model = fitted(name)
     densities = model.density(model.runs.x, model.runs.y)[:, 0]
     assert model.log_likelihood == pytest.approx(np.log(densities).sum(), rel=1e-9)
 
 
 def test_two_branches_are_two_peaks() -> None:
-    density = BRANCHING.density([[0.8]], [-1.9, 0.0, 1.9])[0]
+    density = fitted("branching").density([[0.8]], [-1.9, 0.0, 1.9])[0]
     assert density[1] < 0.5 * min(density[0], density[2])
 
 
 def test_bounds_are_never_crossed() -> None:
     corners = [[-1.0], [1.0]]
-    draws, tails = BOUNDED.sample(corners, 100_000), BOUNDED.quantile(corners, [1e-15, 1.0 - 1e-15])
+    draws, tails = fitted("bounded").sample(corners, 100_000), fitted("bounded").quantile(corners, [1e-15, 1.0 - 1e-15])
     for values in (draws, tails):
         assert 0.0 < values.min() < values.max() < 0.4
-    assert POSITIVE.sample([[0.0, 0.9]], 100_000).min() > 0.0
-    np.testing.assert_array_equal(BOUNDED.density([[0.0]], [-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
-    np.testing.assert_allclose(BOUNDED.cdf([[0.0]], [-1.0, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14)
-    assert BOUNDED.density([[0.0]], [1e-310]) == 0.0
+    assert fitted("positive").sample([[0.0, 0.9]], 100_000).min() > 0.0
+    np.testing.assert_array_equal(fitted("bounded").density([[0.0]], [-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
+    np.testing.assert_allclose(
+        fitted("bounded").cdf([[0.0]], [-1.0, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14
+    )
+    assert fitted("bounded").density([[0.0]], [1e-310]) == 0.0
 
 
 def test_bounds_that_follow_the_inputs_are_asked_for() -> None:
     x, y = bounded_runs()
     limit = 0.4 + 0.1 * x
     model = emulator.fit_stochastic_expansion(ONE_INPUT, x, y * limit[:, 0] / 0.4, lower=0.0, upper=limit, **CHOSEN)
-    np.testing.assert_allclose(model.quantile([[0.5]], [0.5], upper=0.45) / 0.45, BOUNDED.quantile([[0.5]], 0.5) / 0.4)
+    np.testing.assert_allclose(
+        model.quantile([[0.5]], [0.5], upper=0.45) / 0.45, fitted("bounded").quantile([[0.5]], 0.5) / 0.4
+    )
     with pytest.raises(ValueError, match="upper is missing"):
         model.density([[0.5]], [0.1])
 
 
 @pytest.mark.parametrize("latent", ["normal", "uniform"])
 def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
-    problem = problem_of(POSITIVE.runs, latent_terms(MARKET, 2, latent), np.random.default_rng(1).random(RUNS))
+    problem = problem_of(
+        fitted("positive").runs, latent_terms(MARKET, 2, latent), np.random.default_rng(1).random(RUNS)
+    )
     at, step = 0.3 * np.random.default_rng(0).standard_normal(problem.factors.shape[1]), 1e-5
     differences = [
         (problem.loss(at + step * one, 0.4)[0] - problem.loss(at - step * one, 0.4)[0]) / (2.0 * step)
@@ -151,7 +166,7 @@ def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
 
 def test_degree_and_latent_variable_are_chosen_by_groups_left_out() -> None:
     x, _ = runs_of(ONE_INPUT, line)
-    assert LINE.degree >= 1
+    assert fitted("line").degree >= 1
     flat = np.random.default_rng(3).random(RUNS)
     tried = {
         (degree, latent): emulator.fit_stochastic_expansion(ONE_INPUT, x, flat, degree=degree, latent=latent).held_out
@@ -177,15 +192,17 @@ def test_runs_without_an_output_are_left_out() -> None:
 
 
 def test_refits_scatter_as_the_mean_is_uncertain() -> None:
-    means = [refit.mean([[0.0]])[0] for refit in LINE.refits(40)]
+    means = [refit.mean([[0.0]])[0] for refit in fitted("line").refits(40)]
     # The standard error of 40 refits' own standard deviation is 11 %.
     assert np.std(means) == pytest.approx(0.5 / np.sqrt(RUNS), rel=0.35)
-    np.testing.assert_allclose(LINE.reweighted(np.ones(RUNS)).mean([[0.0]]), LINE.mean([[0.0]]), atol=1e-3)
+    np.testing.assert_allclose(
+        fitted("line").reweighted(np.ones(RUNS)).mean([[0.0]]), fitted("line").mean([[0.0]]), atol=1e-3
+    )
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", FITS)
 def test_a_saved_expansion_comes_back_bit_for_bit(tmp_path: Path, name: str) -> None:
-    model = MODELS[name]
+    model = fitted(name)
     model.save(tmp_path / "law.json")
     again = emulator.load_stochastic_expansion(tmp_path / "law.json")
     np.testing.assert_array_equal(again.sample(POINTS[name], 50, seed=3), model.sample(POINTS[name], 50, seed=3))
@@ -199,7 +216,7 @@ def test_a_saved_expansion_comes_back_bit_for_bit(tmp_path: Path, name: str) -> 
 )
 def test_a_damaged_file_is_refused(tmp_path: Path, key: str, value: object) -> None:
     path = tmp_path / "law.json"
-    LINE.save(path)
+    fitted("line").save(path)
     path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
     with pytest.raises(ValueError, match=r"law\.json"):
         emulator.load_stochastic_expansion(path)
@@ -233,13 +250,13 @@ def test_a_degree_of_too_many_terms_is_refused() -> None:
 
 def test_questions_that_have_no_answer_are_refused() -> None:
     with pytest.raises(ValueError, match=r"levels are \[0.5, 1.0\]"):
-        LINE.quantile([[0.0]], [0.5, 1.0])
+        fitted("line").quantile([[0.0]], [0.5, 1.0])
     with pytest.raises(ValueError, match=r"y has shape \(3, 1\), but must be \[value_count\] or \[2, value_count\]"):
-        LINE.density([[0.0], [0.1]], [[1.0], [2.0], [3.0]])
+        fitted("line").density([[0.0], [0.1]], [[1.0], [2.0], [3.0]])
     with pytest.raises(ValueError, match="1 of 1 points outside"):
-        LINE.mean([[2.0]])
+        fitted("line").mean([[2.0]])
     for weights in (np.ones(3), np.zeros(RUNS), np.full(RUNS, -1.0), np.full(RUNS, np.nan)):
         with pytest.raises(ValueError, match=r"weights (have shape|count 0 runs)"):
-            LINE.reweighted(weights)
+            fitted("line").reweighted(weights)
     with pytest.raises(ValueError, match="count is 0"):
-        LINE.sample([[0.0]], 0)
+        fitted("line").sample([[0.0]], 0)

@@ -1,10 +1,14 @@
 """The notebooks of examples/ as scripts, as a reader runs them, and what they print."""
 
+import io
 import os
 import re
+import runpy
 import subprocess
 import sys
+from contextlib import chdir, redirect_stdout
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -12,11 +16,17 @@ ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "examples").glob("notebook_*.py"))
 
 
-def printed(name: str, folder: Path) -> str:
-    """What a notebook prints, run as a script in a folder."""
-    setting = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, str(ROOT / f"examples/notebook_{name}.py")]
-    ended = subprocess.run(command, cwd=folder, env=setting, capture_output=True, text=True, check=False, timeout=600)
+def printed(name: str, folder: Path, has_workers: bool = False) -> str:
+    """What a notebook prints, run as a script in a folder; one whose functions workers call, by a Python of its own."""
+    path, setting = ROOT / f"examples/notebook_{name}.py", {"PYTHONPATH": str(ROOT)}
+    if not has_workers:
+        with chdir(folder), patch.dict(os.environ, setting), redirect_stdout(io.StringIO()) as said:
+            runpy.run_path(str(path), run_name="__main__")
+        return said.getvalue()
+    command = [sys.executable, str(path)]
+    ended = subprocess.run(
+        command, cwd=folder, env=os.environ | setting, capture_output=True, text=True, check=False, timeout=600
+    )
     assert ended.returncode == 0, ended.stderr
     return ended.stdout
 
@@ -55,7 +65,7 @@ def test_a_landing_by_hand_comes_out_with_its_picture(tmp_path: Path) -> None:
 
 
 def test_a_solver_of_ones_own_is_run_once_and_replaced(tmp_path: Path) -> None:
-    first, second = (printed("own_solver", tmp_path) for _ in range(2))
+    first, second = (printed("own_solver", tmp_path, has_workers=True) for _ in range(2))
     assert "69 runs, 0 of them known before" in first
     assert "69 runs, 69 of them known before" in second
     # Restitution times the cosine of the incidence, which a polynomial of the third degree follows closely.

@@ -17,9 +17,17 @@ DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, rea
 VICTIMS = ("coordinator", "worker", "both")
 
 # Each start is a process of its own, forked from one that has imported what a study needs: two dozen interpreters that
-# import it would take longer than all that they are killed in.
+# import it would take longer than all that they are killed in. The faces of packages import nothing before they are
+# asked for something, so files behind them are named.
 FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(["lithobrake.cli", "lithobrake.pipeline.stages", "lithobrake.report", "scipy.stats"])
+FORKS.set_forkserver_preload(
+    [
+        "lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
+        "lithobrake.pipeline.planning.planner", "lithobrake.pipeline.study_run", "lithobrake.report.pages.journey_page",
+        "lithobrake.report.pages.paper_page", "lithobrake.report.study_report", "lithobrake.smallbody.hopping",
+        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "scipy.stats",
+    ]
+)  # fmt: skip
 COMMAND = """
 import os, sys
 said = os.open({said!r}, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)

@@ -15,7 +15,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
 from ..command_line import lithobrake
 from ..few_grains import few_grains
-from .ball_studies import FEW_RUNS, PAPERS, drawn, edit, write_ball
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, PAPERS, drawn, edit, write_ball
 
 
 def said_by(*words: object) -> str:
@@ -26,7 +26,7 @@ def said_by(*words: object) -> str:
 
 
 def ball(folder: Path, run_count: int, more: str = "") -> Path:
-    return write_ball(folder / "study.toml", {PAPERS: drawn(run_count, more)})
+    return write_ball(folder / "study.toml", {PAPERS: drawn(run_count, more), **FEW_SAMPLES})
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
     grown: tuple[Path, DesignRuns, str], tmp_path: Path
 ) -> None:
     shutil.copytree(grown[0] / "out", tmp_path / "out")
-    study = write_ball(tmp_path / "study.toml", FEW_RUNS)
+    study = write_ball(tmp_path / "study.toml", FEW_RUNS | FEW_SAMPLES)
     shutil.copy(study, tmp_path / "out" / "study.toml")
     said_by("screen", study, "--out", tmp_path / "out")
     assert (tmp_path / "out" / "designs" / "drawn.csv").is_file()

@@ -1,6 +1,7 @@
 """The emulator of a study by the names of its inputs: a table with units, and refusals that name names."""
 
 import inspect
+from functools import cache
 
 import numpy as np
 import pytest
@@ -34,6 +35,7 @@ def allowed(speed: np.ndarray) -> np.ndarray:
     return np.sqrt(speed**2 + 0.001 * 0.01 + gained)
 
 
+@cache
 def named() -> NamedEmulator:
     """The emulator of 96 landings whose speed follows that of arrival, one in eight captured."""
     rng, count = np.random.default_rng(0), 96
@@ -55,24 +57,23 @@ def named() -> NamedEmulator:
     return NamedEmulator(model, UNITS, lambda: BOUND)
 
 
-NAMED = named()
 SOIL = {"grain.friction": 0.5, "grain.young_modulus": 1e7, "impact.speed": 0.2}
 
 
 def test_samples_are_a_table_with_units() -> None:
-    table = NAMED.sample(SOIL, 40, seed=3)
+    table = named().sample(SOIL, 40, seed=3)
     assert (table.row, table.row_count) == ("sample", 40)
     units = {name: column.units for name, column in table.columns.items()}
     assert (units["grain.young_modulus"], units["grain.friction"]) == ("Pa", "")
     assert (units["speed_out"], units["spin_out"]) == ("m/s", "rad/s")
     assert set(table["outcome"]) == {"clear", "captured"}
     assert np.isnan(table["speed_out"]).tolist() == (table["outcome"] == "captured").tolist()
-    np.testing.assert_array_equal(NAMED(SOIL, 40, seed=3)["speed_out"], table["speed_out"])
+    np.testing.assert_array_equal(named()(SOIL, 40, seed=3)["speed_out"], table["speed_out"])
     assert table.to_pandas().attrs["speed_out"]["units"] == "m/s"
 
 
 def test_velocity_and_spin_follow_from_what_was_drawn() -> None:
-    table = NAMED.sample(SOIL, 300)
+    table = named().sample(SOIL, 300)
     left = table["outcome"] == "clear"
     velocity = np.column_stack([table[f"velocity_out_{axis}"] for axis in "xyz"])[left]
     assert np.linalg.norm(velocity, axis=1) == pytest.approx(table["speed_out"][left], rel=1e-12)
@@ -83,12 +84,12 @@ def test_velocity_and_spin_follow_from_what_was_drawn() -> None:
 
 def test_no_sample_leaves_with_more_than_energy_allows_at_its_inputs() -> None:
     speeds = np.array([0.1, 0.2, 0.3])
-    table = NAMED.sample(SOIL | {"impact.speed": speeds}, 400)
+    table = named().sample(SOIL | {"impact.speed": speeds}, 400)
     assert table["impact.speed"].tolist() == np.repeat(speeds, 400).tolist()
     energy = table["speed_out"] ** 2 + 0.001 * table["spin_out"] ** 2
     assert np.nanmax(energy / allowed(table["impact.speed"]) ** 2) <= 1.0 + 1e-12
-    drawn = NAMED.model.sample(
-        [[0.5, 1e7, one] for one in speeds], 400, lower=NAMED.model.runs.lower[0],
+    drawn = named().model.sample(
+        [[0.5, 1e7, one] for one in speeds], 400, lower=named().model.runs.lower[0],
         upper=[[s, np.pi / 2, s / np.sqrt(0.001), *[np.inf] * 5] for s in allowed(speeds)],
     )  # fmt: skip
     np.testing.assert_allclose(table["speed_out"], drawn[:, :, 0].ravel(), rtol=1e-12)
@@ -112,7 +113,7 @@ def test_no_sample_leaves_with_more_than_energy_allows_at_its_inputs() -> None:
 )
 def test_inputs_that_do_not_fit_are_refused_by_name(inputs: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        NAMED.sample(inputs, 5)  # type: ignore[arg-type]
+        named().sample(inputs, 5)  # type: ignore[arg-type]
 
 
 def test_terms_of_the_attitude_that_are_left_out_are_those_of_random_attitudes() -> None:
@@ -143,17 +144,17 @@ def test_terms_of_the_attitude_that_are_left_out_are_those_of_random_attitudes()
 def test_counts_and_seeds_are_checked() -> None:
     for change, words in (({"count": 0}, "count is 0"), ({"count": 5, "seed": "x"}, "seed is 'x'")):
         with pytest.raises(ValueError, match=words):
-            NAMED.sample(SOIL, **change)  # type: ignore[arg-type]
+            named().sample(SOIL, **change)  # type: ignore[arg-type]
 
 
 def test_it_shows_itself_on_one_screen() -> None:
-    assert NAMED.inputs == {"grain.friction": "", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
-    said = " ".join(repr(NAMED).split())
+    assert named().inputs == {"grain.friction": "", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
+    said = " ".join(repr(named()).split())
     assert "grain.young_modulus [Pa]" in said
-    assert NAMED.model.statement_on("beds") in said
-    assert max(map(len, repr(NAMED).split("\n"))) < 80
-    assert max(len(repr(one)) for one in (NAMED, NAMED.model)) < 800
-    assert "array(" not in repr(NAMED.model)
-    shown = NAMED._repr_html_()
+    assert named().model.statement_on("beds") in said
+    assert max(map(len, repr(named()).split("\n"))) < 80
+    assert max(len(repr(one)) for one in (named(), named().model)) < 800
+    assert "array(" not in repr(named().model)
+    shown = named()._repr_html_()
     assert "<td>grain.young_modulus</td><td>Pa</td>" in shown
     assert len(str(inspect.signature(NamedEmulator.sample))) < 120

@@ -17,15 +17,15 @@ from lithobrake.results.json_values import from_json
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 
-from ..journeys.bouncing_lander import bounce, journey_tables
+from ..journeys.bouncing_lander import journey_tables
 from ..journeys.test_delivered_journeys import tables, write_states
+from ..journeys.without_emulator import run_without_emulator
 
 FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 
 
 def made(folder: Path, seed: int = 2, **changes: dict[str, object]) -> Path:
-    tables = journey_tables(**changes) | {"seed": seed}
-    lithobrake.run(tables, folder, workers=1, model=bounce, report=False)
+    run_without_emulator(journey_tables(**changes) | {"seed": seed}, folder)
     return folder
 
 
@@ -58,7 +58,7 @@ def test_landers_that_miss_the_ground_keep_their_number(tmp_path: Path) -> None:
     for name, away in (("some", (3, 9)), ("all", ())):
         states = tmp_path / f"{name}.csv"
         write_states(states, away)
-        lithobrake.run(tables(delivery={"states": str(states)}), tmp_path / name, workers=1, model=bounce, report=False)
+        run_without_emulator(tables(delivery={"states": str(states)}), tmp_path / name)
         folders.append(tmp_path / name)
     found = compare_studies(*folders)
     ends = [lithobrake.open_study(folder).journeys["end"] == "at_rest" for folder in folders]

@@ -5,7 +5,6 @@ import re
 import shutil
 from pathlib import Path
 
-import lithobrake as library
 from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
@@ -15,6 +14,7 @@ from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from ...command_line import lithobrake
 from .bouncing_lander import FAILS, LEAVES, STUCK, bounce, journey_tables
+from .without_emulator import run_without_emulator
 
 TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")
 
@@ -58,7 +58,7 @@ def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResult
     folder = tmp_path / "edited"
     shutil.copytree(journeys.folder, folder)
     edited = journey_tables(delivery={"incidence_deg": 25.0})
-    made = library.run(edited, folder, workers=1, model=bounce, report=False).touchdowns.row_count
+    made = run_without_emulator(edited, folder).touchdowns.row_count
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
@@ -83,7 +83,7 @@ class Looks(Silent):
 def test_status_says_how_far_the_process_is_that_follows_journeys(tmp_path: Path) -> None:
     looks = Looks(tmp_path / "out")
     source = StudySource.of_tables(journey_tables(), function_identity(bounce))
-    run_study(source, looks.folder, until="summary", worker_count=1, model=bounce, shown=looks)
+    run_study(source, looks.folder, until="runs", worker_count=1, model=bounce, shown=looks)
     assert re.fullmatch(r"(2[4-9]|3\d) of 48 journeys, \d+ touchdowns, at rest so far \d+ \+- \d+ %", looks.told)
     assert looks.told in looks.seen
 

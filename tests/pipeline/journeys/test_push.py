@@ -12,7 +12,8 @@ from lithobrake.cli import app
 from lithobrake.export import Push, write_push
 from lithobrake.results import StudyResults
 
-from .bouncing_lander import bounce, journey_tables
+from .bouncing_lander import journey_tables
+from .without_emulator import run_without_emulator
 
 AT_REST = 43
 
@@ -61,8 +62,7 @@ def test_pushed_landers_are_followed_to_rest_in_the_next_study(journeys_folder: 
     tables["delivery"] = {
         "latitude_deg": 10.0, "longitude_deg": -60.0, "frame": "body_fixed", "states": str(tmp_path / "push.csv"),
     }  # fmt: skip
-    lithobrake.run(tables, tmp_path / "next", workers=1, model=bounce, report=False)
-    after = lithobrake.open_study(tmp_path / "next").journeys
+    after = run_without_emulator(tables, tmp_path / "next").journeys
     before = lithobrake.open_study(journeys_folder).journeys
     east = np.nanmedian(after["longitude_deg"]) - np.nanmedian(before["longitude_deg"])
     assert 0.5 < east < 60.0, "a push to the east takes them east"

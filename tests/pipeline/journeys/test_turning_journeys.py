@@ -25,6 +25,7 @@ from lithobrake.study.source import StudySource
 from .bouncing_lander import journey_tables
 from .test_journeys import HARD, TABLES, hard_ground, hard_velocity, rows
 from .test_local_ground import two_balls
+from .without_emulator import run_without_emulator
 
 COUNT = 24
 ROTATION = {"yaw_deg": 30.0, "roll_deg": 60.0, "days": 2.0}
@@ -89,7 +90,7 @@ def test_flights_are_noted_with_the_time_at_which_they_may_be_flown_again(made: 
 
 
 def test_the_same_seed_gives_the_same_journeys(made: Path, tmp_path: Path) -> None:
-    lithobrake.run(turning(), tmp_path / "again", workers=1, model=hard_ground, report=False)
+    run_without_emulator(turning(), tmp_path / "again", hard_ground)
     for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
         assert (tmp_path / "again" / name).read_bytes() == (made / name).read_bytes()
 

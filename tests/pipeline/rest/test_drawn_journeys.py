@@ -15,13 +15,13 @@ from lithobrake.smallbody import RestitutionTable
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
 from ...synthetic_landings import WEAK
-from ..synthetic_lander import SyntheticLander, synthetic_tables
+from ..synthetic_lander import TWO_SOILS, SyntheticLander, synthetic_tables
 
 ARRIVAL = {
     "speed": {"distribution": "uniform", "lower": 0.005, "upper": 0.4},
     "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 88.0},
 }
-FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 200}}
+FEW = TWO_SOILS | {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 200}}
 
 
 def made(folder: Path, model: SyntheticLander, **changes: dict[str, Any]) -> StudyResults:
