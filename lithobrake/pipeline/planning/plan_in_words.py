@@ -5,7 +5,7 @@ from lithobrake.pipeline.planning.plan import Plan
 # One, and more.
 NAMES = {
     "beds": ("bed", "beds"),
-    "landings": ("landing to look at", "landings to look at"),
+    "landings": ("preview landing", "preview landings"),
     "touchdowns": ("touchdown", "touchdowns"),
     "journeys to rest": ("journey to rest", "journeys to rest"),
     "samples": ("sample", "samples"),
