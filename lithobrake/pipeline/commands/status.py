@@ -95,7 +95,7 @@ class StudyStatus:
         """All of it in words."""
         runs = self.runs.lines() if self.runs else []
         if self.state is None:
-            return [f"{self.folder}: {'a campaign' if self.campaign_began else 'nobody'} is at work", *runs]
+            return [f"{self.folder}: {'a campaign is running' if self.campaign_began else 'not running'}", *runs]
         return [_work(self.folder, self.at_work, self.state), *_files(self.at_work, self.state), *runs]
 
     def to_json(self) -> dict[str, Any]:
