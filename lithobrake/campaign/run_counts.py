@@ -115,7 +115,7 @@ def duration(seconds: float) -> str:
 def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
     """Where a ledger stands, with the rate of the campaign that began at a moment (ISO, UTC) and is still at work.
 
-    began: None when nobody is at work; what is marked as running was then stopped, and counts among what is to be made.
+    began: None when not running; what is marked as running was then stopped, and counts among what is to be made.
     """
     result = Tally(0)
     for entry in records:

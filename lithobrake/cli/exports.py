@@ -21,23 +21,26 @@ Samples = Annotated[
     typer.Option("--flight", metavar="SAMPLE", help="oem, aem, spk, czml: a sample to follow; may be repeated."),
 ]
 Frame = Annotated[
-    str, typer.Option("--frame", metavar="inertial|fixed|icrf", help="oem, aem: axes; icrf: by the study's pole.")
+    str,
+    typer.Option("--frame", metavar="inertial|fixed|icrf", help="oem, aem: axes; icrf needs the pole of the study."),
 ]
 Epoch = Annotated[
     str | None,
-    typer.Option("--epoch", metavar="UTC", help="When all first touchdowns are; default: each at its own, if known."),
+    typer.Option("--epoch", metavar="UTC", help="Date of all first touchdowns; default: the date of each, if known."),
 ]
 Step = Annotated[
     float | None,
-    typer.Option("--step", metavar="SECONDS", help="Between states; default: 1 % of the longest; aem: 10 degrees."),
+    typer.Option(
+        "--step", metavar="SECONDS", help="Time between states; default: 1 % of the longest flight; aem: 10 degrees."
+    ),
 ]
 BodyNumber = Annotated[
-    int | None, typer.Option("--body-number", metavar="N", help="spk: number of the body in SPICE, if it is a mesh.")
+    int | None, typer.Option("--body-number", metavar="N", help="spk: number of the body in SPICE, for a mesh.")
 ]
 Resolution = Annotated[float, typer.Option("--resolution", metavar="DEGREES", help="geotiff: edge of a cell.")]
 Again = Annotated[
     str | None,
-    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: a run to make again; absent: the landing shown."),
+    typer.Option("--run", metavar="ID", help="vtkhdf, sheet: the run to simulate again; default: the preview landing."),
 ]
 
 
@@ -59,7 +62,7 @@ def export(
     out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
     json: Json = False,
 ) -> None:
-    """Write results of a study as files of other programs: flights, attitudes, shape, map, motions."""
+    """Write results of a study in the formats of other programs: flights, attitudes, shape, map, motions."""
     place = folder / "export" if out is None else given_folder(out)
     with one_sentence():
         from lithobrake.results import open_study
@@ -84,17 +87,19 @@ def export(
 )
 def push(
     folder: StudyDirectory,
-    speed: Annotated[float, typer.Option(help="Change of velocity [m/s].", show_default=False)],
-    elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground [deg].")] = 45.0,
-    heading: Annotated[float, typer.Option(help="Its direction, from north toward east [deg].")] = 0.0,
-    speed_std: Annotated[float, typer.Option(help="Standard deviation of the speed [m/s].")] = 0.0,
-    direction_std: Annotated[float, typer.Option(help="Of the direction, along either axis across it [deg].")] = 0.0,
-    spin: Annotated[float, typer.Option(help="Angular velocity that the push leaves [rad/s].")] = 0.0,
-    seed: Annotated[int, typer.Option(help="Of the errors.")] = 1,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="A table for delivery.states.")] = Path("push.csv"),
+    speed: Annotated[float, typer.Option(help="Change of velocity, m/s.", show_default=False)],
+    elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground, degrees.")] = 45.0,
+    heading: Annotated[float, typer.Option(help="Its direction, from north toward east, degrees.")] = 0.0,
+    speed_std: Annotated[float, typer.Option(help="Standard deviation of the speed, m/s.")] = 0.0,
+    direction_std: Annotated[float, typer.Option(help="Standard deviation of the direction, degrees.")] = 0.0,
+    spin: Annotated[float, typer.Option(help="Angular velocity after the push, rad/s.")] = 0.0,
+    seed: Annotated[int, typer.Option(help="Seed of the errors.")] = 1,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="Table for delivery.states of the next study.")
+    ] = Path("push.csv"),
     force: Force = False,
 ) -> None:
-    """Write the states of the landers at rest just after a push, as the delivery of the next study."""
+    """Write the states of the landers at rest after a push, as the delivery of the next study."""
     with one_sentence():
         from lithobrake.results import open_study
 

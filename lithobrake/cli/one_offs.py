@@ -47,13 +47,13 @@ def land(
             help="Keep the motion: .h5, .vtkhdf (ParaView), .mp4, .webp (films), .png (a sheet), .html (a journey).",
         ),
     ] = None,
-    show: Annotated[bool, typer.Option("--show", help="Open a window on the motion.")] = False,
+    show: Annotated[bool, typer.Option("--show", help="Show the motion in a window.")] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Make one landing of a study, or one journey of landings to rest, and tell what came out.
+    """Simulate one landing of a study, or one journey to rest, and print the outcome.
 
-    Nothing of the study's folder is read or written.
+    The study's folder is neither read nor written.
     """
     with one_sentence():
         from lithobrake.study import read_study
@@ -75,7 +75,10 @@ def serve(
     study: StudyPath,
     out: OutPath = None,
     host: Annotated[
-        str, typer.Option("--host", metavar="ADDRESS", help="Address to listen on; others than this machine need one.")
+        str,
+        typer.Option(
+            "--host", metavar="ADDRESS", help="Address to listen on; the default is reached from this machine only."
+        ),
     ] = "127.0.0.1",
     port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
     time_limit: Annotated[
@@ -87,7 +90,7 @@ def serve(
         ),
     ] = None,
 ) -> None:
-    """Serve landing, emulator and flight of a study to clients of UM-Bridge, until Ctrl-C. Writes nothing."""
+    """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
     folder = study_folder(study, out)
     with one_sentence():
         from lithobrake.serve.clients import refuse_empty_host
@@ -113,9 +116,9 @@ def serve(
 
 @app.command(rich_help_panel=START, epilog="Example: lithobrake doctor --json > doctor.json")
 def doctor(
-    quick: Annotated[bool, typer.Option("--quick", help="Measure no speeds.")] = False, json: Json = False
+    quick: Annotated[bool, typer.Option("--quick", help="Skip the measurement of speed.")] = False, json: Json = False
 ) -> None:
-    """Tell what is installed, what is missing and how to get it, and how fast this machine is."""
+    """Report what is installed, what is missing and how to get it, and how fast this machine is."""
     with one_sentence():
         from lithobrake.doctor import examine
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from lithobrake.results.study_results import StudyResults
 
 JourneyNumber = Annotated[
-    int | None, typer.Option("--journey", metavar="N", help="All touchdowns of a journey, counted from 0.")
+    int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
 ]
 # What `runs` lists first, in columns with these heads, and the most characters of a line.
 TOLD = {
@@ -85,8 +85,8 @@ def runs(
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake view runs/study")
 def view(
     folder: StudyDirectory,
-    solid: Annotated[bool, typer.Option("--3d", help="Open a window on a landing instead, by PyVista.")] = False,
-    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Which run --3d shows.")] = None,
+    solid: Annotated[bool, typer.Option("--3d", help="Show a landing in a window instead (PyVista).")] = False,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Run that --3d shows.")] = None,
     journey: JourneyNumber = None,
 ) -> None:
     """Open the report of a study, or a page about one journey, in the browser."""
@@ -115,7 +115,9 @@ def view(
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
 def film(
     folder: StudyDirectory,
-    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="A run; absent: the landing shown.")] = None,
+    run: Annotated[
+        str | None, typer.Option("--run", metavar="ID", help="Which run; default: the preview landing.")
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -125,12 +127,12 @@ def film(
         ),
     ] = None,
     seconds: Annotated[
-        float, typer.Option("--seconds", metavar="S", help="How long the film lasts, or each touchdown.")
+        float, typer.Option("--seconds", metavar="S", help="Duration of the film, or of each touchdown in it, seconds.")
     ] = 8.0,
     journey: JourneyNumber = None,
     force: Force = False,
 ) -> None:
-    """Make a landing or a journey of a study again, and show it as a film."""
+    """Simulate a landing or a journey of a study again, and write it as a film."""
     if journey is not None:
         _film_journey(folder, journey, run, out or folder / f"journey_{journey}.mp4", seconds, force)
         return
@@ -150,12 +152,12 @@ def film(
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
-    second: Annotated[Path, typer.Argument(metavar="B", help="The folder of another.", show_default=False)],
+    second: Annotated[Path, typer.Argument(metavar="B", help="The folder of the other study.", show_default=False)],
     out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = "comparison",
     json: Json = False,
     force: Force = False,
 ) -> None:
-    """Compare two studies run by run: the difference of every answer with its interval, as a page and as JSON."""
+    """Compare two studies run by run: the difference of every result with its interval, as a page and as JSON."""
     place = given_folder(out)
     with one_sentence():
         from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared

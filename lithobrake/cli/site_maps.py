@@ -23,8 +23,8 @@ from lithobrake.cli.terminal import one_sentence, tell, tell_json
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
 def sites(
     study: StudyPath,
-    cells: Annotated[int, typer.Option("--cells", metavar="N", help="Sites: cells of equal area.")] = 120,
-    landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers of each site.")] = 200,
+    cells: Annotated[int, typer.Option("--cells", metavar="N", help="Number of sites (cells of equal area).")] = 120,
+    landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per site.")] = 200,
     out: OutPath = None,
     workers: Workers = None,
     executor: ExecutorName = "local",
@@ -32,7 +32,7 @@ def sites(
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Map one delivery over a body: how many rest at each site, when, how far, slope and light. Writes DIR/sites."""
+    """Map one delivery over a body: fraction at rest, time, distance, slope and light by site. Writes DIR/sites."""
     folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
     with one_sentence():
         from lithobrake.study import StudySource

@@ -24,14 +24,16 @@ from lithobrake.cli.terminal import one_sentence, shown_progress, tell
 @app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500")
 def rare(
     study: StudyPath,
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A name of \\[limit_states].", show_default=False)],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Name of a limit state of the study.", show_default=False)
+    ],
     landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
     out: OutPath = None,
     workers: Workers = None,
     executor: ExecutorName = "local",
     scheduler: Scheduler = None,
 ) -> None:
-    """Tell how probable a rare limit state is by levels of landings of their own; writes rare_NAME.json."""
+    """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
     folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
     with one_sentence():
         from lithobrake.study import StudySource
@@ -63,10 +65,10 @@ def infer(
 
         study = InferredStudy.open(folder)
         with shown_progress("inference") as progress:
-            progress(0.0, "what bounces can say")
+            progress(0.0, "identifiability")
             plan = study.plan().lines()
             if bounce is not None:
-                progress(0.5, "what these bounces say")
+                progress(0.5, "posterior")
             found = None if bounce is None else infer_study(folder, bounce)
     tell(plan)
     if found is not None:
@@ -74,7 +76,7 @@ def infer(
         tell([line for line in (found["statement"], found["beds"], written) if line])
 
 
-study_command("bed", "Pour and settle the beds, and make one landing to look at.", EXPERT, until="landing")
+study_command("bed", "Pour and settle the beds, and simulate a preview landing.", EXPERT, until="landing")
 study_command("screen", "Run the screening design and fit an expansion in all inputs.", EXPERT)
 study_command("refine", "Run the refined design and fit an expansion in the inputs that matter.", EXPERT)
 study_command("test", "Run the test points and score the expansions on them.", EXPERT)

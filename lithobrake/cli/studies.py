@@ -38,11 +38,14 @@ def new(
     lander: Annotated[str, typer.Option(help="A lander by name: 1U to 12U, Juventas, Milani, MASCOT.")] = LANDER,
     at: Annotated[str, typer.Option(metavar="LAT,LON", help="Aim point, latitude and longitude in degrees.")] = AT,
     shape: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Mesh of the body, its path as seen from the study.")
+        str | None, typer.Option(metavar="FILE", help="Mesh of the body, relative to the study file.")
     ] = None,
     full: Annotated[bool, typer.Option("--full", help="Also list every key of a study file.")] = False,
     first_bounce: Annotated[
-        bool, typer.Option("--first-bounce", help="Ask for the first bounce and an emulator of it, not for the end.")
+        bool,
+        typer.Option(
+            "--first-bounce", help="Study the first bounce and fit an emulator to it, instead of journeys to rest."
+        ),
     ] = False,
 ) -> None:
     """Write a commented study file, NAME.toml, that follows landers to rest."""
@@ -144,7 +147,7 @@ def plan(
     ] = False,
     json: Json = False,
 ) -> None:
-    """Show what a study will make, how long that takes, and what to watch out for. Runs nothing."""
+    """Show the runs of a study, the time and disk they take, the expected half-width and warnings. Runs nothing."""
     folder = study_folder(study, out)
     with one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study
@@ -161,7 +164,7 @@ study_command("run", "Run a study from its file to its report.", RUN, until="rep
 
 @app.command(rich_help_panel=RUN, epilog="Example: lithobrake status runs/study")
 def status(folder: StudyDirectory, json: Json = False) -> None:
-    """Show the progress of a study. Works from any terminal, even while the study runs."""
+    """Show the progress of a study, from any terminal, also while the study runs."""
     with one_sentence():
         from lithobrake.pipeline import study_status
 

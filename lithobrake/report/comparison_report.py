@@ -23,7 +23,7 @@ TOLD = 4
 
 def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: Path) -> Path:
     """Write index.html and its figure into a folder, which is made; texts: the two study files. Returns the page."""
-    plot = Plot("differences", "B less A", _caption(comparison), lambda: _draw(comparison))
+    plot = Plot("differences", "B minus A", _caption(comparison), lambda: _draw(comparison))
     title = " against ".join(comparison.titles)
     facts = f"A: {comparison.names[0]}. B: {comparison.names[1]}. {comparison.of[:1].upper()}{comparison.of[1:]}."
     warnings = [words for words in (comparison.note, comparison.why) if words]
@@ -52,7 +52,7 @@ def _tiles(comparison: StudyComparison) -> list[Tile]:
         Tile(
             shown(value, factor(one), signed=True),
             unit(one, of_difference=True),
-            f"{one.words}, B less A: {verdict(one)}",
+            f"{one.words}, B minus A: {verdict(one)}",
         )
         for one, value in told
         if value is not None
@@ -62,14 +62,14 @@ def _tiles(comparison: StudyComparison) -> list[Tile]:
 def _caption(comparison: StudyComparison) -> str:
     saved = [one.landings_saved for one in comparison.answers.values() if one.landings_saved is not None]
     gain = (
-        f" Two studies of other beds and places would need {number(min(saved), 2)} to {number(max(saved), 2)} times "
-        "the landings for intervals as narrow."
+        f" Two studies with different beds and impact points would need {number(min(saved), 2)} to "
+        f"{number(max(saved), 2)} times as many landings for equally narrow intervals."
         if saved
         else ""
     )
     return (
-        f"Differences of the answers with their {percent(comparison.level)} intervals over beds and impact points, "
-        f"from {comparison.of}: runs of one number share bed, place, attitude and heading.{gain}"
+        f"Differences of the results with their {percent(comparison.level)} intervals over beds and impact points, "
+        f"from {comparison.of}: runs with the same number share bed, impact point, attitude and heading.{gain}"
     )
 
 
@@ -104,7 +104,7 @@ def _table(comparison: StudyComparison) -> PageTable:
         ]
         for one in comparison.answers.values()
     ]
-    columns = ["answer", "A", "B", "B less A", "pairs", "correlation", "landings saved"]
+    columns = ["answer", "A", "B", "B minus A", "pairs", "correlation", "landings saved"]
     note = (
         f"With {percent(comparison.level)} intervals. Correlation: of the two runs of a pair. Landings saved: how many "
         "times the landings an unpaired comparison takes for an interval as narrow."

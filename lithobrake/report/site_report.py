@@ -66,24 +66,24 @@ def _tiles(site_map: SiteMap) -> list[Tile]:
     return [
         Tile(percent(site_map.at_rest.share).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
         Tile(f"{100 * min(shares):.0f} to {100 * max(shares):.0f}", "%", "at rest, from site to site"),
-        Tile(str(best), f"of {len(site_map.cells)}", "sites cannot be told from the best"),
-        Tile(str(site_map.answered), f"of {len(site_map.cells)}", "sites are answered"),
+        Tile(str(best), f"of {len(site_map.cells)}", "sites cannot be distinguished from the best"),
+        Tile(str(site_map.answered), f"of {len(site_map.cells)}", "sites have a result"),
     ]
 
 
 def _caption(site_map: SiteMap) -> str:
     light = "; light is the mean over a day and the seasons of the study" if site_map.cells[0].light else ""
     return (
-        f"Landers that are delivered in one way to each of {len(site_map.cells)} sites of {site_map.body}, in "
-        f"Hammer's equal-area projection about longitude 0. Slopes are those of the facets{light}. Intervals stand "
+        f"The same delivery to each of {len(site_map.cells)} sites of {site_map.body}, in "
+        f"Hammer's equal-area projection about longitude 0. Slopes are those of the facets{light}. Intervals are "
         "in the table of all sites."
     )
 
 
 def _agreement_caption(site_map: SiteMap) -> str:
     return (
-        "The study's own journeys, by the landings that were simulated for them and by refits of the emulator that "
-        "have not seen their beds: all of them (filled), and those with their first touchdown in each region of an "
+        "The study's own journeys, by simulated landings and by refits of the emulator that have not seen their "
+        "beds: all of them (filled), and those with their first touchdown in each region of an "
         f"eighth of the body, with {percent(site_map.level)} intervals."
     )
 
@@ -102,7 +102,7 @@ def _agreement(site_map: SiteMap) -> PageTable:
         verdict = {True: "yes", False: "no", None: ""}[one.agrees]
         shares = with_interval(one.landings), with_interval(one.emulator)
         rows.append([where, str(one.journeys), *shares, f"{100 * off.share:+.0f}{bounds}", verdict])
-    note = "The same landers both times, so that the difference is better known than either fraction."
+    note = "Both columns have the same landers, so the difference has a smaller error than either fraction."
     return PageTable("Emulator and landings", columns, rows, note, numbers=frozenset(columns[1:2]))
 
 

@@ -100,7 +100,7 @@ def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) 
     assert second.startswith("69 runs, 69 of them known before\n")
     assert first.split("\n")[1:] == second.split("\n")[1:]
     told = lithobrake("status", tmp_path).stdout.splitlines()
-    assert told[:2] == [f"{tmp_path}: nobody is at work", "69 runs: 69 done, 0 running, 0 failed"]
+    assert told[:2] == [f"{tmp_path}: not running", "69 runs: 69 done, 0 running, 0 failed"]
     assert any(line.startswith("velocity_out_z ") for line in told)
     centre = {"incidence_deg": 35.0, "restitution": 0.6, "friction": 0.225}
     (here,) = (

@@ -206,7 +206,7 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         assert said[0].startswith(f"{out} cannot be written (")
         assert said[0].endswith("choose another folder with --out")
         assert said[1].startswith(f"{out / 'runs.sqlite'} cannot be used as a ledger (")
-        assert said[2:4] == ["7", f"{out}: nobody is at work; there is no report yet"]
+        assert said[2:4] == ["7", f"{out}: not running; there is no report yet"]
         assert said[4] == "2 of 11 stages are current: screening runs, screening"
         assert said[5].startswith("not there: designs/refined.csv, refined.json, ")
         assert said[6:7] == [

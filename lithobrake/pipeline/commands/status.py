@@ -95,7 +95,7 @@ class StudyStatus:
         """All of it in words."""
         runs = self.runs.lines() if self.runs else []
         if self.state is None:
-            return [f"{self.folder}: {'a campaign' if self.campaign_began else 'nobody'} is at work", *runs]
+            return [f"{self.folder}: {'a campaign is running' if self.campaign_began else 'not running'}", *runs]
         return [_work(self.folder, self.at_work, self.state), *_files(self.at_work, self.state), *runs]
 
     def to_json(self) -> dict[str, Any]:
@@ -155,9 +155,9 @@ def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
         )
         return f"{path}: {stage} (process {holder['process']} on {holder['host']})"
     if not (path / "report" / "index.html").is_file():
-        return f"{path}: nobody is at work; there is no report yet"
+        return f"{path}: not running; there is no report yet"
     fits = all(stage.is_current for stage in state.stages)
-    return f"{path}: nobody is at work; the report is there" + ("" if fits else ", but not of the files as they are")
+    return f"{path}: not running; the report is there" + ("" if fits else ", but its files have changed since")
 
 
 def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:

@@ -63,7 +63,7 @@ def expected_seconds(
     if soil is not None and made["beds"][1]:
         found["beds"] = _beds_time(pace * pour_time(soil), made["beds"], None if workers is None else cores)
     if soil is not None and made["landings"][1]:
-        found["landing to look at"] = spread(pace * landing_time(soil, *soil.landings[0]))
+        found["preview landing"] = spread(pace * landing_time(soil, *soil.landings[0]))
     if made["touchdowns"][1]:
         one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None

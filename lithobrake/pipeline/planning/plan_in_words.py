@@ -5,7 +5,7 @@ from lithobrake.pipeline.planning.plan import Plan
 # One, and more.
 NAMES = {
     "beds": ("bed", "beds"),
-    "landings": ("landing to look at", "landings to look at"),
+    "landings": ("preview landing", "preview landings"),
     "touchdowns": ("touchdown", "touchdowns"),
     "journeys to rest": ("journey to rest", "journeys to rest"),
     "samples": ("sample", "samples"),
@@ -18,7 +18,7 @@ def plan_lines(plan: Plan) -> list[str]:
     """Return the whole plan as lines of text."""
     lines = [f"{plan.study}, in {plan.folder}"]
     if not plan.stages:
-        lines += ["Nothing is left to make: every file is there and still good."]
+        lines += ["Nothing is left to make: all files are current."]
     else:
         lines += [f"To make: {_made(plan)}."]
         lines += [f"Beds: {_beds(plan)}."] if plan.beds[0].total else []
@@ -68,7 +68,7 @@ def _beds(plan: Plan) -> str:
 def _site(slope_deg: float) -> str:
     """How the ground at the site lies."""
     if slope_deg > 90.0:
-        return "Site: gravity and rotation together throw off what lies on the ground."
+        return "Site: gravity and rotation together eject objects that rest on the ground."
     return f"Site: the ground slopes by {slope_deg:.0f} deg against gravity and rotation together."
 
 

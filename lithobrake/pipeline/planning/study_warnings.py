@@ -93,8 +93,8 @@ def _lost(soil: ExpectedSoil) -> Iterator[str]:
         yield (
             f"About {100 * share:.0f} % of the landings may leave the bed laterally, by their angle of impact, and "
             "have no outcome: medians, quantiles, variance shares and the emulator will describe only the others, and "
-            "every share will be known no better than that; widen the bed (bed.width, with bed.grain_count), or keep "
-            "impact.incidence_deg steeper."
+            "no fraction will be known more precisely than this; widen the bed (bed.width, with bed.grain_count), or "
+            "keep impact.incidence_deg steeper."
         )
 
 
@@ -107,7 +107,7 @@ def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
     if share > CUT_OFF:
         yield (
             f"About {100 * share:.0f} % of the touchdowns may last longer than landing.time_limit, "
-            f"{study.landing.time_limit:g} s, and say nothing then (the longest about {max(times):.2g} s): raise it."
+            f"{study.landing.time_limit:g} s, and then have no outcome (longest: about {max(times):.2g} s): raise it."
         )
 
 
@@ -119,7 +119,7 @@ def _never_count(study: Study) -> Iterator[str]:
         own, rock = values.get(f"{table}.{name}"), values.get(f"grain.{name}")
         if own is not None and rock is not None and own != rock and _reach(own)[0] >= _reach(rock)[1]:
             yield (
-                f'{table}.{name} never counts: contact.pair_rule = "smaller" takes grain.{name}, which is always less; '
+                f'{table}.{name} has no effect: contact.pair_rule = "smaller" takes grain.{name}, which is less; '
                 'take "mean" or "geometric", or leave it out.'
             )
 
@@ -178,14 +178,14 @@ def _few_beds(study: Study) -> Iterator[str]:
 
     if study.bed_count == 1:
         yield (
-            "All runs come down on one bed, and another bed gives another answer: no number of this study will have an "
+            "All runs come down on one bed, and another bed gives another result: no number of this study will have an "
             f"interval; set bed.bed_count to {FEWEST_BEDS} or more, or leave it out."
         )
         return
     wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS - 1) - 1.0)
     remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
     yield (
-        f"The runs come down on {study.bed_count} beds, and beds are what an interval counts: so few make it "
+        f"The runs come down on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
         f"{wider:.0f} % wider than {FEWEST_BEDS} would, by Student's t alone; {remedy} to {FEWEST_BEDS} or more."
     )
 
@@ -198,11 +198,11 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
     if study.design.method == "drawn":
         yield (
             "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
-            f"{smallest_width(study):.2g} m, on whose middle places are drawn."
+            f"{smallest_width(study):.2g} m, in whose middle impact points are sampled."
         )
     elif study.bed_count == 1 and study.has_soil:
         yield (
-            "All runs come down on the same place of the same bed, so the answer holds for these stones only: raise "
+            "All runs come down on the same place of the same bed, so the result holds for these boulders only: raise "
             "bed.bed_count, or draw the place in impact.region."
         )
 

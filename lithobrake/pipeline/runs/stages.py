@@ -43,7 +43,7 @@ def _side_files(study: Study) -> list[str]:
 
 
 BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
-FIRST_LANDING = Stage("landing", "first landing", landing_files, land_once, ("bed",), landing_dependencies)
+FIRST_LANDING = Stage("landing", "preview landing", landing_files, land_once, ("bed",), landing_dependencies)
 DRAWN_RUNS = Stage("runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), drawn_dependencies, PARTS)
 SIDE_RUNS = Stage(
     "side_runs",
@@ -54,4 +54,4 @@ SIDE_RUNS = Stage(
     lambda study: [study.design.side_runs, study.design.twin_shift],
     PARTS,
 )
-TELLING_LANDING = Stage("telling_landing", "telling landing", telling_files, land_tellingly, ("runs",))
+TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))

@@ -188,9 +188,9 @@ def _legend(figure: Figure, site_map: SiteMap, bottom: float) -> None:
     """What frames and hatching are, and where the map's middle is."""
     marks = []
     if _some_are_best(site_map):
-        marks += [Patch(facecolor="none", edgecolor=SITE, label="cannot be told from the best")]
+        marks += [Patch(facecolor="none", edgecolor=SITE, label="indistinguishable from the best")]
     if site_map.answered < len(site_map.cells):
-        marks += [Patch(facecolor="none", edgecolor=QUIET, hatch="////", label="not answered: beyond the emulator")]
+        marks += [Patch(facecolor="none", edgecolor=QUIET, hatch="////", label="outside the training range")]
     axes = figure.add_axes((0.02, bottom, 0.96, 0.01))
     axes.set_axis_off()
     words = "Every cell has the same area."

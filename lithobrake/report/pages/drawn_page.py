@@ -34,7 +34,7 @@ RETURNS_ROW = {"returns": "return fraction"}
 def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     landings, live = {plot.name: plot for plot in landing_plots(data)}, [*landing_views(data), *explorer_sections(data)]
-    samples = Plot("outputs", "What may come out", drawn_captions.samples(data), lambda: _samples(data))
+    samples = Plot("outputs", "Distribution of the rebound", drawn_captions.samples(data), lambda: _samples(data))
     sections = [
         any_study.where(data),
         PageSection("When", tables=time_tables(data)),
@@ -54,9 +54,9 @@ def _options(data: DrawnPage) -> list[Plot]:
 def _sure(data: DrawnPage) -> list[Plot]:
     """Whether to believe the emulator, and what is rare."""
     words = drawn_captions.calibration(data)
-    plots = [Plot("calibration", "Whether to believe the emulator", words, lambda: _calibration(data))]
+    plots = [Plot("calibration", "Calibration of the emulator", words, lambda: _calibration(data))]
     if data.rare:
-        plots.append(Plot("rare", "What is rare", rare_caption(data.rare), lambda: rare_figure(data.rare)))
+        plots.append(Plot("rare", "Rare limit states", rare_caption(data.rare), lambda: rare_figure(data.rare)))
     return plots
 
 
@@ -65,7 +65,7 @@ def landing_plots(data: RunsPage) -> list[Plot]:
     words = drawn_captions
     return [
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("runs", "What the landings gave", words.runs(data), lambda: _runs(data)),
+        Plot("runs", "Rebounds of the landings", words.runs(data), lambda: _runs(data)),
         Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
     ]
 

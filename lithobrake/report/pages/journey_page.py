@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Titles of figures of a drawn study that are of first touchdowns here.
-OF_FIRST = {"landing": "A first touchdown", "runs": "What the first touchdowns gave"}
+OF_FIRST = {"landing": "A first touchdown", "runs": "Rebounds of the first touchdowns"}
 
 
 def journey_content(data: JourneyPage) -> Content:
@@ -49,7 +49,7 @@ def journey_content(data: JourneyPage) -> Content:
 
 def _where(data: JourneyPage) -> PageSection:
     plots = [
-        Plot("whole", "All ends, and the whole body", words.whole_map(data), lambda: _draw_whole(data)),
+        Plot("whole", "All ends on the whole body", words.whole_map(data), lambda: _draw_whole(data)),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
     ]
     return PageSection("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
@@ -66,7 +66,7 @@ def _when(data: JourneyPage) -> PageSection:
 def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     """The parts of the variance, the sides of the lander, and the delivery options, as far as they are known."""
     aim, variance = data.results.aim, found["variance"]
-    first = Plot("variance", "The same of the first touchdown", words.first_variance(data), variance.draw)
+    first = Plot("variance", "What decides the first touchdown", words.first_variance(data), variance.draw)
     plots = [
         Plot("end_variance", "What decides the ends", words.end_variance(data), lambda: _draw_ends(data)),
         first,

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 def paper_content(data: PaperPage) -> Content:
     """All that the page shows of the study."""
     method = [
-        Plot("counts", "What the designs cost", captions.counts(data), lambda: _counts(data)),
+        Plot("counts", "Runs of the designs", captions.counts(data), lambda: _counts(data)),
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("outputs", "What may come out", captions.scatter(data), lambda: _outputs(data)),
+        Plot("outputs", "Distribution of the rebound", captions.scatter(data), lambda: _outputs(data)),
     ]
-    sure = [Plot("errors", "How good the expansion is", captions.errors(data), lambda: _errors(data))]
+    sure = [Plot("errors", "Accuracy of the expansion", captions.errors(data), lambda: _errors(data))]
     why = [Plot("sobol", "What matters", captions.sobol(data), lambda: _sobol(data))]
     live = [*landing_views(data), *explorer_sections(data)]
     sections = [

@@ -52,8 +52,8 @@ def first_map(data: SampledPage) -> Plot:
 def where(data: SampledPage) -> PageSection:
     """Where landers come down and where they rest."""
     plots = [
-        Plot("whole", "All outcomes, and the whole body", captions.whole_map(data), lambda: draw_whole(data)),
-        Plot("body", "The same on the body", captions.body(data), lambda: draw_body(data)),
+        Plot("whole", "All outcomes on the whole body", captions.whole_map(data), lambda: draw_whole(data)),
+        Plot("body", "Impacts on the body", captions.body(data), lambda: draw_body(data)),
         Plot("rest", "Where it rests", captions.rest(data), lambda: draw_rest(data)),
     ]
     return PageSection("Where", plots, place_tables(data), body_views(data), captions.details(data))

@@ -102,8 +102,8 @@ def _outcomes_of_landings(data: DrawnPage) -> PageTable:
     )
     if shares.outcomes["missing"].count:
         note += (
-            " Landings of unknown outcome count as like those that left in flight across the edge of the bed, and "
-            "every interval covers whatever became of them."
+            " Landings with unknown outcome count like those that left in flight across the edge of the bed; every "
+            "interval covers all their possible outcomes."
         )
     note += f" {shares.why}" if shares.why else ""
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
@@ -196,7 +196,7 @@ def _statuses(data: SampledPage) -> PageTable:
     note = f"From the first impact. {of[:1].upper()}{of[1:]}."
     rest = data.results.rest
     why = None if isinstance(rest, JourneyRest) else rest.why_no_soil
-    note += f" The soil could not be asked: {why}." if why else ""
+    note += f" No trajectories on the soil: {why}." if why else ""
     return PageTable("From bounce to bounce", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -215,9 +215,10 @@ def _journeys(data: SampledPage) -> PageTable:
         f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
         f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
         f"{rest['rest_height']:g} m. Hard ground like the soil draws the restitution that the soil implies by "
-        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. What is "
-        f"captured {_sliding(rest)} from facet to facet until it rests or leaves the ground again; no landing has been "
-        "fitted to that law, and on soil it starts from rest, as runs do not tell what speed is left."
+        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. A "
+        f"captured lander {_sliding(rest)} from facet to facet until it rests or leaves the ground again; this law "
+        "was not fitted to landings, and on soil the slide starts from rest, because the runs have no velocity after "
+        "capture."
     )
     return PageTable("Journeys to rest", columns, rows, note, frozenset(columns[2:]))
 
@@ -225,7 +226,7 @@ def _journeys(data: SampledPage) -> PageTable:
 def _sliding(rest: Mapping[str, Any]) -> str:
     """The law by which a captured lander moves on, in words."""
     if rest["rolling_friction"] is not None:
-        return f"rolls on like a ball against a resistance of {rest['rolling_friction']:g} of what presses it down,"
+        return f"rolls on like a sphere against a resistance of {rest['rolling_friction']:g} of the normal force,"
     return "slides on by Coulomb friction, on soil that of hull and grain,"
 
 

@@ -107,13 +107,15 @@ def _answer(data: RunsPage) -> PageTable:
     if returns.next_bed is not None:
         rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns.next_bed)])
     if missing:
-        rows.append([f"if none or all of the {missing} landings of unknown outcome return", span(*returns.if_missing)])
+        rows.append(
+            [f"if none or all of the {missing} landings with unknown outcome return", span(*returns.if_missing)]
+        )
     if returns.emulator is not None:
         rows.append(["return fraction by the emulator", percent(returns.emulator, digits)])
     rows.append(["from", returns.from_])
     note = as_sentence(returns.why) if returns.why else ""
     if has_interval(data) and missing:
-        note = "The interval covers whatever became of the landings of unknown outcome."
+        note = "The interval covers all possible outcomes of the landings with unknown outcome."
     return PageTable("The answer", ["quantity", "value"], rows, note)
 
 
@@ -185,9 +187,8 @@ def _variance(data: RunsPage) -> PageTable:
     note = (
         "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
         f"brackets {percent(data.level)} intervals. Soil, delivery and attitude: {known[0].terms if known else ''}, so "
-        "at least so much; what they do in another form is within everything else. Not detected: no more than "
-        "nothing, but for chance. The return fraction is a mean over headings already: what headings do is in none "
-        "of its parts."
+        "these parts are lower bounds; other effects are in everything else. Not detected: not distinguishable from 0. "
+        "The return fraction is a mean over headings, so the effect of headings is in none of its parts."
     )
     columns = ["part", *(sign(name) for name in records)]
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
@@ -241,7 +242,7 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     note = (
         f"{side.soil_pairs} runs were repeated on a second soil, {side.twins} with an impact point "
         f"{number(1e3 * side.twin_shift)} mm away. Total effect: the share of the variance that goes "
-        f"with the soil at one bed, impact point and attitude, whatever these are. In brackets {percent(data.level)} "
+        f"with the soil at a fixed bed, impact point and attitude. In brackets {percent(data.level)} "
         "intervals."
     )
     return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
@@ -255,8 +256,8 @@ def _emulator(data: DrawnPage) -> PageTable:
     for name, score in emulator.scores.outputs.items():
         rows.append([output(name).row, percent(score.crps_skill), percent(score.band_90)])
     note = (
-        f"{emulator.statement} Skill: how much smaller the score (CRPS; of all together the energy score) "
-        f"is than that of drawing one of the runs, on {left_out(data)}; 0 is no better."
+        f"{emulator.statement} Skill: relative improvement of the score (CRPS; for all outputs the energy score) "
+        f"over resampling the runs, on {left_out(data)}; 0 is no improvement."
     )
     return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
 
@@ -277,7 +278,7 @@ def _inputs(data: RunsPage) -> PageTable:
         if found
         else "No significant input (one F test for all inputs and outputs, products included)."
     )
-    return PageTable("Inputs that the runs draw", [*INPUT_COLUMNS, "significant"], rows, note)
+    return PageTable("Sampled inputs", [*INPUT_COLUMNS, "significant"], rows, note)
 
 
 def _found_inputs(data: RunsPage) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
 
 # Tables of any drawn study that are of more than the first touchdown, and one that has another name here.
-OF_ALL = ("Beds", "Inputs that the runs draw")
+OF_ALL = ("Beds", "Sampled inputs")
 RENAMED = {"The answer": "Return fraction"}
 
 

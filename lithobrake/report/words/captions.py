@@ -129,13 +129,13 @@ def landing(data: PageData) -> str:
         return ""
     attributes, time = data.landing.attributes, data.landing.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
-    images = " Grains are drawn with their images around its way." if attributes.get("sides") == "periodic" else ""
+    images = " Grains are drawn with their images around its path." if attributes.get("sides") == "periodic" else ""
     return (
         f"{data.shown_landing}, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
         f"{math.degrees(_float(attributes['incidence'])):.3g} deg from the normal. "
         f"{ended} after {number(float(time[-1] - time[0]))} s of simulated time; "
-        f"the line is the way of its centre.{images}"
+        f"the line is the path of its centre.{images}"
     )
 
 
@@ -169,12 +169,12 @@ def sobol(data: PaperPage) -> str:
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
     scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
-    rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input decides" if scatter else ""
+    rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input explains" if scatter else ""
     kept = listing([input_words(name) for name in data.results.kept_inputs])
     share = min(data.results.kept_share[name] for name in data.study["design"]["kept_outputs"])
     return (
         f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
-        "the explained variance of every output that decides."
+        "the explained variance of each output that the selection uses."
     )
 
 
@@ -196,8 +196,8 @@ def errors(data: PaperPage) -> str:
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
         f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
-        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing); dashed lines are mean errors, and a "
-        "small one beside a small Q2 only says that the output hardly varies."
+        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing); dashed lines are mean errors; a "
+        "small error with a small Q2 only means that the output hardly varies."
     )
 
 

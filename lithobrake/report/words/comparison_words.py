@@ -51,7 +51,7 @@ def sentence(comparison: StudyComparison, name: str) -> str:
     first, second = (f"{bounded(one, times)} {of}".strip() for one in (answer.first, answer.second))
     shown = f"{bounded(answer.difference, times, signed=True)} {unit(answer, of_difference=True)}".strip()
     return (
-        f"{answer.words[:1].upper()}{answer.words[1:]}: A {first}, B {second}; B less A {shown}: {verdict(answer)} "
+        f"{answer.words[:1].upper()}{answer.words[1:]}: A {first}, B {second}; B minus A {shown}: {verdict(answer)} "
         f"({percent(comparison.level)} intervals, {comparison.of})."
     )
 

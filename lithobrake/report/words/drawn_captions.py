@@ -77,9 +77,7 @@ def variance(data: RunsPage) -> str:
     """What decides."""
     records = {name: record for name, record in data.results.variance_shares.items() if record}
     if not records:
-        return (
-            "The runs cannot tell where the scatter comes from: they lie on one bed, or are too few for their inputs."
-        )
+        return "The sources of the scatter cannot be separated: the runs are on one bed, or too few for their inputs."
     first, *others = records
     said = [
         f"Of the variance of {sign(first)}, {scatter_words(records[first])} ({percent(data.level)} intervals), over "
@@ -90,15 +88,15 @@ def variance(data: RunsPage) -> str:
         said.append(f"Soil, at least: {listing(soils)}.")
     said.append(floor_words(records[first]))
     if all(record.chaos is None for record in records.values()):
-        said.append("Without auxiliary runs chaos is not known apart: it is within everything else.")
+        said.append("Without auxiliary runs, chaos is not a separate part: it is included in everything else.")
     return " ".join(said)
 
 
 def floor_words(record: VarianceParts) -> str:
     """Of which degree the parts are lower bounds, and for which ranges."""
     return (
-        f"Soil, delivery and attitude: by {record.terms}, for the ranges of the study file; what they do otherwise is "
-        f"in everything else. With soil ranges twice as wide the soil would be at least "
+        f"Soil, delivery and attitude: by {record.terms}, for the ranges of the study file; their other effects "
+        f"are in everything else. With soil ranges twice as wide the soil would explain at least "
         f"{record.soil_doubled.words()}."
     )
 
@@ -147,10 +145,11 @@ def calibration(data: DrawnPage) -> str:
     bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
     shares = [f"{percent(share)} of {sign(name)}" for name, share in held.items()]
     said = [
-        f"On {left_out(data)} the {percent(BAND)} bands held {listing(shares)}.",
+        f"On {left_out(data)} the {percent(BAND)} bands contained {listing(shares)}.",
         "For a calibrated emulator the histogram is flat; the grey band covers 90 % of the sampling fluctuation of "
-        "independent runs. High ends mean bands that are too narrow, a hump in the middle too wide, a slope a bias.",
-        f"{sum(bins)} of {len(bins)} bars lie outside of the grey{' (orange)' if any(bins) else ''}; chance alone "
+        "independent runs. High ends indicate bands that are too narrow, a hump in the middle bands that are too wide, "
+        "and a slope a bias.",
+        f"{sum(bins)} of {len(bins)} bars lie outside the grey band{' (orange)' if any(bins) else ''}; chance alone "
         f"gives {number(0.1 * len(bins), 2)}.",
     ]
     lucky = {name: band_luck(sum(score.pit)) for name, score in scores.items()}
@@ -159,7 +158,7 @@ def calibration(data: DrawnPage) -> str:
         ("too wide", [sign(name) for name, share in held.items() if share > lucky[name][1]]),
     ):
         if off:
-            said.append(f"The bands of {listing(off)} are {words} for chance alone.")
+            said.append(f"The bands of {listing(off)} are {words}, by more than chance explains.")
     return " ".join([*said, emulator.statement])
 
 
@@ -175,7 +174,7 @@ def samples(data: DrawnPage) -> str:
 
 def aims(data: RunsPage, table: AimResults) -> str:
     """The figure of the aims."""
-    crossed = " Options that the limits rule out are crossed." if table.within else ""
+    crossed = " Options that the limits exclude are crossed out." if table.within else ""
     return (
         f"{table.statement} {thousands(table.lander_count)} landers at each delivery option, followed until they rest; "
         f"below each number its {percent(data.level)} interval. Dotted frames: options that cannot be distinguished "
@@ -188,6 +187,6 @@ def rare_caption(rare: Mapping[str, RareLimitState]) -> str:
     named = ", ".join(f"{name} ({found.condition})" for name, found in rare.items())
     level = percent(next(iter(rare.values())).level)
     return (
-        f"Subset simulation with landings of {named}: each point is a level, at whose threshold the next one begins "
-        f"with the landings that came nearer; at 0 the limit state is met. Bars are {level} intervals."
+        f"Subset simulation with landings of {named}: each point is a level, and the next level starts "
+        f"from the landings beyond its threshold; at 0 the limit state is reached. Bars are {level} intervals."
     )

@@ -15,7 +15,9 @@ END_WORDS: dict[str, str] = {end.value: end.label for end in JourneyEnd}
 FIRST = "Of the first touchdown alone"
 # What the ends of journeys vary in, in a sentence and as rows of a figure.
 END_SIGNS = {
-    "at_rest": "whether a lander comes to rest", "time_s": "the time to rest", "distance_m": "the distance to the aim",
+    "at_rest": "whether a lander comes to rest",
+    "time_s": "the time to rest",
+    "distance_m": "the distance from the aim point",
 }  # fmt: skip
 END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m": "distance from\nthe aim point"}
 
@@ -85,9 +87,7 @@ def _delivery(data: JourneyPage) -> list[str]:
     if found is None or not found.regions:
         return []
     large = found.regions[-1]
-    return [
-        f"Blue: the same of the first impacts, the delivery; {percent(large.share)} lie within {area(large.area_m2)}."
-    ]
+    return [f"Blue: the same regions for the first impacts; {percent(large.share)} lie within {area(large.area_m2)}."]
 
 
 def times(data: JourneyPage) -> str:
@@ -100,8 +100,8 @@ def times(data: JourneyPage) -> str:
         f"Half of the landers at rest came to rest within {quantile_words(time.median, size)} {unit} after the first "
         f"touchdown and {quantile_words(distance.median)} m from the aim point; 95 % within "
         f"{quantile_words(time.q95, size)} {unit} and {quantile_words(distance.q95)} m. Dots: median and 95th "
-        f"percentile; bars: their {percent(LEVEL)} intervals over beds and impact points, dotted where an end is not "
-        "known."
+        f"percentile; bars: their {percent(LEVEL)} intervals over beds and impact points, dotted where a bound is "
+        "unknown."
     )
 
 
@@ -140,8 +140,8 @@ def end_variance(data: JourneyPage) -> str:
     ]
     if said:
         said.append(
-            "Delivery: the place and state of the first impact, but for its attitude; everything else holds the later "
-            "touchdowns, which draw impact points anew."
+            "Delivery: the place and state of the first impact, without its attitude; everything else includes the "
+            "later touchdowns, at new impact points."
         )
         said.append(floor_words(next(iter(known.values()))))
     return " ".join(said)
@@ -155,7 +155,7 @@ def first_variance(data: JourneyPage) -> str:
     correlations = (data.study.get("delivery") or {}).get("correlations") or ()
     pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
     if pairs:
-        said += f" Inputs are taken as independent, and {pairs} are drawn correlated: read their parts together."
+        said += f" Inputs are taken as independent, and {pairs} are correlated: read their parts together."
     return said
 
 
@@ -170,8 +170,8 @@ def emulator_words(data: JourneyPage) -> list[str]:
     half, narrow = (percent(one) for one in (control.half_width, control.half_width_with))
     return [
         found.statement,
-        f"What it predicts of each journey narrows the interval of the share at rest from +- {half} to +- {narrow}, "
-        "so a share may differ from the count.",
+        f"As a control variate it narrows the interval of the fraction at rest from +- {half} to +- {narrow}, so a "
+        "fraction may differ from the count.",
     ]
 
 

@@ -71,7 +71,7 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
         path: path.read_bytes() for path in (home / "out").rglob("*") if path.is_file() and path.suffix != ".lock"
     }
     lines = said_by("status", home).splitlines()
-    assert lines[0] == f"{home / 'out'}: nobody is at work; the report is there"
+    assert lines[0] == f"{home / 'out'}: not running; the report is there"
     assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser found")
@@ -89,7 +89,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     before = len(open_study(home / "out").ledger)
     run(home, "screen")
     lines = said_by("status", home).splitlines()
-    assert lines[0].endswith("nobody is at work; the report is there, but not of the files as they are")
+    assert lines[0].endswith("not running; the report is there, but its files have changed since")
     assert lines[1] == "2 of 11 stages are current: screening runs, screening"
     assert lines[2].startswith(
         "of an earlier setting or version: designs/refined.csv, refined.json, designs/test_kept.csv, "

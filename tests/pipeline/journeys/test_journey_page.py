@@ -64,7 +64,7 @@ def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> 
     appendix = next(section for section in content.sections if section.title == "Appendix")
     titles = {table.title for table in appendix.tables}
     assert {title for title in titles if not title.startswith("First touchdown: ")} <= {
-        "Beds", "Inputs that the runs draw",
+        "Beds", "Sampled inputs",
     }  # fmt: skip
 
 

@@ -256,7 +256,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
         ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
         ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
         ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
-        ({"lander": {"restitution": 0.95}}, 'lander.restitution never counts: contact.pair_rule = "smaller"'),
+        ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
         (
             {"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
             "grain.young_modulus is uniform from 100000 to 1e+08: nine tenths of its values are above 1e+07",
@@ -293,10 +293,10 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     ("changes", "said"),
     [
         ({}, None),
-        ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another answer"),
+        ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another result"),
         # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
-        ({"bed": {"bed_count": 5}}, "on 5 beds, and beds are what an interval counts: so few make it 19 % wider"),
-        ({"design": {"run_count": 8}}, "on 8 beds, and beds are what an interval counts: so few make it 5 % wider"),
+        ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
+        ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
         (
             {"impact": {"place": {"x": 0.0, "y": 0.1}}},
             "All runs come down at the same place of their beds: give impact.region",
@@ -365,7 +365,7 @@ def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
     plans.append(plan_for(study, folder, 2))
     assert [(plan.beds[0].total, plan.beds[0].new) for plan in plans] == [(12, 12), (12, 6)]
     assert "Beds: 12; 1 in the folder, 5 in the library of beds, 6 to pour." in plan_lines(plans[1])
-    assert "Site: gravity and rotation together throw off what lies on the ground." in plan_lines(plans[1])
+    assert "Site: gravity and rotation together eject objects that rest on the ground." in plan_lines(plans[1])
     level = "Site: the ground slopes by 12 deg against gravity and rotation together."
     assert level in plan_lines(replace(plans[1], site_slope_deg=12.3))
     assert plans[1].made["beds"] == (6, 6)
