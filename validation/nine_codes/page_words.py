@@ -11,7 +11,7 @@ Dosta and others [Dosta-2024] gave nine open codes the same problems, with mater
 initial positions. In one of them a steel ball of 20 mm hits 25 000 spheres of 2 mm at 5 m/s; the
 bed is 34 mm deep. The published curves were not accessible. MercuryDPM was therefore built and run
 here with the driver of that work (repository kuwt/MercuryDPM_fork, commit fb0ebf1d,
-`Drivers/Papers/OSBenchmark`), and LAMMPS from the same bed.
+`Drivers/Papers/OSBenchmark`). LAMMPS was run from the bed that was relaxed here.
 
 The criterion was set before the runs. The height z of the ball's centre is within 1 mm, half a
 grain, of MercuryDPM's at 10, 20, 50 and 100 ms, and within the range of five beds. No other beds
