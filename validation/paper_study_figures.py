@@ -185,8 +185,8 @@ def error_table() -> list[str]:
     """Errors of the refined expansion beside the paper's."""
     scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())
     lines = [
-        "| output | paper: MAPE [%] | here, training runs [%] | fresh runs, kept inputs [%] | fresh runs, all inputs [%] "
-        "| Q2 of both | RMS error of both | perturbed runs |",
+        "| output | paper: MAPE [%] | here: training runs [%] | fresh runs, kept inputs [%] "
+        "| fresh runs, all inputs [%] | Q2 of both | RMS error of both | due to chaos: RMS, MAPE |",
         "|---" * 8 + "|",
     ]
     for output in OUTPUTS:
@@ -253,9 +253,8 @@ def grain_size_table() -> list[str]:
         speed = f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
         value, low, high = share(one)
         outcomes = ", ".join(f"{OUTCOMES[outcome]} {count}" for outcome, count in one["outcomes"].items())
-        lines.append(
-            f"| {name.removeprefix('lander ')} | {outcomes} | {speed} | {value:.0f} ({low:.0f} to {high:.0f}) | {drivers(one)} |"
-        )
+        fraction = f"{value:.0f} ({low:.0f} to {high:.0f})"
+        lines.append(f"| {name.removeprefix('lander ')} | {outcomes} | {speed} | {fraction} | {drivers(one)} |")
     return lines
 
 

@@ -23,8 +23,8 @@ covers the sampling of the flights only. "Paper method, seed N" repeats it at or
 {answers}
 
 The next table lists the origin of the variance of the rebound speed. For the paper method it has the three largest
-total Sobol indices of the expansion; they may sum to more than 1. For the drawn studies it has fractions of the
-variance. "Everything else" is impact point, attitude and what terms of first and second degree in the soil do not
+total Sobol indices of the expansion of order 3; they may sum to more than 1. For the drawn studies it has fractions of
+the variance. "Everything else" is impact point, attitude and what terms of first and second degree in the soil do not
 explain. Estimates below 0 are shown as 0.
 
 {drivers}
@@ -32,9 +32,8 @@ explain. Estimates below 0 are shown as 0.
 
 ERRORS = """\
 MAPE is the mean absolute error in percent of the output, Q2 the coefficient of determination on fresh runs. "Kept
-inputs" are three of the five; the others have their medians. "Perturbed runs" repeat the same soils with the impact
-point moved by 0.1 mm. The column has the error that a perfect mean would have there, RMS and in percent: it is the part
-of the error due to chaos. "From the normal" counts the elevation from the normal of the surface, because the paper does
+inputs" are three of the five; the others have their medians. "Due to chaos" is the error that a perfect mean would
+still have. It follows from runs that repeat the same soils with the impact point moved by 0.1 mm. "From the normal" counts the elevation from the normal of the surface, because the paper does
 not state from where it counts.
 
 {errors}
