@@ -33,8 +33,8 @@ explain. Estimates below 0 are shown as 0.
 ERRORS = """\
 MAPE is the mean absolute error in percent of the output, Q2 the coefficient of determination on fresh runs. "Kept
 inputs" are three of the five; the others have their medians. "Due to chaos" is the error that a perfect mean would
-still have. It follows from runs that repeat the same soils with the impact point moved by 0.1 mm. "From the normal" counts the elevation from the normal of the surface, because the paper does
-not state from where it counts.
+still have. It follows from runs that repeat the same soils with the impact point moved by 0.1 mm. "From the normal"
+counts the elevation from the normal of the surface, because the paper does not state from where it counts.
 
 {errors}
 """
