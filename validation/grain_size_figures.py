@@ -232,7 +232,8 @@ def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
                           for text, ratios in groups.items() if ratios)  # fmt: skip
         listed = ", ".join(f"{one} at {ratio:g}" for ratio, one in of)
         sentences.append(
-            f"- **{grain.capitalize()}s**: {shown}. The total effect of the soil over that of the impact point is {listed}."
+            f"- **{grain.capitalize()}s**: {shown}. The total effect of the soil over that of the impact point is "
+            f"{listed}."
         )
     attitude = next(p["speed_out"].attitude for g, p in reversed(of_steep(found).items()) if g.startswith("hull"))
     return "\n".join(

@@ -20,8 +20,8 @@ Lander ({edges} m, {mass:g} kg), input distributions and site are those of `scen
   0.1 mm. The same samples are used on all beds.
 - **Total effect** of a factor: half the mean squared difference of landings that differ in it alone, over the
   variance, which comes from landings that differ in all three [Jansen-1999]. Total effects include interactions, so
-  they may sum to more than 1. "Soil alone" is the main effect of the soil, without interactions. "Chaos" is the part due to
-  the 0.1 mm.
+  they may sum to more than 1. "Soil alone" is the main effect of the soil, without interactions. "Chaos" is the part
+  due to the 0.1 mm.
 - **Intervals** ({level:.0f} %) come from {resamples} resamples of the blocks. Below {few} blocks none is given.
 - **No rebound.** A lander that is captured, or still in contact at its time limit, has no rebound. Its pairs are left
   out.
