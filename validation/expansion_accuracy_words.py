@@ -8,8 +8,8 @@ Over which input ranges, and on which grains, does an expansion reach the publis
 **{verdict}**
 
 The published method fits an expansion of order {degree} to landings on one bed, at one impact point, in one attitude.
-On fresh runs it reports mean absolute errors of {speed:g} % for the rebound speed, {elevation:g} % for the direction and
-{spin:g} % for the spin rate ([Landings-PCE], Figure 5). Its input ranges and grains are not published.
+On fresh runs it reports mean absolute errors of {speed:g} % for the rebound speed, {elevation:g} % for the direction
+and {spin:g} % for the spin rate ([Landings-PCE], Figure 5). Its input ranges and grains are not published.
 
 ![Sweeps and errors](expansion_accuracy.png)
 
