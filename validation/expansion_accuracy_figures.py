@@ -8,6 +8,7 @@ expansion_accuracy.md to docs/validation.
 
 import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,8 +18,9 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from expansion_accuracy import CELLS, HOW, KEPT, KINDS, RANGES, SWEPT, Cell, designs, laws
+from expansion_accuracy_words import TEXT
 from numpy.typing import NDArray
-from page_text import broken
+from page_text import broken, table, two_digits
 from paper_study_figures import PAPER_MAPE
 
 from lithobrake.chaos import absolute_percentage_error, fit, term_count
@@ -41,6 +43,9 @@ DIRECTIONS = ("elevation_out", FROM_NORMAL)
 PAPER = PAPER_MAPE | {FROM_NORMAL: PAPER_MAPE["elevation_out"]}
 DEGREE = 5
 JUMP = 10.0  # median steps, above which a step of a sweep is a jump
+MARKERS = {"o": "circles", "s": "squares", "d": "diamonds", "^": "triangles", "v": "inverted triangles"}
+# The sets of inputs that vary, as a reader has them.
+INPUTS = {"ours": "study", "paper's": "paper", "two": "first two"}
 
 
 class Score(NamedTuple):
@@ -110,7 +115,7 @@ def words(cell: Cell) -> str:
 
 
 def draw(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> None:
-    """Sweeps above, a marker a bed, errors by range below."""
+    """Draw the sweeps above, a marker for each bed, and the errors by range below."""
     grounds = sorted({cell.ground for cell in swept}, key=lambda name: (HOW[name].grain, HOW[name].ratio))
     with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(9.6, 6.6), layout="constrained")
@@ -120,21 +125,23 @@ def draw(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> None:
             for cell, one in swept.items():
                 if cell.ground == name:
                     colour, label = INPUT_COLOURS[SWEPT.index(cell.kept)], cell.kept if cell.bed == 0 else None
-                    axis.plot(one.part, 100.0 * one.speed, "osd^"[cell.bed], ms=2.5, color=colour, label=label)
+                    marker = list(MARKERS)[cell.bed % len(MARKERS)]
+                    axis.plot(one.part, 100.0 * one.speed, marker, ms=2.5, color=colour, label=label)
             axis.set_title(f"{HOW[name].grain}s, {HOW[name].ratio:g}")
             axis.set_ylim(0.0, 1.1 * axis.get_ylim()[1])
         axes[0].legend(loc="lower right")
         axes[0].set_ylabel("rebound speed [cm/s]")
-        upper.supxlabel("part of the full range of one property of the grains, all else at the medians", fontsize=9)
+        upper.supxlabel("position in the full range of one soil parameter, all others at their medians", fontsize=9)
         axes = lower.subplots(1, len(OUTPUTS), squeeze=False, sharey=True)[0]
         kinds = list(dict.fromkeys((cell.ground, cell.bed, cell.kept) for cell in found))
         for axis, name in zip(axes, OUTPUTS, strict=True):
             for number, kind in enumerate(kinds):
                 of = {cell: one for cell, one in found.items() if (cell.ground, cell.bed, cell.kept) == kind}
-                label = f"{words(next(iter(of)))}, bed {kind[1]}" + ("" if kind[2] == "ours" else f", {kind[2]}")
+                others = "" if kind[2] == "ours" else f", {INPUTS[kind[2]]}"
+                label = f"{words(next(iter(of)))}, bed {kind[1]}{others}"
                 x = [list(RANGES).index(cell.range) for cell in of]
                 y = [one[name].fresh for one in of.values()]
-                axis.plot(x, y, "o-", ms=4, lw=1.0, color=INPUT_COLOURS[number], label=label)
+                axis.plot(x, y, "o-", ms=4, lw=1.0, color=INPUT_COLOURS[number % len(INPUT_COLOURS)], label=label)
             axis.axhline(PAPER[name], color=QUIET, ls="--", lw=1.0, label="published")
             axis.set_yscale("log")
             axis.set_yticks([0.5, 1, 2, 5, 10, 20, 50, 100], ["0.5", "1", "2", "5", "10", "20", "50", "100"])
@@ -149,43 +156,45 @@ def draw(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> None:
         plt.close(figure)
 
 
-def score_table(rows: list[Row], found: dict[Cell, dict[str, Score]]) -> list[str]:
-    """A line a cell: errors on fresh points and on its own, Q2, error of twins, and which outputs reach the paper's."""
-    heads = ["grains, ratio", "bed", "inputs", "range", "points, lost"]
-    heads += [f"{TITLES[name]}: fresh, own, twins [%], Q2" for name in OUTPUTS] + ["reach the published error"]
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+def head_cells(cell: Cell) -> list[str]:
+    """Return grains and ratio, bed, inputs and range of a cell."""
+    wide = cell.range if cell.range == "full" else f"±{cell.range}"
+    return [words(cell), str(cell.bed), INPUTS[cell.kept], wide]
+
+
+def error_table(rows: list[Row], found: dict[Cell, dict[str, Score]]) -> str:
+    """Return a line a cell: errors on fresh points, and which outputs reach the published error."""
+    heads = ["grains, ratio", "bed", "inputs", "range", "grid points", "lost"]
+    heads += [f"{TITLES[name]} [%]" for name in OUTPUTS] + ["reach the published error"]
+    lines = []
     for cell, one in found.items():
         y = outputs_of(rows, cell, "grid")
-        fine = [TITLES[name] for name in OUTPUTS if reached(one, name)]
-        wide = cell.range if cell.range == "full" else f"±{cell.range}"
-        cells = [words(cell), str(cell.bed), cell.kept, wide, f"{len(y)}, {int(np.isnan(y).any(axis=1).sum())}"]
-        cells += [f"{s.fresh:.2g}, {s.own:.2g}, {s.twins:.2g}; {s.q2:.2f}" for s in one.values()]
-        lines.append(f"| {' | '.join([*cells, ', '.join(fine) or 'none'])} |")
-    return lines
+        fine = ", ".join(TITLES[name] for name in OUTPUTS if reached(one, name))
+        counts = [str(len(y)), str(int(np.isnan(y).any(axis=1).sum()))]
+        lines.append([*head_cells(cell), *counts, *(two_digits(s.fresh) for s in one.values()), fine or "none"])
+    return table(heads, lines)
 
 
-def sweep_table(swept: dict[Cell, Sweep]) -> list[str]:
-    """A line a sweep."""
-    heads = [
-        "grains, ratio",
-        "bed",
-        "property",
-        "steps",
-        "jumps",
-        "median step [% of the mean]",
-        "largest step [% of the mean]",
-    ]
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
-    for cell, one in swept.items():
-        cells = [
-            words(cell),
-            str(cell.bed),
-            cell.kept,
-            str(one.steps),
-            f"{one.jumps} ({100.0 * one.jumps / one.steps:.0f} %)",
-        ]
-        lines.append(f"| {' | '.join([*cells, f'{100.0 * one.median:.2g}', f'{100.0 * one.largest:.0f}'])} |")
-    return lines
+def fit_table(found: dict[Cell, dict[str, Score]]) -> str:
+    """Return a line a cell: errors on points of the fit, errors due to chaos, and Q2 on fresh points."""
+    heads = ["grains, ratio", "bed", "inputs", "range"]
+    heads += [f"{TITLES[name]}: training [%], chaos [%]; Q2" for name in OUTPUTS]
+    return table(heads, (
+        [*head_cells(cell),
+         *(f"{two_digits(s.own)}, {two_digits(s.twins)}; {s.q2:.2f}" for s in one.values())]
+        for cell, one in found.items()
+    ))  # fmt: skip
+
+
+def sweep_table(swept: dict[Cell, Sweep]) -> str:
+    """Return a line a sweep."""
+    heads = ["grains, ratio", "bed", "parameter", "steps", "jumps", "median step [% of the mean]",
+             "largest step [% of the mean]"]  # fmt: skip
+    return table(heads, (
+        [words(cell), str(cell.bed), cell.kept, str(one.steps), f"{one.jumps} ({100.0 * one.jumps / one.steps:.0f} %)",
+         two_digits(100.0 * one.median), f"{100.0 * one.largest:.0f}"]
+        for cell, one in swept.items()
+    ))  # fmt: skip
 
 
 def reached(one: dict[str, Score], *names: str) -> bool:
@@ -194,126 +203,87 @@ def reached(one: dict[str, Score], *names: str) -> bool:
 
 
 def verdict(found: dict[Cell, dict[str, Score]]) -> str:
-    """Where the expansion reaches the published errors."""
-    said = []
-    for names, title in ((("speed_out",), "rebound speed"), (DIRECTIONS, "direction"), (("spin_out",), "spin rate")):
+    """Return where the expansion reaches the published errors."""
+    asked = {"rebound speed": ("speed_out",), "direction": DIRECTIONS, "spin rate": ("spin_out",)}
+    parts = []
+    for title, names in asked.items():
         cells = [cell for cell, one in found.items() if reached(one, *names)]
-        where = [f"{words(cell)}, bed {cell.bed}, {'' if cell.range == 'full' else '±'}{cell.range}" for cell in cells]
-        said.append(f"of the {title} in {len(cells)}" + (f" ({'; '.join(where)})" if 0 < len(where) <= 3 else ""))
-    whole = sum(
-        all(reached(one, *names) for names in (("speed_out",), DIRECTIONS, ("spin_out",))) for one in found.values()
-    )
-    every = f"of all three in {whole}"
+        where = [f"{words(cell)}, bed {cell.bed}, {head_cells(cell)[-1]}" for cell in cells]
+        parts.append(f"{len(cells)} ({title}{f': {where[0]}' if len(where) == 1 else ''})")
+    whole = sum(all(reached(one, *names) for names in asked.values()) for one in found.values())
     return (
-        f"Of {len(found)} cells an expansion of order {DEGREE} reaches the published error {', '.join([*said, every])}."
+        f"An expansion of order {DEGREE} was fitted to {len(found)} combinations of grains, bed, inputs and range. It "
+        f"reaches the published error in {', '.join(parts)} of them, and all three errors in {whole}."
     )
 
 
 def skill(found: dict[Cell, dict[str, Score]]) -> str:
-    """In how many of the cells that reach the published error of the speed the expansion explains little of it."""
+    """Return how many cells that reach the published error of the speed explain little of it."""
     fine = [one["speed_out"].q2 for one in found.values() if reached(one, "speed_out")]
     return (
-        f"Of the {len(fine)} cells with the published error of the speed, {sum(q2 < 0.5 for q2 in fine)} have Q2 < 0.5"
+        f"Of the {len(fine)} combinations with the published error of the speed, {sum(q2 < 0.5 for q2 in fine)} have "
+        "Q2 < 0.5"
     )
 
 
-def kinks(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> str:
-    """Jumps of the sweeps on each bed with expansions, and how many of its ranges reach the error of the speed."""
-    said = []
+def kink_table(found: dict[Cell, dict[str, Score]], swept: dict[Cell, Sweep]) -> str:
+    """Return a line a bed with sweeps and expansions: its jumps, and the ranges that reach the error of the speed."""
+    lines = []
     for place in dict.fromkeys((cell.ground, cell.bed) for cell in found):
         steps = [one for cell, one in swept.items() if (cell.ground, cell.bed) == place]
-        cells = [one for cell, one in found.items() if (cell.ground, cell.bed) == place and cell.kept != "paper's"]
+        here = {cell: one for cell, one in found.items() if (cell.ground, cell.bed) == place}
+        cells = {cell: one for cell, one in here.items() if cell.kept != "paper's"}
         if steps and cells:
             share = 100.0 * sum(one.jumps for one in steps) / sum(one.steps for one in steps)
-            count = sum(reached(one, "speed_out") for one in cells)
-            said.append(f"{place[0]}, bed {place[1]}: {share:.0f} % of the steps, {count} of {len(cells)} ranges")
-    return "; ".join(said)
+            rough = 100.0 * max(one.median for one in steps)
+            count = sum(reached(one, "speed_out") for one in cells.values())
+            lines.append([words(next(iter(cells))), str(place[1]), f"{share:.0f}", two_digits(rough),
+                          f"{count} of {len(cells)}"])  # fmt: skip
+    heads = ["grains, ratio", "bed", "jumps [% of the steps]", "largest median step [% of the mean]",
+             "ranges with the published error of the speed"]  # fmt: skip
+    return table(heads, lines)
 
 
-HEAD = """# Where the published expansion is accurate
-
-Written by `python validation/expansion_accuracy_figures.py`.
-
-The published method fits an expansion of order {degree} to landings on one bed, at one impact point,
-in one attitude, and reports mean absolute errors of {speed:g} % for the rebound speed,
-{elevation:g} % for the direction and {spin:g} % for the spin rate on fresh runs ([Landings-PCE],
-Figure 5). Its input ranges and grains are not published. Over which ranges, and on which grains, are
-such errors reached?
-
-**{verdict}**
-
-![Sweeps and errors](expansion_accuracy.png)
-
-Above, each marker is a bed (circles 0, squares 1, diamonds 2, triangles 3); below, errors on fresh points.
-
-## Method
-
-Lander, medians and full ranges are those of `scenarios/one_place.toml`, its impact at 15 degrees
-and its attitude too; the impact point is the middle of a tile that repeats, as in
-[soil against impact point](grain_size.md). The ratio is the lander's longest edge over the
-diameter of the grains. Three inputs vary, by a part of their medians to both sides or over their
-full ranges: {ours}, which [the study at full size](paper_study.md) keeps, or {papers}, which the
-paper keeps; "two" are the first two of ours, where landings cost most. The screening that chooses
-them is not repeated. {terms} terms, {few} for two inputs, are fitted by least squares to a Smolyak
-grid of level 5 (441 points, the order of the paper) or 4 (177, and 65 for two inputs), and scored on
-30 to 50 fresh points. "Lost" landings did not leave. "Twins" is the error of a
-law without error beside chance: from landings 0.1 mm aside. The paper does not state from where it
-counts the direction of the velocity: both ways are tried.
-
-## Errors
-
-A mean absolute error is small, too, where an output hardly varies over its range. Q2 is the part of
-the variance on fresh points that the expansion explains. {skill}.
-
-"""
-SWEEPS = """
-
-## Kinks
-
-Friction, or the restitution of the grains, alone over its full range, in equal steps. A jump is a
-step of more than {jump:g} median steps. Where every step is large, chance is as large as the steps,
-and jumps do not stand out: look at the median step. No polynomial of order {degree} follows either.
-
-Jumps of all sweeps of a bed, and how many ranges of our inputs reach the published error of the
-speed there: {kinks}.
-
-"""
-LIMITS = """
-
-## What this leaves out
-
-- One impact point and one attitude a bed; errors differ from bed to bed.
-- {missing}
-"""
-
-
-def not_run(cells: list[Cell]) -> str:
-    """A sentence about cells that are missing."""
+def not_run(cells: list[Cell], found: Iterable[Cell]) -> str:
+    """Return a sentence about cells that are missing."""
     kinds: dict[str, list[str]] = {}
     for cell in cells:
-        kinds.setdefault(f"{words(cell)}, bed {cell.bed}, {cell.kept}", []).append(cell.range)
+        kinds.setdefault(f"{words(cell)}, bed {cell.bed}, {INPUTS.get(cell.kept, cell.kept)}", []).append(cell.range)
     named = "; ".join(f"{kind} ({', '.join(ranges)})" for kind, ranges in kinds.items())
-    beyond = "Expansions on hulls at 10, and on anything at 20, cost too much"
-    return f"{beyond}; also not run: {named}." if cells else f"{beyond}."
+    beyond = f"No expansion was fitted above a ratio of {max(HOW[cell.ground].ratio for cell in found):g}."
+    return f"{beyond} Not run: {named}." if cells else beyond
+
+
+def place_of(cell: Cell) -> tuple[str, float, int]:
+    """Return grains, ratio and bed of a cell."""
+    return HOW[cell.ground].grain, HOW[cell.ground].ratio, cell.bed
+
+
+def markers(swept: Iterable[Cell]) -> str:
+    """Return which marker a bed has in the figure."""
+    beds = sorted({cell.bed for cell in swept})
+    return ", ".join(f"{list(MARKERS.values())[bed % len(MARKERS)]} {bed}" for bed in beds)
 
 
 def page(rows: list[Row], origin: Row) -> str:
-    """The text of the page."""
+    """Return the text of the page."""
     found = {cell: one for cell in CELLS if cell.level is not None and (one := scores(rows, cell))}
     swept = {cell: one for cell in CELLS if cell.level is None and (one := sweep(rows, cell))}
     draw(found, swept)
+    found = {cell: found[cell] for cell in sorted(found, key=place_of)}
     speed, elevation, _, spin = (PAPER[name] for name in OUTPUTS)
     ours, papers = (", ".join(f"`{name}`" for name in KEPT[kind]) for kind in ("ours", "paper's"))
-    head = HEAD.format(
+    spent = sum(row["cpu_s"] for row in rows) / 60.0
+    text = TEXT.format(
         degree=DEGREE, speed=speed, elevation=elevation, spin=spin, verdict=verdict(found), ours=ours, papers=papers,
         terms=term_count(len(KEPT["ours"]), DEGREE), few=term_count(len(KEPT["two"]), DEGREE), skill=skill(found),
+        markers=markers(swept), errors=error_table(rows, found), fits=fit_table(found), jump=JUMP,
+        kinks=kink_table(found, swept), sweeps=sweep_table(swept),
+        missing=not_run([cell for cell in CELLS if cell not in found and cell not in swept], found),
+        made=f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}, "
+        f"{spent:.0f} min of CPU time",
     )  # fmt: skip
-    missing = not_run([cell for cell in CELLS if cell not in found and cell not in swept])
-    middle = SWEEPS.format(jump=JUMP, degree=DEGREE, kinks=kinks(found, swept))
-    lines = [head, *score_table(rows, found), middle, *sweep_table(swept)]
-    spent = sum(row["cpu_s"] for row in rows) / 60.0
-    made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}."
-    return broken("\n".join([*lines, LIMITS.format(missing=missing), f"{made} {spent:.0f} min of CPU."])) + "\n"
+    return broken(text) + "\n"
 
 
 def main() -> None:

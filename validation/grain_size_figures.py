@@ -18,6 +18,7 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from grain_size import DURATION, EDGES, FLIGHTS, GROUNDS, KINDS, MASS, ROLLING, WAYS
+from grain_size_words import HEAD, LIMITS
 from numpy.typing import NDArray
 from page_text import broken
 
@@ -35,6 +36,7 @@ OUTPUTS = {
     "returns": "return fraction",
 }  # fmt: skip
 RESAMPLES, SEED = 4000, 41
+FEW = 4  # blocks, below which no interval is given
 SOIL, POINT, ATTITUDE = 1, 2, 3  # axes of a block's outputs
 # How each part is drawn: label, colour, marker, and how far from its ratio.
 PARTS = {
@@ -135,8 +137,11 @@ def groups(rows: list[Row]) -> dict[tuple[str, str], list[Row]]:
 
 
 def of_steep(found: dict[tuple[str, str], dict[str, Parts]]) -> dict[str, dict[str, Parts]]:
-    """Parts of steep impacts on the smallest grounds."""
-    return {name: of for (name, way), of in found.items() if way == "steep" and GROUNDS[name].wider == 1.0}
+    """Parts of steep impacts on the smallest grounds, where there are blocks enough for an interval."""
+    return {
+        name: of for (name, way), of in found.items()
+        if way == "steep" and GROUNDS[name].wider == 1.0 and of["speed_out"].blocks >= FEW
+    }  # fmt: skip
 
 
 def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
@@ -173,25 +178,32 @@ def words(name: str) -> str:
     return f"{GROUNDS[name].grain}s{', larger bed' if GROUNDS[name].wider > 1.0 else ''} | {GROUNDS[name].ratio:g}"
 
 
-def part_table(found: dict[tuple[str, str], dict[str, Parts]]) -> list[str]:
-    """A line for each ground, way and output."""
-    heads = ["grains", "ratio", "impact [deg]", "output", "soil", "soil alone", "bed and impact point", "attitude"]
-    heads += ["soil / point", "twins", "blocks"]
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
-    for (name, way), of in found.items():
-        for key, title in OUTPUTS.items():
+def part_tables(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
+    """Return a table for each output: a line for each ground and way."""
+    heads = ["grains", "ratio", "impact angle [deg]", "soil", "soil alone", "bed and impact point", "attitude"]
+    heads += ["soil / impact point", "chaos", "blocks"]
+    tables = []
+    for key, title in OUTPUTS.items():
+        lines = [f"### {title.capitalize()}\n", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        for (name, way), of in found.items():
             p = of[key]
-            cells = [words(name), f"{WAYS[way][1]:g}", title, str(p.soil), str(p.main), str(p.point), str(p.attitude)]
-            cells += [str(p.ratio), f"{p.chaos:.3f}", str(p.blocks)]
+            effects = [with_interval(one, p.blocks) for one in (p.soil, p.main, p.point, p.attitude, p.ratio)]
+            cells = [words(name), f"{WAYS[way][1]:g}", *effects, f"{p.chaos:.3f}", str(p.blocks)]
             lines.append(f"| {' | '.join(cells)} |")
-    return lines
+        tables.append("\n".join(lines))
+    return "\n\n".join(tables)
+
+
+def with_interval(one: Estimate, blocks: int) -> str:
+    """Return a value with its interval, or alone where there are too few blocks for one."""
+    return str(one) if blocks >= FEW else f"{one.value:.2f}"
 
 
 def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> list[str]:
     """A line for each ground and way: beds and landings."""
-    heads = ["grains", "ratio", "impact [deg]", "grains in a bed", "width [m]", "depth [cm]", "beds", "landings"]
-    heads += ["captured", "time limit", "rebound speed [cm/s]", "deepest tenth [cm]", "CPU of a pour [s]"]
-    heads += ["CPU of a landing [s]"]
+    heads = ["grains", "ratio", "impact angle [deg]", "grains in a bed", "width [m]", "depth [cm]", "beds", "landings"]
+    heads += ["captured", "time limit", "rebound speed [cm/s]", "penetration, 90 % quantile [cm]"]
+    heads += ["CPU time of a bed [s]", "CPU time of a landing [s]"]
     lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for (name, way), of in rows.items():
         own, ends = [bed for bed in beds if bed["ground"] == name], Counter(row["status"] for row in of)
@@ -207,81 +219,26 @@ def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> li
 
 
 def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
-    """From which ratio on the soil moves the rebound speed more than bed and impact point do, by kind of grain."""
-    said = []
+    """Return at which ratios the soil moves the rebound speed more than bed and impact point do, by kind of grain."""
+    sentences = []
     for grain in ("hull", "sphere"):
         of = sorted((GROUNDS[g].ratio, p["speed_out"].ratio) for g, p in of_steep(found).items() if g.startswith(grain))
-        above = [ratio for k, (ratio, _) in enumerate(of) if all(one.lower > 1.0 for _, one in of[k:])]
-        finest, last = of[-1]
-        shown = f"from a ratio of {above[0]:g} on" if above else f"not up to a ratio of {finest:g}"
-        if not above and last.upper >= 1.0:
-            shown = f"not shown up to a ratio of {finest:g}"
+        groups = {
+            "the impact point moves it more than the soil": [ratio for ratio, one in of if one.upper < 1.0],
+            "the two effects cannot be distinguished": [ratio for ratio, one in of if one.lower <= 1.0 <= one.upper],
+            "the soil moves it more than the impact point": [ratio for ratio, one in of if one.lower > 1.0],
+        }
+        shown = "; ".join(f"at {' and '.join(f'{one:g}' for one in ratios)} {text}"
+                          for text, ratios in groups.items() if ratios)  # fmt: skip
         listed = ", ".join(f"{one} at {ratio:g}" for ratio, one in of)
-        said.append(f"{'On' if not said else 'on'} {grain}s {shown} ({listed})")
+        sentences.append(
+            f"- **{grain.capitalize()}s**: {shown}. The total effect of the soil over that of the impact point is "
+            f"{listed}."
+        )
     attitude = next(p["speed_out"].attitude for g, p in reversed(of_steep(found).items()) if g.startswith("hull"))
-    return (
-        f"Does the soil move the rebound speed more than the impact point? {'; '.join(said)} (total effect of the soil "
-        f"over that of the impact point). On the finest hulls the attitude has a total effect of {attitude}."
+    return "\n".join(
+        [*sentences, f"- **Attitude**: on the finest hulls its total effect is {attitude} of the variance."]
     )
-
-
-HEAD = """# Soil against impact point, by grain size
-
-Written by `python validation/grain_size_figures.py`.
-
-How much do the material parameters move the rebound, and how much does the impact point, as grains
-become small beside the lander? Lander ({edges} m, {mass:g} kg), input distributions and site are
-those of `scenarios/first_bounce.toml`. The ratio is the lander's longest edge, {edge:g} m, over the
-diameter of the grains.
-
-**{verdict}**
-
-![Total effects by ratio](grain_size.png)
-
-## Method
-
-A block has two soils (five parameters of grains and lander, drawn together), two impact points on
-two beds, and two attitudes: eight landings, all combinations, and a ninth 0.1 mm aside. The same
-draws are used on all grounds. The total effect of a factor is half the mean squared difference of
-landings that differ in it alone, over the variance, which comes from landings that differ in all
-three ([Jansen-1999]). Total effects include interactions: they may add up to more than 1. "Soil
-alone" is the main effect of the soil, without interactions. Intervals ({level:.0f} %) come from
-{resamples} resamples of the blocks. A lander that is captured, or not clear at its time limit, has
-no rebound: its pairs are left out. "Twins" is the part that 0.1 mm make.
-
-Ground repeats, and is as wide as the rule of the smallest bed asks, and two grains more. Hulls are
-those of the package; spheres have a rolling resistance of {rolling:g} in place of corners. They
-show whether the trend carries to grains too many for hulls. "Larger" beds are half as wide and deep
-again. Impacts are at {speed:g} m/s, and at
-{steep:g} or {flat:g} degrees from the normal, along one direction of the tile.
-
-## Parts of the variance
-
-"""
-TAIL = """
-
-## Landings
-
-Rebound speed with its standard deviation. Depth: of the bed, and below the mean surface what a tenth
-of the landings exceed.
-
-"""
-LIMITS = """
-
-## What this leaves out
-
-- The impact point includes its bed: two impact points of a block lie on two beds where a ground has
-  more than one. {fewest} to {most} beds a ratio serve all blocks, so intervals hold over soils,
-  impact points and attitudes on these beds, and not fully over beds.
-- All grains of a bed are of one size: boulders among fine grains are impact points of their own.
-- Attitudes are drawn over all rotations. A lander that holds its attitude removes that part.
-- Return fractions are of {flights} flights a landing over {hours:g} h, which is what makes "twins"
-  differ there.
-- Few blocks give intervals that are too narrow.
-- Where landers are captured, what is left is of those that leave.
-- A ratio of 20 on the smallest ground, 4800 hulls, would take an hour of CPU for two blocks.
-- {missing}
-"""
 
 
 def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
@@ -295,17 +252,17 @@ def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
     texts = {
         "edges": " x ".join(f"{edge:g}" for edge in EDGES), "mass": MASS, "edge": max(EDGES), "level": 100 * LEVEL,
         "resamples": RESAMPLES, "rolling": ROLLING, "speed": steep[0], "steep": steep[1], "flat": flat[1],
-        "verdict": verdict(found),
+        "verdict": verdict(found), "tables": part_tables(found), "few": FEW,
     }  # fmt: skip
-    missing = f"Not run: {', '.join(absent)}." if absent else "All grounds of the script were run."
-    made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}."
+    missing = f"Not run: {', '.join(absent)}." if absent else "All beds of the script were run."
+    made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}"
     spent = sum(row["cpu_s"] for row in (*rows, *beds)) / 60.0
-    counts = Counter(bed["ground"] for bed in beds).values()
+    counts = Counter(bed["ground"] for bed in beds if bed["ground"] in names).values()
     limits = LIMITS.format(
         flights=FLIGHTS, hours=DURATION / 3600.0, missing=missing, fewest=min(counts), most=max(counts)
     )  # fmt: skip
-    lines = [HEAD.format(**texts), *part_table(found), TAIL, *landing_table(of, beds), limits]
-    return broken("\n".join([*lines, f"{made} {spent:.0f} min of CPU."])) + "\n"
+    lines = [HEAD.format(**texts), *landing_table(of, beds), limits]
+    return broken("\n".join([*lines, f"The landings: {made}, {spent:.0f} min of CPU time."])) + "\n"
 
 
 def main() -> None:

@@ -43,7 +43,7 @@ ENDS = ("at_rest", "escaped", "under_way")
 AT_REST, ESCAPED, UNDER_WAY = range(3)
 CONTACTS = "contacts"
 WORDS = {
-    "at_rest": "share at rest", "escaped": "share escaped", "under_way": "share under way",
+    "at_rest": "fraction at rest", "escaped": "fraction escaped", "under_way": "fraction under way",
     "time_s median": "time to rest, median [s]", "time_s q95": "time to rest, 95 % [s]",
     "contacts median": "contacts, median", "contacts q95": "contacts, 95 %",
 }  # fmt: skip

@@ -16,38 +16,68 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 from one_bed import ELEVATION, SPEED
+from page_text import broken
 
 from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, STYLE, TEST, TRAINING
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 Entry = dict[str, Any]
-PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude", "chaos": "chaos"}
-OUTPUTS = {"speed_out": "V+", "elevation_out": "theta+", "spin_out": "omega+", "returns": "return fraction"}
+PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "everything else", "chaos": "chaos"}
+INPUTS = {
+    "grain.friction": "friction", "grain.young_modulus": "Young's modulus", "grain.restitution": "grain restitution",
+    "grain.poisson_ratio": "Poisson's ratio", "lander.restitution": "lander restitution",
+}  # fmt: skip
+OUTPUTS = {
+    "speed_out": "rebound speed", "elevation_out": "elevation", "spin_out": "spin rate", "returns": "return fraction"
+}  # fmt: skip
 LANDER_EDGE = 0.1  # m, the short edges
-HEAD = """# One bed and many: the tables
+HEAD = """\
+# One bed and many: tables
 
-Written by `python validation/one_bed_figures.py`; [One bed is not
-enough](../one_bed_is_not_enough.md) says what they mean.
+Do two studies that differ in their seed alone agree?
 
-## Ten pairs of seeds
-"""
-SEEDS = """
-Two studies agree where the interval of their difference holds 0. Of the paper's way, which has no
-interval, the error of sampling alone stands in its place.
+{answer}
 
-## The paper's way on ten beds
-"""
-PLACES = """
-Mean and standard deviation of the samples. Share: first Sobol index, in the variance that the
-expansion explains. Q2: on twelve fresh runs over all inputs.
+[One bed is not enough](../one_bed_is_not_enough.md) explains the studies and their result; this page has the tables.
+Intervals in brackets hold with 90 %.
 
-## Parts of the variance by size of grains
-"""
-GRAINS = """
-Shares of the variance with their 90 % intervals; a share may be a little below 0 where there is
-nothing. Soil by pairs: its total effect, interactions with place and attitude included, from
-landings at one place on two soils. Beds hold the same volume of grains, 0.7 m wide.
+## Pairs of seeds
+
+![Return fraction, seed by seed](one_bed_seeds.png)
+
+Two studies agree if the interval of their difference contains 0. The paper method gives no interval over beds; the
+sampling error of its flights takes its place.
+
+{seeds}
+
+## The paper method on one bed each
+
+The return fraction has the 90 % sampling error of its 5000 flights. The other "±" are standard deviations over the
+samples. "Dominant input" has the largest first Sobol index in the variance that the expansion explains. Q2 is on twelve
+fresh runs over all inputs; below 0 the expansion predicts worse than the mean.
+
+{places}
+
+## Parts of the variance by grain size
+
+![Parts of the variance, for three grain sizes](one_bed_grains.png)
+
+Each entry is a fraction of the variance of the output, with its 90 % interval. Estimates below 0 or above 1 are shown
+as 0 or 1. "Everything else" is impact point, attitude and what terms of first and second degree in the soil do not
+explain. "Total effect of the soil" includes interactions with the impact point and the attitude. It comes from paired
+landings at one impact point on two soils. All beds have the same volume of grains and are 0.7 m wide.
+
+{grains}
+
+## Limits
+
+The tables hold over the soil ranges of `scenarios/first_bounce.toml` and `scenarios/one_place.toml`, at one speed and
+one site. [Soil against impact point](grain_size.md) covers finer grains.
+
+## Reproduce this page
+
+`python validation/one_bed_figures.py` writes the page and its figures. {made}
 """
 
 
@@ -78,8 +108,8 @@ def draw_seeds(studies: list[Entry]) -> None:
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.0), constrained_layout=True, sharey=True)
         for axis, kind, colour, title in (
-            (axes[0], "one place", TEST, "One bed, one place, one attitude"),
-            (axes[1], "draws", TRAINING, "Every landing a draw"),
+            (axes[0], "one place", TEST, "Paper method, one bed each"),
+            (axes[1], "draws", TRAINING, "Drawn method"),
         ):
             found = of_kind(studies, kind)
             for one in found:
@@ -92,12 +122,19 @@ def draw_seeds(studies: list[Entry]) -> None:
             axis.set_title(f"{title}: {min(shares):.0f} to {max(shares):.0f} %")
             axis.set_xlabel(f"seed of the study (in {sum(held)} of {len(held)} pairs the intervals agree)")
             axis.set_xticks([one["seed"] for one in found][::2])
-        axes[0].set_ylabel("landers that come down again [%]")
+        axes[0].set_ylabel("return fraction [%]")
         # Room for the words below.
         axes[0].set_ylim(bottom=axes[0].get_ylim()[0] - 4.0)
         axes[0].text(0.02, 0.02, "bars: 90 %, sampling of flights alone", transform=axes[0].transAxes, color=INK)
-        axes[1].text(0.02, 0.02, "bars: 90 %, over beds not yet poured", transform=axes[1].transAxes, color=INK)
+        axes[1].text(
+            0.02, 0.02, "bars: 90 %, over beds, impact points, attitudes", transform=axes[1].transAxes, color=INK
+        )
         figure.savefig(PAGES / "one_bed_seeds.png", dpi=150)
+
+
+def within(share: float) -> float:
+    """A fraction of a variance as it can be: an estimate may come out below 0 or above 1."""
+    return min(max(share, 0.0), 1.0)
 
 
 def draw_grains(studies: list[Entry]) -> None:
@@ -112,13 +149,14 @@ def draw_grains(studies: list[Entry]) -> None:
                 parts = [(one["variance_shares"][output] or {}).get(part) for part in PARTS]
                 for place, part in enumerate(parts):
                     if part:
-                        ends = [max(part["share"] - part["lower"], 0.0), max(part["upper"] - part["share"], 0.0)]
+                        middle = within(part["share"])
+                        ends = [max(middle - part["lower"], 0.0), max(part["upper"] - middle, 0.0)]
                         x, bars = place + 0.2 * number - 0.1, [[100.0 * end] for end in ends]
-                        axis.errorbar(x, 100.0 * part["share"], bars, fmt="o", color=colour, capsize=2, ms=4)
+                        axis.errorbar(x, 100.0 * middle, bars, fmt="o", color=colour, capsize=2, ms=4)
             axis.axhline(0.0, color=QUIET, lw=0.6, zorder=0)
-            axis.set_xticks(range(len(PARTS)), [name.replace(" and ", "\nand ") for name in PARTS.values()])
+            axis.set_xticks(range(len(PARTS)), [name.replace(" ", "\n") for name in PARTS.values()])
             axis.set_title(f"variance of {symbol}")
-        axes[0].set_ylabel("share [%], 90 % interval")
+        axes[0].set_ylabel("fraction [%], 90 % interval")
         for one, colour in zip(found, INPUT_COLOURS, strict=False):
             axes[0].plot([], [], "o", color=colour, ms=4, label=f"grains of {100 * one['diameter_m']:g} cm")
         axes[0].legend(loc="center left")
@@ -135,7 +173,7 @@ def _interval(one: Entry) -> str:
 def seed_table(studies: list[Entry]) -> list[str]:
     """A line a pair of seeds."""
     lines = [
-        "| seeds | every landing a draw: down again [%] | agree | the paper's way: down again [%] | agree |",
+        "| seeds | drawn method: return fraction [%] | agree | paper method: return fraction [%] | agree |",
         "|---|---|---|---|---|",
     ]
     places = {one["seed"]: one for one in of_kind(studies, "one place")}
@@ -156,10 +194,11 @@ def _yes(true: bool) -> str:
 
 
 def place_table(studies: list[Entry]) -> list[str]:
-    """What the paper's way says of each bed."""
+    """Return a line a study of the paper method."""
     lines = [
-        "| seed | down again [%] | V+ [cm/s] | theta+ [deg] | what decides V+, and its share | Q2 of V+ |",
-        "|---|---|---|---|---|---|",
+        "| seed | return fraction [%] | rebound speed [cm/s] | elevation [deg] | dominant input for the speed "
+        "| its Sobol index | Q2 of the speed |",
+        "|---" * 7 + "|",
     ]
     for one in of_kind(studies, "one place"):
         name, share = max(one["sobol_first"].items(), key=lambda item: item[1])
@@ -167,14 +206,18 @@ def place_table(studies: list[Entry]) -> list[str]:
         steep = f"{math.degrees(one['mean'][ELEVATION]):.0f} ± {math.degrees(one['std'][ELEVATION]):.0f}"
         lines.append(
             f"| {one['seed']} | {100 * one['returns']['share']:.1f} ± {100 * one['returns']['flight_sampling']:.1f} | "
-            f"{speed} | {steep} | {name}, {share:.2f} | {one['q2']:.2f} |"
+            f"{speed} | {steep} | {INPUTS[name]} | {share:.2f} | {one['q2']:.2f} |"
         )
     return lines
 
 
 def grain_table(studies: list[Entry]) -> list[str]:
     """Parts of the variance by grain size, with intervals."""
-    lines = ["| grains [cm] | edge over grain | output | " + " | ".join(PARTS.values()) + " | soil by pairs |"]
+    lines = [
+        "| grains [cm] | lander's short edge / grain | output | "
+        + " | ".join(PARTS.values())
+        + " | total effect of the soil |"
+    ]
     lines.append("|---" * (4 + len(PARTS)) + "|")
     for one in sorted(of_kind(studies, "grain sizes"), key=lambda entry: -entry["diameter_m"]):
         beside = (one["runs"]["side_runs"] or {}).get("soil_total_effect", {})
@@ -187,7 +230,21 @@ def grain_table(studies: list[Entry]) -> list[str]:
 
 
 def _share(part: dict[str, float] | None) -> str:
-    return f"{part['share']:.2f} ({part['lower']:.2f} to {part['upper']:.2f})" if part else ""
+    return f"{within(part['share']):.2f} ({part['lower']:.2f} to {part['upper']:.2f})" if part else ""
+
+
+def answer(studies: list[Entry]) -> str:
+    """Return how far studies of both methods are apart, and how many pairs agree."""
+    sentences = []
+    for kind, name in (("draws", "drawn"), ("one place", "paper")):
+        found = of_kind(studies, kind)
+        shares = [100.0 * one["returns"]["share"] for one in found]
+        agree = [holds(*pair) for pair in pairs(found)]
+        sentences.append(
+            f"{len(found)} studies of the {name} method give return fractions of {min(shares):.0f} to "
+            f"{max(shares):.0f} %, and {sum(agree)} of {len(agree)} pairs agree."
+        )
+    return " ".join(sentences)
 
 
 def main() -> None:
@@ -196,9 +253,13 @@ def main() -> None:
     studies = content["studies"]
     draw_seeds(studies)
     draw_grains(studies)
-    made = f"`python {content['command'].removeprefix('python ')}`, {content['date']}, {content['machine']}."
-    parts = [HEAD, *seed_table(studies), SEEDS, *place_table(studies), PLACES, *grain_table(studies), GRAINS, made]
-    (PAGES / "one_bed.md").write_text("\n".join(parts) + "\n")
+    page = HEAD.format(
+        answer=answer(studies), seeds="\n".join(seed_table(studies)), places="\n".join(place_table(studies)),
+        grains="\n".join(grain_table(studies)),
+        made=f"The studies: `python {content['command'].removeprefix('python ')}`, {content['date']}, "
+        f"{content['machine']}.",
+    )  # fmt: skip
+    (PAGES / "one_bed.md").write_text(broken(page) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Text of pages that scripts write: paragraphs and lists broken to lines of at most 100 characters."""
 
 import textwrap
+from collections.abc import Iterable, Sequence
 
 WIDTH = 100
 
@@ -19,3 +20,14 @@ def _block(block: str) -> str:
     if block[0] in "|#!":
         return block
     return textwrap.fill(block, WIDTH, break_on_hyphens=False)
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a table."""
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    return "\n".join([*lines, *(f"| {' | '.join(cells)} |" for cells in rows)])
+
+
+def two_digits(value: float) -> str:
+    """Return a number to two digits, never in powers of ten."""
+    return f"{float(f'{value:.2g}'):g}"

@@ -1,4 +1,4 @@
-"""Draw and tabulate the paper's study, the drawn ones beside it, and what they depend on: paper_study.md.
+"""Draw and tabulate the paper's study, the drawn studies, and what both depend on: paper_study.md.
 
     python validation/paper_study_figures.py
 
@@ -19,7 +19,9 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from page_text import broken
 from paper_study import spread_of
+from paper_study_words import ANSWERS, COST, END, ERRORS, FITS, GRAINS, HEAD, NUMERICS
 
 from lithobrake.report.figures.style import INK, QUIET, STYLE, TEST, TRAINING
 
@@ -27,12 +29,33 @@ HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 SHOWCASE = HERE.parent / "showcase"
 SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
-SYMBOLS = {SPEED: "V+", ELEVATION: "theta+", SPIN: "omega+"}
+SYMBOLS = {SPEED: "rebound speed", ELEVATION: "elevation", SPIN: "spin rate"}
 # Factor and unit of the tables.
 UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
 PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
-WAYS = {"paper": "the paper's way, 1500 grains", "drawn_170": "drawn, few runs", "drawn_700": "drawn"}
+METHODS = {"paper": "paper method, 1500 grains", "drawn_170": "drawn, 170 landings", "drawn_700": "drawn, 700 landings"}
+INPUTS = {
+    "grain.restitution": "grain restitution", "grain.friction": "friction", "lander.restitution": "lander restitution",
+    "grain.young_modulus": "Young's modulus", "grain.poisson_ratio": "Poisson's ratio",
+}  # fmt: skip
+OUTCOMES = {
+    "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
+}  # fmt: skip
+# What is changed of the model, as a reader has it.
+CHANGES = {
+    "as it is": "reference",
+    "as it is, by the next version": "reference, second set of beds",
+    "steps a contact halved": "half the steps per contact",
+    "steps a contact doubled": "twice the steps per contact",
+    "points a hull halved": "half the points per hull",
+    "points a hull doubled": "twice the points per hull",
+    "depth halved": "half the depth",
+    "depth doubled": "twice the depth",
+    "area halved": "half the area",
+    "area doubled": "twice the area",
+    "no grain held": "no frozen grains",
+}
 FILES = {"paper": "scenarios/paper.toml"} | {
     name: f"validation/studies/{name}.toml" for name in ("drawn_170", "drawn_700")
 }
@@ -56,7 +79,7 @@ def entries(kind: str) -> list[Entry]:
 
 
 def share(one: Entry) -> tuple[float, float, float]:
-    """Share that comes down again [%] and its interval; of one bed, the sampling of flights alone."""
+    """Return fraction [%] and its interval; of one bed, the sampling of flights alone."""
     returns = one["returns"]
     half = returns.get("flight_sampling") or 0.0
     low = returns["share"] - half if returns.get("lower") is None else returns["lower"]
@@ -64,29 +87,34 @@ def share(one: Entry) -> tuple[float, float, float]:
     return 100.0 * returns["share"], 100.0 * low, 100.0 * high
 
 
+def within(part: dict[str, float]) -> float:
+    """A fraction of a variance as it can be: an estimate may come out a little below 0 or above 1."""
+    return min(max(part["share"], 0.0), 1.0)
+
+
 def drivers(one: Entry) -> str:
-    """What the variance of V+ comes from, the largest first."""
+    """Return the origin of the variance of the rebound speed, the largest first."""
     if "screening" in one:
         total = one["screening"]["sobol_total"][SPEED]
-        return "; ".join(f"{name} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
-    words = {"soil": "soil", "bed": "bed", "place_and_attitude": "place and attitude"}
+        return "; ".join(f"{INPUTS[name]} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
+    words = {"soil": "soil", "bed": "bed", "place_and_attitude": "everything else"}
     parts = {word: one["variance_shares"][SPEED][part] for part, word in words.items()}
     return "; ".join(
-        f"{word} {part['share']:.2f} ({part['lower']:.2f} to {part['upper']:.2f})" for word, part in parts.items()
+        f"{word} {within(part):.2f} ({part['lower']:.2f} to {part['upper']:.2f})" for word, part in parts.items()
     )
 
 
 def every_study() -> Iterator[tuple[str, Entry]]:
-    """All studies that answer the same question."""
-    yield WAYS["paper"], kept("paper")
-    yield from ((f"the paper's way, {one['name']}", one) for one in entries("other beds"))
-    yield from ((WAYS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
+    """Return all studies of the same question."""
+    yield METHODS["paper"], kept("paper")
+    yield from ((f"paper method, {one['name']}", one) for one in entries("other beds"))
+    yield from ((METHODS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
 
 
 def answer_table() -> list[str]:
-    """A line a study."""
+    """Return a line a study: outputs and return fraction."""
     heads = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
-    lines = [f"| study | {' | '.join(heads)} | down again [%] | variance of V+ |", "|---" * 6 + "|"]
+    lines = [f"| study | {' | '.join(heads)} | return fraction [%] |", "|---" * 5 + "|"]
     for name, one in every_study():
         cells = []
         for output in OUTPUTS:
@@ -94,12 +122,18 @@ def answer_table() -> list[str]:
             cells.append(f"{factor * sample['mean']:.3g} ± {factor * sample['std']:.2g}")
         value, low, high = share(one)
         interval = f" ({low:.1f} to {high:.1f})" if low < high else ""
-        lines.append(f"| {name} | {' | '.join(cells)} | {value:.1f}{interval} | {drivers(one)} |")
+        lines.append(f"| {name} | {' | '.join(cells)} | {value:.1f}{interval} |")
     return lines
 
 
+def driver_table() -> list[str]:
+    """Return a line a study: what the variance of the rebound speed comes from."""
+    lines = ["| study | variance of the rebound speed |", "|---|---|"]
+    return [*lines, *(f"| {name} | {drivers(one)} |" for name, one in every_study())]
+
+
 def draw_answers() -> None:
-    """The share that comes down again and the outgoing speed, study by study."""
+    """Draw return fraction and rebound speed, study by study."""
     studies = list(every_study())
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
@@ -115,8 +149,8 @@ def draw_answers() -> None:
         axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
         axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
-        axes[0].set_xlabel("landers that come down again within 12 h [%]")
-        axes[1].set_xlabel("outgoing speed [cm/s]: mean, 5 to 95 %")
+        axes[0].set_xlabel("return fraction within 12 h [%]")
+        axes[1].set_xlabel("rebound speed [cm/s]: mean, 5 to 95 %")
         figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
 
 
@@ -137,9 +171,9 @@ def from_normal(design: str) -> np.ndarray:
 
 
 def floor(output: str) -> tuple[float, float]:
-    """Error of a run as the foretelling of one beside it: in the unit of the output, and in %, means.
+    """Error of a run as the prediction of a perturbed one: in the unit of the output, and in %, means.
 
-    Both runs have the scatter, so a law without error is off by 1/sqrt(2) of their difference.
+    Both runs have the scatter, so a mean without error is off by 1/sqrt(2) of their difference.
     """
     beside = np.array(entries("twin")[0]["screening_runs"][output])
     here = true_values("screening", output)
@@ -151,8 +185,8 @@ def error_table() -> list[str]:
     """Errors of the refined expansion beside the paper's."""
     scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())
     lines = [
-        "| output | the paper's MAPE [%] | ours on its own runs | on fresh runs, kept inputs | on fresh runs, all "
-        "inputs | Q2 of both | error of both | scatter of runs beside |",
+        "| output | paper: MAPE [%] | here: training runs [%] | fresh runs, kept inputs [%] "
+        "| fresh runs, all inputs [%] | Q2 of both | RMS error of both | due to chaos: RMS, MAPE |",
         "|---" * 8 + "|",
     ]
     for output in OUTPUTS:
@@ -168,7 +202,7 @@ def error_table() -> list[str]:
         )
     angles = [float(from_normal(name).mean()) for name in ("refined", "test_kept", "test_all")]
     cells = " | ".join(f"{angle:.3g}" for angle in angles)
-    return [*lines, f"| theta+ from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
+    return [*lines, f"| elevation from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
 
 
 def fit_table() -> list[str]:
@@ -183,9 +217,9 @@ def fit_table() -> list[str]:
 
 
 def numerics_table() -> list[str]:
-    """Means of the drawn study with one number of the model changed after the other, over those before any change."""
-    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | over as it is" for output in OUTPUTS)
-    lines = [f"| study | outcomes | {heads} |", "|---" * (2 + 2 * len(OUTPUTS)) + "|"]
+    """Return the means of the drawn study with one number of the model changed, over those of the reference."""
+    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | / reference" for output in OUTPUTS)
+    lines = [f"| model | {heads} |", "|---" * (1 + 2 * len(OUTPUTS)) + "|"]
     as_it_is: Entry = {}
     for one in entries("numerics"):
         as_it_is = one if one["name"].startswith("as it is") else as_it_is
@@ -194,30 +228,40 @@ def numerics_table() -> list[str]:
             factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], as_it_is["outputs"][output]["mean"]
             ends = f"{factor * mean['lower']:.3g} to {factor * mean['upper']:.3g}"
             cells += [f"{factor * mean['value']:.3g} ({ends})", f"{mean['value'] / first['value']:.2f}"]
-        outcomes = ", ".join(f"{name} {count}" for name, count in one["outcomes"].items())
-        lines.append(f"| {one['name']} | {outcomes} | {' | '.join(cells)} |")
+        lines.append(f"| {CHANGES[one['name']]} | {' | '.join(cells)} |")
+    return lines
+
+
+def outcome_table() -> list[str]:
+    """Return the outcomes of the landings of these studies."""
+    lines = [f"| model | {' | '.join(OUTCOMES.values())} |", "|---" * (1 + len(OUTCOMES)) + "|"]
+    for one in entries("numerics"):
+        counts = " | ".join(str(one["outcomes"].get(outcome, 0)) for outcome in OUTCOMES)
+        lines.append(f"| {CHANGES[one['name']]} | {counts} |")
     return lines
 
 
 def grain_size_table() -> list[str]:
     """What decides on smaller grains: outcomes, V+, and the parts of its variance."""
-    lines = ["| study | outcomes | V+ [cm/s] | down again [%] | variance of V+ |", "|---" * 5 + "|"]
+    lines = ["| longest edge of the lander | outcomes | rebound speed [cm/s] | return fraction [%] "
+             "| variance of the rebound speed |", "|---" * 5 + "|"]  # fmt: skip
     for name, one in [
-        ("lander 1.2 grains (drawn)", kept("drawn_700")),
+        ("lander 1.2 grains", kept("drawn_700")),
         *((e["name"], e) for e in entries("grain sizes")),
     ]:
         mean, factor = one["outputs"][SPEED]["mean"], UNITS[SPEED][0]
         speed = f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
         value, low, high = share(one)
-        outcomes = ", ".join(f"{outcome} {count}" for outcome, count in one["outcomes"].items())
-        lines.append(f"| {name} | {outcomes} | {speed} | {value:.0f} ({low:.0f} to {high:.0f}) | {drivers(one)} |")
+        outcomes = ", ".join(f"{OUTCOMES[outcome]} {count}" for outcome, count in one["outcomes"].items())
+        fraction = f"{value:.0f} ({low:.0f} to {high:.0f})"
+        lines.append(f"| {name.removeprefix('lander ')} | {outcomes} | {speed} | {fraction} | {drivers(one)} |")
     return lines
 
 
 def time_table() -> list[str]:
     """What each study cost."""
-    lines = ["| study | runs | wall [min] | CPU [min] | load |", "|---" * 5 + "|"]
-    for name in WAYS:
+    lines = ["| study | landings | wall time [min] | CPU time [min] | load |", "|---" * 5 + "|"]
+    for name in METHODS:
         noted = json.loads((SHOWCASE / name / "origin.json").read_text())
         # Where landings were kept and only what follows them was made again, the whole took as long as with them.
         noted |= noted.get("landings", {})
@@ -232,18 +276,26 @@ SHOWN = {
     "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
 }  # fmt: skip
 PARTS = {
-    "What each study says": answer_table,
-    "Errors of the expansion": error_table,
-    "Other fits of the same runs": fit_table,
-    "What numbers of the model change": numerics_table,
-    "Smaller grains": grain_size_table,
-    "Cost": time_table,
+    "Outputs and return fraction": ANSWERS,
+    "Errors of the expansion": ERRORS,
+    "Other fits of the same runs": FITS,
+    "Numerical parameters": NUMERICS,
+    "Smaller grains": GRAINS,
+    "Cost": COST,
 }
-HEAD = """# The paper's study: the tables
 
-Written by `python validation/paper_study_figures.py`; [The paper's
-study](../paper_study.md) says what they mean.
-"""
+
+def head() -> str:
+    """Return the question of the page and its answer."""
+    of_beds = [share(one)[0] for _, one in every_study() if "screening" in one]
+    value, low, high = share(kept("drawn_700"))
+    scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())["test_kept"]
+    errors = ", ".join(f"{scores[output]['mape']:.0f} % ({SYMBOLS[output]})" for output in OUTPUTS)
+    published = ", ".join(f"{PAPER_MAPE[output]} %" for output in OUTPUTS)
+    return HEAD.format(
+        beds=len(of_beds), least=f"{min(of_beds):.1f}", most=f"{max(of_beds):.1f}", value=f"{value:.1f}",
+        low=f"{low:.1f}", high=f"{high:.1f}", errors=errors, published=published,
+    )  # fmt: skip
 
 
 def main() -> None:
@@ -251,8 +303,13 @@ def main() -> None:
     draw_answers()
     for source, name in SHOWN.items():
         shutil.copy(SHOWCASE / "paper" / source, PAGES / f"paper_study_{name}.png")
-    parts = [f"## {title}\n\n" + "\n".join(table()) + "\n" for title, table in PARTS.items()]
-    (PAGES / "paper_study.md").write_text("\n".join([HEAD, *parts]))
+    tables = {
+        "answers": answer_table, "drivers": driver_table, "errors": error_table, "fits": fit_table,
+        "numerics": numerics_table, "outcomes": outcome_table, "grains": grain_size_table, "cost": time_table,
+    }  # fmt: skip
+    lines = {name: "\n".join(table()) for name, table in tables.items()}
+    parts = [f"## {title}\n\n{text.format(**lines)}" for title, text in PARTS.items()]
+    (PAGES / "paper_study.md").write_text(broken("\n\n".join([head(), *parts, END])) + "\n")
 
 
 if __name__ == "__main__":

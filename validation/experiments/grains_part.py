@@ -8,7 +8,7 @@ from fits import Estimate, column, leaving, mean_of, speeds
 from result_rows import read_rows
 from table_lines import FIGURES, HERE, Lines, line, said, table
 
-STAYED = "own kind: those that leave"
+STAYED = "grains that leave the bed"
 
 
 def grains_part() -> tuple[Lines, str]:
@@ -19,16 +19,19 @@ def grains_part() -> tuple[Lines, str]:
     few = Estimate(float(np.mean(column(base, "risen_0.1") < 10)), math.nan, len(base))
     low = Estimate(float(np.mean(column(base, "median_rise") < 1.0)), math.nan, len(base))
     lines = [
-        line("own kind: mean speed out over speed in, 0 where the grain stays", 0.2, mean_of(speeds(base)), 0.05,
-             "about 0.20", STAYED),
-        line("own kind: the same of those that leave upwards", 0.2, mean_of(leaving(base)), 0.05, "about 0.20"),
-        line("own kind: share of impacts with fewer than 10 grains ejected", 1.0, few, 0.5, "typical",
-             "own kind: restitution 0.5, rolling resistance"),
-        line("own kind: share of impacts whose median grain rises less than its diameter", 1.0, low, 0.5, "typical"),
+        line("rebound speed / impact speed, mean of all grains, 0 for those that stay", 0.2, mean_of(speeds(base)),
+             0.05, "about 0.20", STAYED),
+        line("rebound speed / impact speed, mean of the grains that leave the bed", 0.2, mean_of(leaving(base)), 0.05,
+             "about 0.20"),
+        line("fraction of impacts that eject fewer than 10 grains", 1.0, few, 0.5, "typical",
+             "restitution 0.5; rolling resistance"),
+        line("fraction of impacts whose ejected grains rise, in the median, by less than a diameter", 1.0, low,
+             0.5, "typical"),
     ]  # fmt: skip
     of_grains(kinds, FIGURES / "grain_on_its_own_kind.png")
-    heads = ("bed", "impacts", "mean speed ratio", "of those that leave", "share that stays", "rise > 0.1",
-             "> 0.5", "> 1 grain", "fewer than 10 rise > 0.1", "median rise [grains]")  # fmt: skip
+    heads = ("bed", "impacts", "mean speed ratio, all +- 95 %", "mean speed ratio, leaving +- 95 %",
+             "fraction that stays", "grains that rise by > 0.1 d", "> 0.5 d", "> 1 d",
+             "impacts with fewer than 10 above 0.1 d", "median rise [d]")  # fmt: skip
     cells = [
         (name, str(len(rows)), said(mean_of(speeds(rows))), said(mean_of(leaving(rows))),
          f"{1.0 - len(leaving(rows)) / len(rows):.2f}",

@@ -39,21 +39,23 @@ def packing_part() -> tuple[Lines, str]:
         count = sum(row["kind"] == kind for row in rows)
         # By similarity, whatever the gravity.
         none = Estimate(0.0, math.nan, count)
-        lines.append(line(f"{kind}: excess volume in low gravity, no cohesion", measured, none, 0.25 * measured,
-                          cause=f"packing: {kind} that pulls"))  # fmt: skip
+        lines.append(line(f"{kind}: volume in excess of that on Earth, no cohesion", measured, none, 0.25 * measured,
+                          cause=f"{kind} with cohesion"))  # fmt: skip
         if found.max() >= measured:
             pull = float(tried[int(np.argmax(found >= measured))])
             said.append(
-                f"{kind[0].upper()}{kind[1:]} fills {measured:.1%} more under {share * 9.81:.2g} m/s2, as measured, "
-                f"where a contact pulls {pull:.2g} of a grain's weight on Earth."
+                f"{kind[0].upper()}{kind[1:]} takes the measured {100.0 * measured:g} % more volume at "
+                f"{share * 9.81:.2g} m/s2 if the pull-off force of a contact is {pull:.2g} of the weight of a grain on "
+                "Earth."
             )
         else:
             said.append(
-                f"{kind[0].upper()}{kind[1:]} fills at most {found.max():.1%} more, whatever its contacts pull up to "
-                f"{pulls.max() * share:.2g} of a grain's weight on Earth; {measured:.1%} was measured."
+                f"{kind[0].upper()}{kind[1:]} takes at most {100.0 * found.max():.1f} % more volume, for any pull-off "
+                f"force up to {pulls.max() * share:.2g} of the weight of a grain on Earth. The measured excess is "
+                f"{100.0 * measured:g} %."
             )
     of_packing(rows, FIGURES / "packing_and_cohesion.png")
-    heads = ("kind", "pull over weight", "beds", "solid fraction", "contacts a grain")
+    heads = ("grains", "pull-off force / weight of a grain", "beds", "solid fraction", "coordination number")
     cells = []
     for kind in KEULEN:
         for pull in sorted({row["pull"] for row in rows if row["kind"] == kind}):
@@ -72,18 +74,20 @@ def balls_part() -> tuple[Lines, str]:
     by_speed, by_gravity = powers(reach, column(rows, "speed"), column(rows, "share"))
     of_time = powers(column(rows, "duration_in_units"), column(rows, "share"))[0]
     lines = [
-        line("ball: exponent of depth over gravity at one Froude number (Sunday)", 0.0, of_gravity, 0.05, "0"),
-        line("ball: exponent of duration, in sqrt(D/g), over gravity (Sunday)", 0.0, of_time, 0.05, "0",
-             "ball: stiffer"),
-        line("ball: exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0",
-             "ball: pulling"),
-        line("ball: exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1", "ball: pulling"),
+        line("exponent of depth over gravity at one Froude number (Sunday)", 0.0, of_gravity, 0.05, "0"),
+        line("exponent of duration in sqrt(D/g) over gravity (Sunday)", 0.0, of_time, 0.05, "0",
+             "stiffer beads"),
+        line("exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0",
+             "cohesive beads (4 drops)"),
+        line("exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1",
+             "cohesive beads (4 drops)"),
     ]  # fmt: skip
     of_balls(rows, FIGURES / "ball_under_gravities.png")
-    heads = ("beads", "gravity over Earth's", "Froude number", "speed [m/s]", "depth below first touch [cm]",
-             "duration [sqrt(D/g)]", "peak [g]", "speed out [m/s]")  # fmt: skip
+    heads = ("beads", "gravity / Earth's", "Froude number", "speed [m/s]", "depth below first touch [cm]",
+             "duration [sqrt(D/g)]", "peak deceleration [g]", "rebound speed [m/s]")  # fmt: skip
     cells = (
-        (str(row["kind"]), f"{row['share']:g}", f"{row['froude']:g}", f"{row['speed']:.3g}",
+        (str(row["kind"]).replace("pulling", "cohesive"), f"{row['share']:g}", f"{row['froude']:g}",
+         f"{row['speed']:.3g}",
          f"{100 * (row['depth'] + row['touch_height']):.2f}", f"{row['duration_in_units']:.2f}",
          f"{row['peak_deceleration_in_g']:.1f}", f"{row['speed_out']:.3f}")
         for row in every

@@ -27,14 +27,15 @@ def plate_part() -> tuple[Lines, str]:
     speed, density = column(filled, "speed_6"), column(filled, "bulk_density")
     needed = float(np.interp(-SPEED_AFTER_6, -speed, density))
     half = float(np.interp(0.5 * BENNU, density, speed))
-    cause = "plate: half density"
+    cause = "grains of half the density"
     lines = [
-        line("plate: speed 6 s after contact, 0.58 filled, no cohesion [m/s]", SPEED_AFTER_6,
-             mean_of(list(column(plain, "speed_6"))), 0.25 * SPEED_AFTER_6, cause="plate: filled 0.6"),
-        line("plate: depth then [m]", DEPTH_AFTER_6, mean_of(list(column(plain, "depth_6"))), 0.25 * DEPTH_AFTER_6),
-        line("plate: speed 6 s after contact at half of Bennu's bulk density [m/s]", SPEED_AFTER_6,
+        line("speed 6 s after contact, packing fraction 0.58, no cohesion [m/s]", SPEED_AFTER_6,
+             mean_of(list(column(plain, "speed_6"))), 0.25 * SPEED_AFTER_6, cause="packing fraction 0.6"),
+        line("depth 6 s after contact [m]", DEPTH_AFTER_6, mean_of(list(column(plain, "depth_6"))),
+             0.25 * DEPTH_AFTER_6),
+        line("speed 6 s after contact at half of Bennu's bulk density [m/s]", SPEED_AFTER_6,
              Estimate(half, math.nan, 2), 0.25 * SPEED_AFTER_6, cause=cause),
-        line("plate: bulk density that leaves 0.04 m/s after 6 s [kg/m3]", 0.5 * BENNU,
+        line("bulk density at which 0.04 m/s are left after 6 s [kg/m3]", 0.5 * BENNU,
              Estimate(needed, math.nan, len(filled)), 0.25 * 0.5 * BENNU, "half of 1190", cause),
     ]  # fmt: skip
     of_plates(every, FIGURES / "plate_into_loose_grains.png")
@@ -43,12 +44,19 @@ def plate_part() -> tuple[Lines, str]:
 
 def flight_table(rows: list[Row]) -> str:
     """Return the table of the flight's plate on beds that differ."""
-    heads = ("run", "grains", "filled", "bulk density [kg/m3]", "speed after 1 s [m/s]", "after 6 s",
-             "depth after 6 s [m]")  # fmt: skip
+    heads = ("simulation", "grains", "packing fraction", "bulk density [kg/m3]", "speed after 1 s [m/s]",
+             "speed after 6 s [m/s]", "depth after 6 s [m]")  # fmt: skip
     return table(heads, (
-        (str(row["name"]), f"{int(row['grains'])}", f"{row['filled']:g}", f"{row['bulk_density']:.0f}",
+        (named(str(row["name"])), f"{int(row['grains'])}", f"{row['filled']:g}", f"{row['bulk_density']:.0f}",
          f"{row['speed_1']:.3f}", f"{max(row['speed_6'], 0.0):.3f}", f"{row['depth_6']:.2f}") for row in rows
     ))  # fmt: skip
+
+
+def named(name: str) -> str:
+    """Return the name of a simulation of the flight, as a reader has it."""
+    for kept, words in (("filled ", "packing fraction "), ("again ", "packing fraction 0.58, seed ")):
+        name = name.replace(kept, words) if name.startswith(kept) else name
+    return name.replace("half density ", "half the grain density, packing fraction ")
 
 
 def slope_of(kind: str) -> Estimate:
@@ -58,8 +66,8 @@ def slope_of(kind: str) -> Estimate:
 
 def corner_table(every: list[Row]) -> str:
     """Return the table of the corners of packing, friction and cohesion."""
-    heads = ("filled", "slope of a heap [deg]", "cohesion [Pa]", "speed after 6 s [m/s]", "depth then [m]", "resists",
-             "[Ballouz-2021]")  # fmt: skip
+    heads = ("packing fraction", "slope of a heap [deg]", "cohesion [Pa]", "speed after 6 s [m/s]",
+             "depth after 6 s [m]", "stops the plate", "stops it in [Ballouz-2021]")  # fmt: skip
     cells = []
     for row in (row for row in every if row["series"] == "corners"):
         slope = slope_of("smooth" if "smooth" in row["name"] else "rough").value
@@ -68,7 +76,7 @@ def corner_table(every: list[Row]) -> str:
         cells.append((
             f"{row['filled']:g}", f"{slope:.1f}", f"{row['cohesion']:g}", f"{max(row['speed_6'], 0.0):.3f}",
             f"{row['depth_6']:.2f}", yes(row["speed_6"] < RESISTS * SPEED),
-            yes(expected) if dense else "drag",
+            yes(expected) if dense else "drag only",
         ))  # fmt: skip
     return table(heads, cells)
 
@@ -87,7 +95,12 @@ def speed_table(every: list[Row]) -> str:
     """Return the table of mean forces over speeds, with the exponents."""
     own = [row for row in every if row["series"] == "speeds"]
     speeds = sorted({row["speed"] for row in own})
-    heads = ("cohesion [Pa]", *(f"mean force at {speed:g} m/s [N]" for speed in speeds), "exponent", "4/3 +- 0.15")
+    heads = (
+        "cohesion [Pa]",
+        *(f"mean force at {speed:g} m/s [N]" for speed in speeds),
+        "exponent of speed, +- 95 %",
+        "within 4/3 +- 0.15",
+    )
     cells = []
     for pull in sorted({row["cohesion"] for row in own}):
         rows = sorted((row for row in own if row["cohesion"] == pull), key=lambda row: row["speed"])

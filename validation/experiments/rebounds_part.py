@@ -46,7 +46,7 @@ def share_line(quantity: str, measured: str, expected: float, rows: list[Row], c
     """Return a row of the table for a share: it agrees where most of ours do what was seen."""
     count, total = rebounds(rows), len(rows)
     low, high = wilson_interval(count, total)
-    ours = f"{count / total:.2f} ({low:.2f} to {high:.2f})"
+    ours = f"{count / total:.2f} (95 %: {low:.2f} to {high:.2f})"
     return Line(quantity, measured, ours, total, "-", abs(count / total - expected) < 0.5, cause)
 
 
@@ -60,42 +60,50 @@ def rebounds_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "who_rebounds.csv")
     causes = {
-        "1e-3 g, 25-100 cm/s (COLLIDE-2)": "rebounds: 6 mm; lunar, 4 mm, 1e-3 g", LOWEST: f"rebounds: {PULLING}",
-        "1e-2 g, 4-230 cm/s (PRIME)": "rebounds: 6 mm",
+        "1e-3 g, 25-100 cm/s (COLLIDE-2)": "6 mm; lunar, 4 mm, 1e-3 g", LOWEST: PULLING,
+        "1e-2 g, 4-230 cm/s (PRIME)": "6 mm",
     }  # fmt: skip
     lines = [
-        share_line(f"rebounds: {text}", "rebounds" if expected else "stays", expected,
+        share_line(text, "rebounds" if expected else "stays", expected,
                    between(every, FINEST, share, slow, fast), causes.get(text, NOT_SHOWN))
         for text, (share, slow, fast, expected) in SAID.items()
     ]  # fmt: skip
     share, slow, fast, expected = SAID[LOWEST]
     pulling = between(every, PULLING, share, slow, fast)
-    lines.append(share_line("rebounds: the same, grains that pull as lunar soil", "rebounds", expected, pulling))
+    lines.append(
+        share_line("below 1e-4 g, 1-10 cm/s, 4 mm grains as cohesive as lunar soil", "rebounds", expected, pulling)
+    )
     out = between(every, JSC, 1e-3, 0.01, 0.2)
-    lines.append(line("rebounds: speed out over speed in, 1e-3 g, 1-20 cm/s (COLLIDE-1)", 0.05,
+    lines.append(line("rebound speed / impact speed, Teflon on lunar grains, 1e-3 g, 1-20 cm/s (COLLIDE-1)", 0.05,
                       mean_of(list(column(out, "upward_out"))), 0.025, "order of 0.05",
-                      "rebounds: 4 mm, 6 mm"))  # fmt: skip
+                      "4 mm; 6 mm"))  # fmt: skip
     thrown = [row for row in every if row["kind"] == FINEST and row["froude"] == 30.0 and row["ejecta"] > 0]
-    lines.append(line("rebounds: mean ejecta speed over speed in, Froude number 30 (COLLIDE-2)", 0.0,
+    lines.append(line("mean ejecta speed / impact speed, Froude number 30 (COLLIDE-2)", 0.0,
                       mean_of(list(column(thrown, "ejecta_speed"))), 0.10, "below 0.10"))  # fmt: skip
     pebbles = [row for row in every if row["kind"] == "pebbles"]
-    lines.append(share_line("rebounds: from irregular grains, pebbles", "often", 1.0, pebbles,
-                            "rebounds: pebbles, restitution 0.83"))  # fmt: skip
+    lines.append(share_line("rebounds from irregular grains: pebbles", "often", 1.0, pebbles,
+                            "pebbles, restitution 0.83"))  # fmt: skip
     of_rebounds(every, FIGURES / "who_rebounds.png")
     return lines, cells(every)
 
 
+def two_digits(value: float) -> str:
+    """Return a number to two digits, never in powers of ten."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def cells(rows: list[Row]) -> str:
     """Return a table of all cells."""
-    heads = ("grains", "Froude number", "speed at 1e-4, 1e-3, 1e-2 g [cm/s]", "drops", "rebound, 95 % interval",
-             "speed out over in", "depth [mm]", "throw grains", "their speed over the ball's")  # fmt: skip
+    heads = ("grains", "Froude number", "speed at 1e-4, 1e-3, 1e-2 g [cm/s]", "drops", "fraction that rebounds (95 %)",
+             "speed ratio, mean +- standard deviation", "depth [mm]", "drops with ejecta",
+             "ejecta speed / impact speed")  # fmt: skip
     found = []
     for kind in dict.fromkeys(row["kind"] for row in rows):
         for number in sorted({row["froude"] for row in rows if row["kind"] == kind}):
             own = [row for row in rows if row["kind"] == kind and row["froude"] == number]
             low, high = wilson_interval(rebounds(own), len(own))
             out, speeds = column(own, "upward_out"), [row["ejecta_speed"] for row in own if row["ejecta"] > 0]
-            at = ", ".join(f"{100 * number * math.sqrt(EARTH * g * DIAMETER):.2g}" for g in (1e-4, 1e-3, 1e-2))
+            at = ", ".join(two_digits(100 * number * math.sqrt(EARTH * g * DIAMETER)) for g in (1e-4, 1e-3, 1e-2))
             found.append((
                 str(kind), f"{number:g}", at, str(len(own)),
                 f"{rebounds(own) / len(own):.2f} ({low:.2f} to {high:.2f})", f"{out.mean():.3f} +- {out.std():.3f}",

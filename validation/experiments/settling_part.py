@@ -15,15 +15,16 @@ def settling_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "settling_in_other_gravities.csv")
     rows = [row for row in every if row["young_modulus"] == GRAINS.young_modulus]
-    found, cause = gravity_exponents(rows), "settling: stiffer"
+    found, cause = gravity_exponents(rows), "ten times stiffer grains"
     lines = [
-        line("settling: exponent of depth over gravity", 0.0, found["depth"], BAR, "0", cause),
-        line("settling: exponent of the time until it stops", -0.5, found["stopping_time"], BAR, "-1/2", cause),
-        line("settling: exponent of the time to 0.9 of the depth", -0.5, found["time_to_90"], BAR, "-1/2", cause),
+        line("exponent of depth over gravity", 0.0, found["depth"], BAR, "0", cause),
+        line("exponent of the time until it stops, over gravity", -0.5, found["stopping_time"], BAR, "-1/2", cause),
+        line("exponent of the time to 90 % of the depth, over gravity", -0.5, found["time_to_90"], BAR, "-1/2", cause),
     ]
     of_gravities(rows, DIAMETER, FIGURES / "settling_in_other_gravities.png")
-    heads = ("modulus [Pa]", "gravity over Earth's", "rows", "depth over diameter", "time until it stops [sqrt(D/g)]",
-             "to 0.9 of the depth [sqrt(D/g)]", "solid fraction")  # fmt: skip
+    heads = ("Young's modulus [Pa]", "gravity / Earth's", "simulations", "depth / diameter, mean +- standard deviation",
+             "time until it stops [sqrt(D/g)], mean +- standard deviation", "time to 90 % of the depth [sqrt(D/g)]",
+             "solid fraction")  # fmt: skip
     cells = []
     for modulus, share in sorted({(row["young_modulus"], row["share"]) for row in every}, reverse=True):
         own = [row for row in every if (row["young_modulus"], row["share"]) == (modulus, share)]

@@ -11,54 +11,76 @@ from beads_part import beads_part
 from grains_part import grains_part
 from low_gravity_parts import balls_part, packing_part
 from mascot_part import mascot_part
-from page_text import TEXT, WHY
+from page_text import TEXT
 from plate_part import plate_part
 from rebounds_part import rebounds_part
 from settling_part import settling_part
-from table_lines import HERE, PAGES, table
+from table_lines import HERE, NOT_SHOWN, PAGES, Lines, table
 
 PAGE = PAGES / "experiments.md"
-HEADS = ("quantity", "measured", "ours, 95 %", "rows", "ours over measured", "agrees", "cause shown by")
-# Keys of the page's text, and the tables that its sections stand on.
-TABLES = {
-    "beads": "ball_into_beads", "gravity": "settling_in_other_gravities", "grains": "grain_on_its_own_kind",
-    "plate": "plate_into_loose_grains", "packing": "packing_and_cohesion", "balls": "ball_under_gravities",
-    "rebounds": "who_rebounds", "mascot": "../mascot/mascot",
-}  # fmt: skip
+HEADS = ("quantity", "measured", "here", "simulations", "here / measured", "agrees", "cause shown by")
+SUMMARY = ("experiment", "quantities", "agree", "disagree, cause shown", "disagree, cause not shown")
+# Sections by their keys in the text: name in the summary, and the table of simulations behind them.
+SECTIONS = {
+    "beads": ("ball dropped into beads", "ball_into_beads"),
+    "gravity": ("sphere settling under other gravities", "settling_in_other_gravities"),
+    "grains": ("grain impact on a bed of its own kind", "grain_on_its_own_kind"),
+    "plate": ("spacecraft plate on loose grains", "plate_into_loose_grains"),
+    "packing": ("packing under low gravity", "packing_and_cohesion"),
+    "balls": ("ball on beads under several gravities", "ball_under_gravities"),
+    "rebounds": ("rebound or embedding of a ball", "who_rebounds"),
+    "mascot": ("MASCOT on Ryugu", "../mascot/mascot"),
+}
 
 
 def wrapped(text: str) -> str:
-    """Return paragraphs in lines."""
-    return "\n\n".join("\n".join(textwrap.wrap(part, 98)) for part in text.split("\n\n"))
+    """Return paragraphs in lines; tables stay as they are."""
+    parts = text.split("\n\n")
+    return "\n\n".join(part if part.startswith("|") else "\n".join(textwrap.wrap(part, 98)) for part in parts)
 
 
 def came_from(name: str) -> str:
     """Return command, date, machine and cost of a table."""
-    told = json.loads((HERE / f"{name}.json").read_text())
-    cost = f", {told['cpu_s_of_rows']:g} s of CPU time in its rows" if "cpu_s_of_rows" in told else ""
-    return f"`{told['command']}`, {told['date']}, {told['machine']}{cost}."
+    kept = json.loads((HERE / f"{name}.json").read_text())
+    cost = f", {kept['cpu_s_of_rows']:.0f} s of CPU time" if "cpu_s_of_rows" in kept else ""
+    return f"Simulations: `{kept['command']}`, {kept['date']}, {kept['machine']}{cost}."
+
+
+def summary(lines: dict[str, Lines]) -> str:
+    """Return the table that counts the quantities of each experiment."""
+    rows = [(SECTIONS[key][0], own) for key, own in lines.items()]
+    rows.append(("**all**", [one for own in lines.values() for one in own]))
+    return table(SUMMARY, ((name, *map(str, counts(own))) for name, own in rows))
+
+
+def counts(lines: Lines) -> tuple[int, int, int, int]:
+    """Return how many quantities there are, agree, disagree with a cause shown, and disagree without one."""
+    agree = sum(one.agrees for one in lines)
+    open_ones = sum(not one.agrees and one.cause == NOT_SHOWN for one in lines)
+    return len(lines), agree, len(lines) - agree - open_ones, open_ones
 
 
 def main() -> None:
     """Write the page."""
-    beads, drops = beads_part()
-    gravities, settled = settling_part()
-    grains, impacts = grains_part()
-    plates, plate = plate_part()
-    packings, packing = packing_part()
-    balls, ball = balls_part()
-    rebounds, rebound = rebounds_part()
-    lines = [*beads, *gravities, *grains, *plates, *packings, *balls, *rebounds, *mascot_part()]
+    lines: dict[str, Lines] = {}
+    lines["beads"], drops = beads_part()
+    lines["gravity"], settled = settling_part()
+    lines["grains"], impacts = grains_part()
+    lines["plate"], plate = plate_part()
+    lines["packing"], packing = packing_part()
+    lines["balls"], ball = balls_part()
+    lines["rebounds"], rebound = rebounds_part()
+    lines["mascot"] = mascot_part()
+    every, agree, *_ = counts([one for own in lines.values() for one in own])
     page = TEXT.format(
-        **{f"why_{key}": text for key, text in WHY.items()},
+        first=f"{agree} of {every} quantities agree.", summary=summary(lines),
+        **{f"lines_{key}": table(HEADS, (one.cells() for one in own)) for key, own in lines.items()},
         **{f"verdict_{key}": wrapped(text) for key, text in verdicts.every().items()},
-        first=f"{sum(one.agrees for one in lines)} of {len(lines)} quantities agree.",
-        table=table(HEADS, (one.cells() for one in lines)), drops=drops, settled=settled, impacts=impacts,
-        plate=plate, packing=packing, ball=ball, rebound=rebound,
-        **{f"from_{key}": wrapped(came_from(name)) for key, name in TABLES.items()},
+        drops=drops, settled=settled, impacts=impacts, plate=plate, packing=packing, ball=ball, rebound=rebound,
+        **{f"from_{key}": wrapped(came_from(name)) for key, (_, name) in SECTIONS.items()},
     )  # fmt: skip
     PAGE.write_text(page)
-    print("\n".join(" | ".join(one.cells()) for one in lines))
+    print(summary(lines))
 
 
 if __name__ == "__main__":

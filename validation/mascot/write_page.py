@@ -11,12 +11,14 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+sys.path.append(str(Path(__file__).parents[1]))
 from answers import BOUNCING, HERE, MEASURED, OBSERVED, answer, column, farther, ratio, rows_of, said
 from draw import of_landers
 from ground import BOULDER_BEDS, FLATTEST, GRAIN, GRAIN_BEDS, INDEX, coverage
 from harness import PAGES, Row, read_rows
 from mascot import SETTINGS
-from page_text import TEXT
+from page_text import broken
+from page_words import TEXT
 
 NAMES = {
     "time_s": "time to rest [s]", "contacts": "contacts", "path_m": "path [m]",
@@ -24,11 +26,12 @@ NAMES = {
 }  # fmt: skip
 UNITS = {"time_s": "s", "contacts": "contacts", "path_m": "m"}
 BOULDERS = ("at the surface", "below the surface")
+NONE, NOT_INSIDE = "none of the three", "outside"
 
 
-def wrapped(text: str) -> str:
-    """A paragraph in lines."""
-    return "\n".join(textwrap.wrap(text, 98))
+def wrapped_item(text: str) -> str:
+    """An item of a list in lines."""
+    return textwrap.fill(text, 98, initial_indent="- ", subsequent_indent="  ")
 
 
 def percent(share: float) -> str:
@@ -37,59 +40,52 @@ def percent(share: float) -> str:
 
 
 def verdicts(settings: dict[str, list[Row]]) -> str:
-    """The first sentences: what is inside the central 80 %, and what is not."""
-    sentences = []
-    for setting in BOULDERS:
-        rows = settings[setting]
-        agree = {name: answer(column(rows, name), measured) for name, measured in MEASURED.items()}
-        inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].agrees]
-        outside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if not agree[name].agrees]
-        moving = sum(row["end"] != "at rest" for row in rows)
-        end = f"{moving} still move after four hours" if moving else "none is lost"
-        text = (
-            f"First contact on a boulder {setting}: {len(rows) - moving} of {len(rows)} landers come to rest, {end}. "
-        )
-        text += f"{listed(inside)} {'lie' if len(inside) > 1 else 'lies'} in the central 80 % of what they give"
-        text += f"; {listed(outside)} {'do' if len(outside) > 1 else 'does'} not. " if outside else ". "
-        edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items() if agree[name].is_open]
-        if edge:
-            text += f"For {listed(edge)} more landers may change this, as the table's interval holds a limit. "
-        if not agree["time_s"].agrees or agree["time_s"].is_open:
-            seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
-            text += (
-                f"{percent(agree['time_s'].below)} of the landers need less than 663 s until they rest; "
-                f"{percent(seen.below)} until they stay within 0.1 m of that place, which is how well MASCOT's path is "
-                "known. "
-            )
-        sentences.append(
-            f"{text}{percent(farther(rows))} of the landers are farther from the middle in all three together."
-        )
-    return " ".join([*sentences, on_grains(settings["grains alone"])])
+    """The first list: what is inside the central 80 % of each setting, and what is not."""
+    return "\n".join(wrapped_item(f"{head(name)} {verdict(settings[name])}") for name in (*BOULDERS, "grains alone"))
 
 
-def on_grains(rows: list[Row]) -> str:
-    """What landers without any boulder say."""
-    inside = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
-              if answer(column(rows, name), MEASURED[name]).agrees]  # fmt: skip
-    edge = [f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()
-            if answer(column(rows, name), MEASURED[name]).is_open]  # fmt: skip
-    which = "all three" if len(inside) == len(UNITS) else listed(inside)
-    verb = "is" if len(inside) == 1 else "are"
-    few = f", {listed(edge)} so near to a limit that more landers may change it" if edge else ""
-    return f"On grains alone, without a boulder, {which} {verb} inside ({len(rows)} landers{few})."
+def head(setting: str) -> str:
+    """The first contact of a setting, as the head of a list item."""
+    return f"**{'First contact on ' + setting if setting == 'grains alone' else 'Boulder ' + setting}.**"
+
+
+def verdict(rows: list[Row]) -> str:
+    """Whether the landers of a setting have what was measured."""
+    agree = {name: answer(column(rows, name), measured) for name, measured in MEASURED.items()}
+    said_of = {name: f"{MEASURED[name]:g} {word}" for name, word in UNITS.items()}
+    inside, outside, edge = (
+        listed([said_of[name] for name, one in agree.items() if chosen(one)])
+        for chosen in (lambda one: one.agrees, lambda one: not one.agrees, lambda one: one.is_open)
+    )
+    still = sum(row["end"] != "at rest" for row in rows)
+    text = (
+        f"MASCOT's {inside} {'lies' if sum(one.agrees for one in agree.values()) == 1 else 'lie'} in the central 80 %"
+    )
+    text += f" of {len(rows)} landers" + (f"; {outside} {NOT_INSIDE}. " if outside != NONE else ". ")
+    if edge != NONE:
+        text += f"For {edge} more landers may change this: the interval of the fraction below it contains a limit. "
+    if not agree["time_s"].agrees or agree["time_s"].is_open:
+        seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
+        text += (
+            f"{percent(agree['time_s'].below)} of the landers come to rest within 663 s; {percent(seen.below)} stay "
+            "within 0.1 m of their place of rest by then. "
+        )
+    text += f"{still} landers still move after four hours. " if still else "All come to rest. "
+    return text + f"{percent(farther(rows))} are farther from the median in all three numbers together."
 
 
 def listed(words: list[str]) -> str:
     """Words as a list in a sentence."""
     if len(words) < 2:
-        return "".join(words) or "none of the three"
+        return "".join(words) or NONE
     return f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def table_of_answers(settings: dict[str, list[Row]]) -> str:
     """Each quantity of each setting."""
     lines = [
-        "| first contact | landers | quantity | MASCOT | ours: median (80 %) | below MASCOT, 90 % interval | inside |",
+        "| first contact | landers | quantity | MASCOT | here: median (central 80 %) "
+        "| fraction below MASCOT (90 % interval) | in the central 80 % |",
         "|---|---|---|---|---|---|---|",
     ]
     for setting, rows in settings.items():
@@ -106,8 +102,8 @@ def table_of_answers(settings: dict[str, list[Row]]) -> str:
 def table_of_bounces(settings: dict[str, list[Row]]) -> str:
     """The first contact of each setting, and what else the journeys were."""
     lines = [
-        "| first contact | stays there | speed after over before: median (80 %) | sd | elevation [deg] "
-        "| distance [m] | landings | under 105 min |",
+        "| first contact | fraction that stays there | rebound / impact speed: median (80 %) | standard deviation "
+        "| rebound elevation [deg] | distance [m]: median (80 %) | mean landings | fraction under 105 min |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for setting, rows in settings.items():
@@ -143,11 +139,7 @@ def halves(rows: list[Row]) -> str:
 def readings(rows: list[Row]) -> str:
     """What other readings of the four contacts would say."""
     shares = [f"{count} ({answer(column(rows, 'contacts'), float(count)).below:.2f})" for count in (4, 5, 6)]
-    return wrapped(
-        'The source says "four intermediate surface contacts" after the first. With the first counted, and with the '
-        "one in which it settles, these are five or six. The part of the landers at the surface below each: "
-        f"{', '.join(shares)}."
-    )
+    return f"The fraction of landers at the surface below each count is: {', '.join(shares)}."
 
 
 def stopped(rows: list[Row]) -> str:
@@ -156,10 +148,10 @@ def stopped(rows: list[Row]) -> str:
     for count in range(20, len(rows), 20):
         one = answer(column(rows[:count], "time_s"), MEASURED["time_s"])
         parts.append(f"{one.below:.2f} of the first {count}")
-    return wrapped(
-        "150 landers with a boulder at and below the surface each were planned; the time for the runs ended them at "
-        f"the numbers in the table. So that this end can be judged: at the surface {listed(parts)} landers rest within "
-        "663 s."
+    return (
+        "150 landers with a boulder at the surface and 150 with one below it were planned. Computing time ended the "
+        f"runs at the numbers in the table. To judge this choice: at the surface, {listed(parts)} landers come to "
+        "rest within 663 s."
     )
 
 
@@ -171,7 +163,7 @@ def last_way(settings: dict[str, list[Row]]) -> str:
             column(settings[setting], "time_s") - column(settings[setting], "settled_s"), [0.1, 0.5, 0.9]
         )
         times.append(f"{middle:.0f} s ({low:.0f} to {high:.0f}) {setting}")
-    return wrapped(f"The last 0.1 m and the 35 s take, in the median and the central 80 %, {' and '.join(times)}.")
+    return f"The last 0.1 m and the 35 s take (median and central 80 %) {' and '.join(times)}."
 
 
 def table_of_beds() -> str:
@@ -199,14 +191,14 @@ def thuillet(settings: dict[str, list[Row]]) -> str:
     ]
     rises = medians == sorted(medians), spreads == sorted(spreads)
     words_of = {
-        (True, True): "so it is here",
-        (True, False): "the ratio does so here, the scatter does not",
-        (False, True): "the scatter does so here, the ratio does not",
-        (False, False): "neither is so here",
+        (True, True): "The landers here show both",
+        (True, False): "The landers here show it for the ratio, not for the scatter",
+        (False, True): "The landers here show it for the scatter, not for the ratio",
+        (False, False): "The landers here show neither",
     }
-    return wrapped(
-        "[Thuillet-2021]: a boulder in the bed raises the ratio of speeds and its scatter, more so nearer to the "
-        f"surface. Median and standard deviation of those that leave: {', '.join(words)}; {words_of[rises]}."
+    return (
+        "[Thuillet-2021] found that a boulder in the bed raises the speed ratio and its scatter, more so near the "
+        f"surface. {words_of[rises]}: median and standard deviation of those that leave are {'; '.join(words)}."
     )
 
 
@@ -214,22 +206,22 @@ def main() -> None:
     """Write the page."""
     settings = {name: rows_of(name) for name in SETTINGS}
     of_landers(settings, PAGES / "mascot.png")
-    told = json.loads((HERE / "mascot.json").read_text())
+    kept = json.loads((HERE / "mascot.json").read_text())
     surface = settings["at the surface"]
     page = TEXT.format(
-        first=wrapped(verdicts(settings)), answers=table_of_answers(settings), bounces=table_of_bounces(settings),
+        first=verdicts(settings), answers=table_of_answers(settings), bounces=table_of_bounces(settings),
         thuillet=thuillet(settings), halves=halves(surface),
         stopped=stopped(surface), last=last_way(settings), readings=readings(surface), beds=table_of_beds(),
         index=f"{INDEX:g}", flattest=f"{FLATTEST:g}", fewest=percent(coverage(FLATTEST)),
         most=percent(coverage(INDEX)), boulder_beds=BOULDER_BEDS, grain_beds=GRAIN_BEDS,
         grain=f"{GRAIN[0]:g} to {GRAIN[1]:g}", exponent=f"{0.5 * (INDEX + FLATTEST):g}",
-        made=wrapped(
-            f"`{told['command']}`, {told['date']}, {told['machine']}, one thread, load {told['load']:.0f}; "
-            f"{told['cpu_s_of_rows']:.0f} s of CPU time in the rows of {sum(map(len, settings.values()))} landers, "
-            "without the beds."
+        made=(
+            f"The landers: `{kept['command']}`, {kept['date']}, {kept['machine']}, one thread, load "
+            f"{kept['load']:.0f}; {kept['cpu_s_of_rows']:.0f} s of CPU time for {sum(map(len, settings.values()))} "
+            "landers, without the beds."
         ),
     )  # fmt: skip
-    (PAGES / "mascot.md").write_text(page, encoding="utf-8")
+    (PAGES / "mascot.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -2,51 +2,89 @@
 
 HEAD = """# An impact that nine codes computed
 
-Written by `python validation/nine_codes/write_page.py`.
+Does this engine reproduce the impact of a ball that other discrete-element codes have computed?
+"""
+SOURCE = """
+## Benchmark and criterion
 
 Dosta and others [Dosta-2024] gave nine open codes the same problems, with materials, walls and
-initial positions. In one of them a ball of steel, 20 mm wide, comes down at 5 m/s on 25 000 spheres
-of 2 mm, 34 mm deep. MercuryDPM was built and run here with the driver of that work (repository
-kuwt/MercuryDPM_fork, commit fb0ebf1d, `Drivers/Papers/OSBenchmark`). The published curves were not
-accessible, so that no band of the nine codes is drawn.
+initial positions. In one of them a steel ball of 20 mm hits 25 000 spheres of 2 mm at 5 m/s; the
+bed is 34 mm deep. The published curves were not accessible. MercuryDPM was therefore built and run
+here with the driver of that work (repository kuwt/MercuryDPM_fork, commit fb0ebf1d,
+`Drivers/Papers/OSBenchmark`). LAMMPS was run from the bed that was relaxed here.
 
-Criterion, set before the runs: the height z of the ball's centre within 1 mm, half a grain, of that
-of MercuryDPM at 10, 20, 50 and 100 ms, and within the range of five beds. No other beds were
-poured: the range is that of the impacts below on the published bed, in the middle, elsewhere or
-nudged, as many as the number in brackets.
+The criterion was set before the runs. The height z of the ball's centre is within 1 mm, half a
+grain, of MercuryDPM's at 10, 20, 50 and 100 ms, and within the range of five beds. No other beds
+were poured. The range is that of several impacts on the published bed instead: in the middle, at
+other points, and shifted by a billionth of a metre ("nudged").
+
+## Heights
+
+![Height of the ball](nine_codes.png)
 """
 FREE_FALL = """
-\\* carried on in free flight from where the run ends; grains that the ball meets in the air are not
-in it. The ball meets the first grain after 20.7 ms: at 10 and 20 ms it falls freely in any code,
-and these two times test gravity alone. The times between 22 and 32 ms are added, because the ball
-is in the bed then.
+The number in brackets is that of the impacts in the range. "*": extrapolated in free flight from
+the end of the run; grains that the ball would meet in the air are not included.
+
+The ball meets the first grain after 20.7 ms. At 10 and 20 ms it falls freely in any code, so these
+times test gravity alone. The times between 22 and 32 ms were added because the ball is in the bed
+then.
 """
 CONDITIONS = """
-## Conditions
+## Set-up
 
-- **Bed.** The published positions, at rest, without the springs of friction that had held them.
-  They relax under gravity until the ball comes, in both codes. The box is that of the published
-  walls, whose inner faces are at x = ±49 mm, y = ±30 mm and z = -90.2431 mm (the driver's smooth
-  walls, which it does not use, would be at ±50 mm).
+- **Bed.** The published positions, at rest, without the tangential springs that had held them. They
+  relax under gravity until the ball arrives, in both codes. The box has the published walls: inner
+  faces at x = ±49 mm, y = ±30 mm and z = -90.2431 mm. (The driver's smooth walls, which it does not
+  use, would be at ±50 mm.)
 - **Materials.** Spheres M1: E 1 GPa, ν 0.2, 2500 kg/m3. Steel: 210 GPa, ν 0.2, 7200 kg/m3.
   Restitution and friction: M1-M1 0.5 and 0.3, M1-steel 0.4 and 0.2, steel-steel 0.6 and 0.5. In
-  this engine a pair has a value of its two materials: with `pair_rule="mean"` three materials give
-  these pairs exactly, each set of bodies with walls of its own (`impact_bed.py`).
-- **Laws.** Both have Hertz' spring and Mindlin's. Differences: here a dashpot acts across the
-  normal too, in MercuryDPM none does; here a contact never pulls, there its damping may pull when
-  the contact ends, and the damping ratio for a restitution follows from that (0.355 here, 0.280
-  there for 0.4).
+  this engine a pair takes a value from its two materials. With `pair_rule="mean"`, three materials
+  give these pairs exactly; each set of bodies has walls of its own (`impact_bed.py`).
+- **Contact laws.** All codes use the springs of Hertz and Mindlin. There are three differences from
+  MercuryDPM. A tangential dashpot acts here and not there. A contact never pulls here, while
+  MercuryDPM's damping can pull as the contact ends. The damping ratio for a given restitution
+  follows from that (0.355 here, 0.280 there for 0.4).
 """
 MISSING = """
-## Silo and drum
+## Limits
 
-Neither was run.
+- The nine published curves were not accessible, so their range is not shown.
+- The silo and the drum of the benchmark were not run:
+    - **Silo** (100 000 spheres of 4 mm, outflow in 5 s): the four files of initial positions are
+      absent from the snapshot of the repository. The engine has no cone that ends at an orifice,
+      because its walls are half-spaces and triangle meshes are missing. It cannot remove bodies.
+    - **Drum** (38 000 spheres of two materials, 2 rad/s, 5 s): the engine's planes are static; a
+      wall that rotates or slides under its contacts is missing. So is a table of pairs: M1-M2 has
+      restitution 0.45 and friction 0.2, and no rule for two materials gives friction 0.2 from 0.3
+      and 0.4. The drum needs 6.25 million steps of 8e-7 s.
 
-- **Silo** (100 000 spheres of 4 mm, outflow in 5 s). The four files of initial positions are absent
-  from the snapshot of the repository. The engine lacks a cone that ends at an orifice: its walls
-  are half-spaces, and a mesh of triangles is not among them. It cannot remove bodies either.
-- **Drum** (38 000 spheres of two materials, 2 rad/s, 5 s). Positions are there. The engine's planes
-  stand still: a wall that turns or slides under its contacts is missing. So is a table of pairs:
-  M1-M2 has restitution 0.45 and friction 0.2, and no rule for two materials gives friction 0.2 from
-  0.3 and 0.4. It has 6.25 million steps of 8e-7 s.
+## Reproduce this page
+
+`python validation/nine_codes/write_page.py` writes the page and its figure from the kept runs.
+`python validation/recreate.py` lists the commands that compute them, with their CPU times.
+"""
+PAIRS = """
+## Two pair tests
+
+In the first test a sphere M1 (radius 1 mm) falls at 1 m/s from z = 1.01 mm onto steel, without
+gravity. In the second a sphere of steel at rest on M1 is accelerated by (5, 0, -5) m/s2 for 5 ms.
+Closed forms: the restitution as entered; Coulomb sliding from the start, with acceleration
+a = g (1 - μ) and spin rate increasing by 5 μ g / 2R. Criterion: relative error below 1e-3.
+"""
+PAIRS_AFTER = """
+Sliding agrees with both to 1e-3. The restitution does so from a fifth of the published step on. A
+contact begins and ends within a step, which is a fortieth of its duration, so the error is
+proportional to the step. MercuryDPM behaves in the same way: its 0.40108 becomes 0.39995 at a tenth
+of the step. Its damping force is not clipped and pulls as the contact ends.
+"""
+RUNS_WORDS = """
+## Simulations
+
+Here the bed relaxes with steps of 1e-6 s while the ball falls freely, to 20.5 ms. The step is then
+the published 5e-7 s until 32 ms, and 1e-6 s or 0.9 of the largest stable step after it. MercuryDPM
+takes 4e-6 s in free fall, 1e-6 s until 30 ms, 3e-6 s until 50 ms and 4e-6 s after it; its contact
+search has cells that fit both sizes of spheres. At the published step it would take some ten
+thousand CPU seconds. Runs end where the table says; those listed as "not run" have no rows. CPU
+times were measured while other programs ran.
 """

@@ -1,0 +1,95 @@
+"""The ball dropped into beads: exponents of density in beds that differ in one respect, and what that shows."""
+
+from collections.abc import Callable, Iterable
+
+from ball_into_beads import BALL, FALL, FINE, HEAVY, LIGHT, LOOSE, OURS
+from fits import below_first_touch, below_mean_surface, density_exponent, diameter_exponent, scale, stopping
+from result_rows import Row
+from sphere_bed import Floats
+from table_lines import NOT_SHOWN, said, table
+
+DepthOf = Callable[[list[Row]], Floats]
+DENSITY, BAR = 0.5, 0.05  # measured exponent of the density, and the tolerance
+# What changes from one bed to the next; beds that have no rows are left out.
+STEPS = [
+    ("beads of 5 instead of 8 mm", "8 mm, walls, dense", "5 mm, walls, dense"),
+    ("beads of 3 instead of 5 mm, dense bed", "5 mm, walls, dense", OURS),
+    ("periodic instead of walls", "5 mm, walls, dense", "5 mm, periodic as wide as the box"),
+    ("6 instead of 3 ball diameters wide", "5 mm, periodic as wide as the box", "5 mm, periodic, 6 ball diameters"),
+    ("loose instead of dense", "5 mm, periodic", "5 mm, periodic, loose"),
+    ("110 instead of 85 mm deep", "5 mm, periodic, loose", LOOSE),
+    ("beads of 3 instead of 5 mm, loose bed", LOOSE, FINE),
+    ("friction 0.6 instead of 0.3", LOOSE, "5 mm, as the one before, friction 0.6"),
+]
+FINER = "2 mm, periodic, loose, deeper"
+
+
+def pairs(every: list[Row]) -> dict[str, tuple[Row, Row]]:
+    """Return a light and a heavy drop of one ball from one height into each bed that has both, by its name."""
+    found: dict[str, dict[float, Row]] = {}
+    for row in every:
+        if (row["diameter"], row["fall"]) == (BALL, FALL):
+            found.setdefault(str(row["bed"]), {})[row["density"]] = row
+    return {name: (own[LIGHT], own[HEAVY]) for name, own in found.items() if {LIGHT, HEAVY} <= own.keys()}
+
+
+def steps(beds: Iterable[str]) -> list[tuple[str, str, str]]:
+    """Return what changes, the bed before and the bed after, of the steps whose beds are there."""
+    beds = list(beds)
+    others = [(name.removeprefix(f"{LOOSE}, "), LOOSE, name) for name in beds if name.startswith(f"{LOOSE}, ")]
+    finer = [("beads of 2 instead of 3 mm, loose bed", FINE, FINER)]
+    return [step for step in [*STEPS, *others, *finer] if step[1] in beds and step[2] in beds]
+
+
+def agrees(drops: tuple[Row, Row], depth_of: DepthOf) -> bool:
+    """Whether two drops have the measured exponent of density."""
+    return abs(density_exponent(*drops, depth_of) - DENSITY) <= BAR
+
+
+def cause_of_density(every: list[Row], depth_of: DepthOf) -> str:
+    """Return the changes of the bed compared, or of its coarser twin, that bring the exponent within the tolerance."""
+    beds = pairs(every)
+    shown = [
+        words for words, before, after in steps(beds)
+        if before in (LOOSE, FINE) and not agrees(beds[before], depth_of) and agrees(beds[after], depth_of)
+    ]  # fmt: skip
+    return "; ".join(shown) or NOT_SHOWN
+
+
+def step_table(every: list[Row]) -> str:
+    """Return the table of what each change does to the exponent of density, from either surface."""
+    beds = pairs(every)
+    heads = ("change", "exponent, mean surface: before", "after", "exponent, first touch: before", "after")
+    return table(heads, (
+        (words, *(f"{density_exponent(*beds[name], depth_of):.2f}"
+                  for depth_of in (below_mean_surface, below_first_touch) for name in (before, after)))
+        for words, before, after in steps(beds)
+    ))  # fmt: skip
+
+
+def bed_table(every: list[Row]) -> str:
+    """Return the table of beds: beads, packing, depths of the light and the heavy ball, and their mean prefactor."""
+    heads = ("bed", "beads", "solid fraction", "depth of 2200 kg/m3 [cm]", "depth of 15000 kg/m3 [cm]",
+             "prefactor of the two", "stopping time of 2200 kg/m3 [d/v]")  # fmt: skip
+    return table(heads, (
+        (name, f"{int(light['beads'])}", f"{light['bulk_density'] / 2500.0:.3f}", f"{100 * light['deepest']:.2f}",
+         f"{100 * heavy['deepest']:.2f}", f"{mean_prefactor((light, heavy)):.2f}", f"{stopping([light])[0]:.1f}")
+        for name, (light, heavy) in pairs(every).items()
+    ))  # fmt: skip
+
+
+def diameter_table(every: list[Row]) -> str:
+    """Return the table of the exponents of diameter, in the beds with balls of three diameters or more."""
+    heads = ("bed", "balls", "exponent of diameter, mean surface +- 95 %", "exponent of diameter, first touch +- 95 %")
+    cells = []
+    for name in dict.fromkeys(str(row["bed"]) for row in every):
+        own = [row for row in every if (row["bed"], row["density"], row["fall"]) == (name, LIGHT, FALL)]
+        if len(own) >= 3:
+            found = (said(diameter_exponent(own, of(own))) for of in (below_mean_surface, below_first_touch))
+            cells.append((name, str(len(own)), *found))
+    return table(heads, cells)
+
+
+def mean_prefactor(drops: tuple[Row, Row]) -> float:
+    """Return the mean prefactor of two drops, from the mean surface."""
+    return float((below_mean_surface(list(drops)) / scale(list(drops))).mean())

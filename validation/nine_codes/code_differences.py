@@ -1,0 +1,118 @@
+"""How far the codes are apart in the benchmark's impact: in the bed, and after the ball turns."""
+
+import numpy as np
+from heights import ASKED, BOTTOM, CRITERION, PLACES, UNDAMPED, Curve, height, mm, named, paragraph, rebound
+from impact import MEETS
+from impact_bed import BALL_RADIUS, FLOOR, in_free_fall
+
+
+def largest_gap(found: dict[str, Curve]) -> float:
+    """Return the largest difference [m] of height between both codes before the ball reaches the bottom."""
+    mercury, ours = found["mercury"], found["published"]
+    down = ours[0] <= BOTTOM
+    return float(np.abs(np.interp(ours[0][down], *ours[:2]) - np.interp(ours[0][down], *mercury[:2])).max())
+
+
+def answer(found: dict[str, Curve]) -> str:
+    """Return the answer of the page: how far the codes are apart in the bed and after it, and what rounding does."""
+    gaps = {time: None if (a := height(found["published"], time)) is None or (b := height(found["mercury"], time))
+            is None else abs(a - b) for time in ASKED}  # fmt: skip
+    held = [time for time, gap in gaps.items() if gap is not None and gap <= CRITERION]
+    failed = [f"{mm(gap)} mm at {1000.0 * time:g} ms" for time, gap in gaps.items() if gap and gap > CRITERION]
+    largest = largest_gap(found)
+    words = (
+        f"**{'Yes' if largest <= CRITERION else 'No'}, while the ball moves through the bed:** its height differs from "
+        f"MercuryDPM's by at most {mm(largest)} mm from {1000.0 * MEETS:g} to {1000.0 * BOTTOM:g} ms; the criterion is "
+        f"{mm(CRITERION, 0)} mm. The criterion holds at {len(held)} of the {len(ASKED)} times set before the runs"
+    )
+    words += f" and fails after the ball turns ({' and '.join(failed)})." if failed else "."
+    shift = [mm(moved(found, "nudged", time)) for time in ASKED[2:]]
+    if "nudged" in found:
+        words += (
+            " After the turn, a shift of the impact point by a billionth of a metre alone changes the height by "
+            f"{shift[0]} mm at {1000.0 * ASKED[2]:g} ms and by {shift[1]} mm at {1000.0 * ASKED[3]:g} ms."
+        )
+    return "\n" + paragraph(words)
+
+
+def moved(found: dict[str, Curve], name: str, time: float) -> float | None:
+    """Return how far [m] the height of a run at a time [s] is from that of the published impact."""
+    if name not in found:
+        return None
+    one, other = height(found[name], time), height(found["published"], time)
+    return None if one is None or other is None else abs(one - other)
+
+
+def between_codes(found: dict[str, Curve]) -> str:
+    """Return how far both codes are apart before the ball reaches the bottom."""
+    ours = found["published"]
+    lowest = {name: float(found[name][1].min()) - FLOOR - BALL_RADIUS for name in ("published", "mercury")}
+    way = mm(in_free_fall(MEETS)[0] - float(ours[1][ours[0] <= BOTTOM][-1]), 0)
+    return paragraph(
+        f"In the bed, from {1000.0 * MEETS:g} to {1000.0 * BOTTOM:g} ms in steps of 0.25 ms, the two heights differ by "
+        f"at most {mm(largest_gap(found))} mm, while the ball moves by {way} mm. The ball then meets the last grains "
+        f"above the floor. Its lowest point is {mm(lowest['published'])} mm above the floor here and "
+        f"{mm(lowest['mercury'])} mm in MercuryDPM, less than a grain. It leaves upwards in free flight."
+    )
+
+
+def lost_speed(curve: Curve) -> float | None:
+    """Return the speed [m/s] that the ball loses in the half millisecond before it turns, none without rows there."""
+    if curve[0][-1] <= BOTTOM + 0.0005:
+        return None
+    return float(np.diff(np.interp([BOTTOM, BOTTOM + 0.0005], curve[0], curve[2]))[0])
+
+
+def turn_table(found: dict[str, Curve]) -> list[str]:
+    """Return the table of what each run does where the ball turns."""
+    head = (
+        f"| run | tangential dashpot | speed lost from {1000.0 * BOTTOM:g} to {1000.0 * BOTTOM + 0.5:g} ms [m/s] "
+        "| rebound speed [m/s] |"
+    )
+    lines = [head, "|---" * 4 + "|"]
+    for name, curve in found.items():
+        lost, speed = lost_speed(curve), rebound(curve)
+        cells = ("-" if value is None else f"{value:.2f}" for value in (lost, speed))
+        lines.append(f"| {shown(name)} | {'no' if name in UNDAMPED else 'yes'} | {' | '.join(cells)} |")
+    return lines
+
+
+def shown(name: str) -> str:
+    """Return the name of a run with that of its code."""
+    return {"mercury": "MercuryDPM"}.get(name, named(name) if "lammps" in name else f"here, {named(name)}")
+
+
+def span(values: list[float]) -> str:
+    """Return the least and the most of some values."""
+    return f"{min(values):.2f} to {max(values):.2f}"
+
+
+def after_the_turn(found: dict[str, Curve]) -> list[str]:
+    """Return why the codes differ after the ball turns, as parts of the page."""
+    lost = {name: one for name, curve in found.items() if (one := lost_speed(curve)) is not None}
+    middle = {name: one for name, one in lost.items() if name not in PLACES}
+    damped = [one for name, one in middle.items() if name not in UNDAMPED]
+    free = [one for name, one in middle.items() if name in UNDAMPED]
+    words = (
+        "The ball rebounds from the last grains nearly as fast as it hits them, although they are 2880 times lighter. "
+        "Its rebound speed therefore depends on how few grains lie between it and the floor."
+    )
+    nudged = [moved(found, "nudged", time) for time in (0.029, *ASKED[2:])]
+    if "nudged" in found:
+        words += (
+            f" Rounding alone matters: the run nudged by a billionth of a metre is {mm(nudged[0])} mm off at 29 ms, "
+            f"{mm(nudged[1])} mm at 50 ms and {mm(nudged[2])} mm at 100 ms."
+        )
+    parts = ["\n## Why the codes differ after the turn\n", paragraph(words), "", *turn_table(found)]
+    if damped and free:
+        apart = min(damped) > max(free)
+        parts += ["", paragraph(
+            f"At the published impact point, the {len(damped)} runs with a tangential dashpot lose {span(damped)} m/s "
+            f"in that half millisecond, the {len(free)} without one {span(free)} m/s. "
+            + ("The tangential law thus separates the runs of all codes" if apart
+               else "The tangential law does not separate the runs")
+            + f", as far as {len(middle)} runs can show it. "
+            + "".join(f"At another impact point ({named(name)}) {lost[name]:.2f} m/s are lost here. "
+                      for name in PLACES if name in lost)
+        )]  # fmt: skip
+    return parts
