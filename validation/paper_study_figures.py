@@ -99,7 +99,7 @@ def answer_table() -> list[str]:
 
 
 def draw_answers() -> None:
-    """The share that comes down again and the outgoing speed, study by study."""
+    """The share that comes down again and the rebound speed, study by study."""
     studies = list(every_study())
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
@@ -116,7 +116,7 @@ def draw_answers() -> None:
         axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
         axes[0].set_xlabel("landers that come down again within 12 h [%]")
-        axes[1].set_xlabel("outgoing speed [cm/s]: mean, 5 to 95 %")
+        axes[1].set_xlabel("rebound speed [cm/s]: mean, 5 to 95 %")
         figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
 
 
