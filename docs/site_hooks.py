@@ -1,4 +1,4 @@
-"""What the documentation site does beside mkdocs: equations become MathML, pictures of the showcase are copied.
+"""What the site does beside mkdocs: equations become MathML, figures lead to their files, the showcase is copied.
 
 Pages stay readable without it: `$x$` and blocks marked math are what other viewers of Markdown take as LaTeX, and
 links to ../showcase/ lead to its pictures in the repository. The built pages need no script and no font of others.
@@ -13,6 +13,7 @@ from latex2mathml.converter import convert
 from pymdownx.arithmatex import arithmatex_fenced_format
 
 SHOWCASE = Path(__file__).parents[1] / "showcase"
+FIGURE = re.compile(r'<p>(<img [^>]*?src="([^"]+)"[^>]*>)</p>')
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\s*\\[(\[](.*?)\\[)\]]\s*</\1>([,.;:)]*)', flags=re.DOTALL)
 
 
@@ -41,8 +42,8 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    """Turn each equation of a page into MathML."""
-    return EQUATION.sub(as_mathml, html)
+    """Turn each equation of a page into MathML, and let each figure lead to its file."""
+    return FIGURE.sub(r'<p class="figure"><a href="\2">\1</a></p>', EQUATION.sub(as_mathml, html))
 
 
 def as_mathml(equation: re.Match[str]) -> str:

@@ -19,6 +19,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from bulk import CHECKS
 
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, SITE, STYLE, TRAINING
+
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 Rows = list[dict[str, Any]]
@@ -46,42 +48,58 @@ def lines(rows: Rows, by: str, columns: list[str]) -> list[str]:
 def draw_froude(rows: Rows) -> None:
     """Penetration and duration against the Froude number, by gravity."""
     figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), constrained_layout=True)
-    for axis, column, label in (
-        (axes[0], "penetration_over_diameter", "penetration / D"),
-        (axes[1], "duration_scaled", "duration sqrt(g / D)"),
-    ):
-        for gravity in sorted({row["gravity"] for row in rows}):
+    gravities = sorted({row["gravity"] for row in rows})
+    for axis, column in zip(axes, ("penetration_over_diameter", "duration_scaled"), strict=True):
+        for place, gravity in enumerate(gravities):
             table = grouped([row for row in rows if row["gravity"] == gravity], "froude", column)
+            # Side by side, so that no bar hides another.
+            beside = np.array(list(table)) * 1.04 ** (place - 1)
             mean = [values.mean() for values in table.values()]
             spread = [values.std(ddof=1) for values in table.values()]
-            axis.errorbar(list(table), mean, spread, marker="o", capsize=3, label=f"g = {gravity:g} m/s2")
-        axis.set(xlabel="v / sqrt(g D)", ylabel=label, xscale="log")
+            axis.errorbar(
+                beside, mean, spread, color=INPUT_COLOURS[place], marker="os^"[place], markersize=5, capsize=3,
+                label=f"g = {gravity:g} m/s²",
+            )  # fmt: skip
+        axis.set(xlabel=LABELS["froude"], ylabel=LABELS[column], xscale="log", ylim=(0.0, None))
         axis.set_xticks(list(table), [f"{number:g}" for number in table], minor=False)
         axis.minorticks_off()
-    axes[0].legend(frameon=False)
-    figure.savefig(PAGES / "bulk_froude.png", dpi=130)
+    axes[0].legend(loc="lower right", title="bars: one standard deviation", title_fontsize=8)
+    figure.savefig(PAGES / "bulk_froude.png")
 
 
 EXPECTED = {
-    ("repose", "angle_deg"): [25.0, *[40.0] * 2], ("packing", "solid_fraction"): [0.51, 0.54, 0.52, 0.51, 0.50],
+    ("repose", "angle_deg"): [25.0, 40.0], ("packing", "solid_fraction"): [0.51, 0.54, 0.52, 0.51, 0.50],
     ("compression", "solid_fraction"): [0.639, 0.593], ("compression", "coordination_without_rattlers"): [6.0, 4.5],
+}  # fmt: skip
+LABELS = {
+    "froude": "Froude number $v / \\sqrt{g D}$", "penetration_over_diameter": "penetration / D",
+    "duration_scaled": "duration $\\sqrt{g / D}$", "friction": "friction coefficient", "kind": "grains",
+    "shape": "shape", "angle_deg": "angle of repose [deg]", "height_left": "height left / height filled",
+    "solid_fraction": "solid fraction", "coordination": "contacts of a grain",
+    "coordination_without_rattlers": "contacts of a grain that is held",
 }  # fmt: skip
 
 
 def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
     """Means, scatter and single runs of the first two columns; crosses: what is expected."""
-    figure, axes = plt.subplots(1, 2, figsize=(9.0, 3.4), constrained_layout=True)
+    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.1), constrained_layout=True)
     for axis, column in zip(axes, columns, strict=False):
         table = grouped(rows, by, column)
         for place, values in enumerate(table.values()):
-            axis.plot([place] * len(values), values, "o", color="0.6")
-            axis.errorbar(place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color="k",
-                          markersize=18, capsize=4)  # fmt: skip
-        expected = EXPECTED.get((name, column), [])[: len(table)]
-        axis.plot(range(len(expected)), expected, "x", color="C3")
-        axis.set_xticks(range(len(table)), [str(key).replace(", ", "\n") for key in table], fontsize=8)
-        axis.set(xlabel=by, ylabel=column.replace("_", " "), xlim=(-0.5, len(table) - 0.5))
-    figure.savefig(PAGES / f"bulk_{name}.png", dpi=110)
+            single, = axis.plot([place] * len(values), values, "o", color=TRAINING, alpha=0.6, markeredgewidth=0.0)
+            mean = axis.errorbar(
+                place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color=INK,
+                markersize=18, capsize=4,
+            )  # fmt: skip
+        handles = {"one run": single, "mean and standard deviation": mean}
+        expected = EXPECTED.get((name, column), [])
+        if expected:
+            handles["published"], = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
+        axis.set_xticks(range(len(table)), [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table])
+        axis.set(xlabel=LABELS[by], ylabel=LABELS[column], xlim=(-0.5, len(table) - 0.5))
+        if axis is axes[0]:
+            figure.legend(handles.values(), handles, loc="outside lower center", ncols=3)
+    figure.savefig(PAGES / f"bulk_{name}.png")
 
 
 SHOWN = {
@@ -97,6 +115,15 @@ SHOWN = {
     "froude": ("froude", ["penetration_over_diameter", "duration_scaled"],
                "A sphere dropped into beds at three gravities; equal Froude numbers should give equal values."),
 }  # fmt: skip
+
+
+ALTS = {
+    "compression": "Solid fraction and contacts of pressed spheres by friction",
+    "friction": "Solid fraction and contacts of poured hulls by friction",
+    "repose": "Angle of repose and height left, spheres and hulls",
+    "packing": "Solid fraction and contacts of the Platonic solids",
+    "froude": "Penetration and duration of an impact by Froude number at three gravities",
+}
 
 
 def main() -> None:
@@ -117,11 +144,9 @@ def main() -> None:
         found = json.loads(path.read_text())
         page += [*lines(found["rows"], by, columns), "", *([found["note"], ""] if "note" in found else [])]
         page += [f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time.", ""]
-        if name == "froude":
-            draw_froude(found["rows"])
-        else:
-            draw(name, found["rows"], by, columns)
-        page += [f"![{name}](bulk_{name}.png)", ""]
+        with plt.rc_context(STYLE):
+            draw_froude(found["rows"]) if name == "froude" else draw(name, found["rows"], by, columns)
+        page += [f"![{ALTS[name]}](bulk_{name}.png)", ""]
     path = HERE / "bed_size.json"
     page += ["## Size of the bed", "", *(bed_size(json.loads(path.read_text())) if path.exists() else ["Not run yet."])]
     # Tables and pictures stay on their lines.

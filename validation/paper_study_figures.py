@@ -149,7 +149,7 @@ def draw_answers() -> None:
         axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
         axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
-        axes[0].set_xlabel("return fraction within 12 h [%]")
+        axes[0].set_xlabel("landers that come down again within 12 h [%]")
         axes[1].set_xlabel("rebound speed [cm/s]: mean, 5 to 95 %")
         figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
 

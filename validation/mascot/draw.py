@@ -10,7 +10,9 @@ import numpy as np
 from answers import MEASURED, TAILS, column
 from harness import Row
 
-INKS = ("#1b6ca8", "#d1495b", "#6a8d3a", "#8a6bbe")
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, WASH, figure_style
+
+LINES = ("-", "--", "-.", ":")
 WORDS = {
     "time_s": "time from the first contact to rest [s]", "contacts": "contacts, the first included",
     "path_m": "path [m]",
@@ -19,17 +21,20 @@ WORDS = {
 
 def of_landers(settings: dict[str, list[Row]], to: Path) -> None:
     """Distribution functions of the three quantities, with the central 80 % of each marked, and MASCOT."""
-    figure, axes = plt.subplots(1, 3, figsize=(12, 4.0), layout="constrained", sharey=True)
-    for axis, (name, measured) in zip(axes, MEASURED.items(), strict=True):
-        axis.axhspan(*TAILS, color="0.93", zorder=0)
-        for ink, (setting, rows) in zip(INKS, settings.items(), strict=False):
-            values = np.sort(column(rows, name))
-            axis.step(values, (np.arange(len(values)) + 1.0) / len(values), where="post", color=ink,
-                      label=f"{setting} ({len(values)})")  # fmt: skip
-        axis.axvline(measured, color="black", ls="--", label="MASCOT")
-        most = max(float(np.quantile(column(rows, name), 0.98)) for rows in settings.values())
-        axis.set(xlabel=WORDS[name], xlim=(0.0, max(most, 1.2 * measured)), ylim=(0.0, 1.0))
-    axes[0].set(ylabel="part of the landers")
-    axes[2].legend(fontsize=8, loc="lower right", title="first contact (landers)")
-    figure.savefig(to, dpi=110)
+    with figure_style():
+        figure, axes = plt.subplots(1, 3, figsize=(9.2, 3.7), layout="constrained", sharey=True)
+        for axis, (name, measured) in zip(axes, MEASURED.items(), strict=True):
+            axis.axhspan(*TAILS, color=WASH, zorder=0)
+            for ink, line, (setting, rows) in zip(INPUT_COLOURS, LINES, settings.items(), strict=False):
+                values = np.sort(column(rows, name))
+                part = (np.arange(len(values)) + 1.0) / len(values)
+                axis.step(values, part, line, where="post", color=ink, label=f"{setting} ({len(values)})")
+            axis.axvline(measured, color=INK, lw=1.0, label="MASCOT")
+            most = max(float(np.quantile(column(rows, name), 0.98)) for rows in settings.values())
+            axis.set(xlabel=WORDS[name], xlim=(0.0, max(most, 1.2 * measured)), ylim=(0.0, 1.0))
+        axes[0].set(ylabel="share of the landers")
+        handles, labels = axes[0].get_legend_handles_labels()
+        title = {"title": "first contact (landers)", "title_fontsize": 8}
+        figure.legend(handles, labels, loc="outside lower center", ncols=5, **title)
+        figure.savefig(to)
     plt.close(figure)

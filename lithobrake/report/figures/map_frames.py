@@ -59,9 +59,10 @@ def graticule(latitude: Array, longitude: Array, ground: GroundMap) -> Iterator[
 
 
 def degrees(value: float, positive: str, negative: str) -> str:
-    """An angle as maps have it: "12.5° N"."""
-    rounded = round(value, 6) + 0.0
-    return f"{abs(rounded):g}°" + (f" {positive}" if rounded > 0.0 else f" {negative}" if rounded < 0.0 else "")
+    """An angle as maps have it: "12.5° N"; 0 and 180 degrees are on neither side."""
+    rounded = round(value, 6)
+    side = "" if rounded % 180.0 == 0.0 else f" {positive}" if rounded > 0.0 else f" {negative}"
+    return f"{abs(rounded):g}°{side}"
 
 
 def _multiples(low: float, high: float, step: float) -> Array:

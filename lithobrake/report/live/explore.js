@@ -3,7 +3,8 @@
 // down, each over all refits and refit by refit.
 
 const BINS = 120;
-const MAP_COLUMNS = 120, MAP_ROWS = 60;
+// Cells along the width of the map of one half of the body.
+const MAP_CELLS = 60;
 // Draws of each refit at each choice of the inputs: with fifty refits enough for smooth curves, and quick.
 const POINTS = 500;
 
@@ -91,7 +92,7 @@ class Explorer {
 
   // Everything that is shown, at inputs between two probabilities of their laws.
   at(ranges, points = POINTS) {
-    const { law, flown, facts } = this, cells = MAP_COLUMNS * MAP_ROWS;
+    const { law, flown, facts } = this, cells = 2 * MAP_CELLS ** 2;
     const counts = new Float64Array(law.refits * law.outputs * BINS), map = new Float64Array(cells);
     const [left, returns, known] = [0, 1, 2].map(() => new Float64Array(law.refits));
     const fates = new Float64Array(facts.fates.length);

@@ -83,13 +83,6 @@ function shareWords(explorer, found) {
   return `${per(share)} % ${facts.action}${interval}`;
 }
 
-// The cell of the map that a flight ended in.
-function mapCell(places, flight) {
-  const row = Math.min(Math.floor((places[2 * flight] + 90) / 180 * MAP_ROWS), MAP_ROWS - 1);
-  const column = Math.min(Math.floor((places[2 * flight + 1] + 180) / 360 * MAP_COLUMNS), MAP_COLUMNS - 1);
-  return row * MAP_COLUMNS + column;
-}
-
 // The explorer of what the page holds, or null where it holds none.
 function readExplorer() {
   const data = document.getElementById("explorer-data");
@@ -99,7 +92,8 @@ function readExplorer() {
   if (!packedFlown) return new Explorer(law, null, facts);
   const found = unpack(packedFlown);
   const flown = new Flown(found.starts, found.status);
-  flown.cells = Uint16Array.from(found.status, (_, flight) => mapCell(found.places, flight));
+  flown.cells = Uint16Array.from(found.status, (_, flight) =>
+    mapCell(facts.site, found.places[2 * flight], found.places[2 * flight + 1]));
   return new Explorer(law, flown, facts);
 }
 
@@ -114,7 +108,7 @@ function pictures(explorer, holder) {
   const { facts, law, flown, axes } = explorer;
   const whole = facts.outputs.map((_, k) => densities(explorer.whole, law, k).mean);
   const views = facts.outputs.map(({ words, unit }) => view(`${words} [${unit}]`, ""));
-  const map = view("Where they come down", "Longitude and latitude; the ring is the site.", "map");
+  const map = view("Where they come down", "Both halves of the body without a change of area; the ring is the aim point.", "map");
   holder.querySelector(".charts").append(...[...views, ...(flown ? [map] : [])].map((one) => one.box));
   return (found) => {
     views.forEach(({ canvas, caption }, k) => {
@@ -123,7 +117,7 @@ function pictures(explorer, holder) {
       caption.textContent = `Median ${value} ${unit} (refits: ${low} to ${high})`;
     });
     if (facts.action) holder.querySelector(".share").textContent = shareWords(explorer, found);
-    if (flown) drawMap(map.canvas, found.map, MAP_COLUMNS, MAP_ROWS, facts.site);
+    if (flown) drawMap(map.canvas, found.map, facts.site);
   };
 }
 

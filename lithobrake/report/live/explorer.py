@@ -19,8 +19,9 @@ from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 # More flown starts would make the page heavier, and no cell of them noticeably smaller.
 MOST_STARTS = 20_000
 SCRIPTS = (
-    *("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js", "live/charts.js", "live/explorer.js"),
-)
+    "live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js", "live/halves.js", "live/charts.js",
+    "live/explorer.js",
+)  # fmt: skip
 # The explorer's outputs, in the order in which it draws them: the first ones of its tables.
 SHOWN = ("speed_out", "elevation_out", "spin_out")
 LEVEL = ("velocity_out_x", "velocity_out_y")

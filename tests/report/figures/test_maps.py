@@ -77,7 +77,7 @@ def test_a_panel_holds_its_places_across_the_date_line_and_gives_up_where_they_l
 
 def test_a_graticule_has_some_four_round_steps() -> None:
     assert [step_of(width) for width in (0.05, 1.0, 38.0, 170.0)] == [0.01, 0.2, 10.0, 45.0]
-    assert [degrees(value, "N", "S") for value in (12.5, -30.0, 0.0)] == ["12.5° N", "30° S", "0°"]
+    assert [degrees(value, "N", "S") for value in (12.5, -30.0, 0.0, -180.0)] == ["12.5° N", "30° S", "0°", "180°"]
 
 
 def test_a_pole_is_a_point_where_it_lies() -> None:

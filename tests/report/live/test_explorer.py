@@ -26,6 +26,7 @@ from lithobrake.emulator import Emulator, law_tables
 from lithobrake.geometry.attitude_terms import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
+from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.live.packed import packed, script_data
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.study import check_tables
@@ -212,6 +213,24 @@ def test_words_in_numbers_end_no_script() -> None:
 def test_an_array_that_a_browser_has_not_is_refused() -> None:
     with pytest.raises(ValueError, match="bed has type int64, but must have one of float64"):
         packed({"bed": np.arange(3)})
+
+
+@needs_node
+def test_the_map_is_that_of_the_figures() -> None:
+    random = np.random.default_rng(3)
+    latitude, longitude = np.degrees(np.arcsin(random.uniform(-1.0, 1.0, 300))), random.uniform(-180.0, 180.0, 300)
+    ground = GroundMap(-35.0, 160.0, 1.0)
+    program = """const at = (call) => given.places.map((place) => call(given.aim, ...place));
+return [at(onHalf), at(mapCell)];"""
+    given = {"aim": [ground.latitude, ground.longitude], "places": np.column_stack([latitude, longitude]).tolist()}
+    places, cells = map(np.array, answer_of((*ALL, "live/halves.js"), program, given))
+    east_north = np.column_stack(ground.places(latitude, longitude))
+    assert places[:, :2] == pytest.approx(east_north, abs=EXACT)
+    half, row, column = np.unravel_index(cells, (2, 60, 60))
+    assert (half == (ground.facing(latitude, longitude) < 0.0)).all()
+    shown = np.where(half[:, None] == 0, east_north, np.column_stack(ground.opposite.places(latitude, longitude)))
+    middles = (np.column_stack([column, row]) + 0.5) / 30.0 - 1.0
+    assert np.abs(shown / ground.edge - middles).max() <= 1.0 / 60.0 + EXACT
 
 
 @needs_node
