@@ -10,12 +10,13 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from answers import BINS, ENDS, FACES, GROUNDS
+sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[2] / "benchmarks")]
+
+from answers import FORECAST, HERE
 from figures import draw_map, draw_shares
-from forecast import HERE, KINDS, TABLE
-from harness import read_rows
+from harness import command_line, read_rows
+from landers import KINDS, TABLE
+from samples import BINS, ENDS, FACES, GROUNDS
 from page_text import broken
 from page_words import ABOUT, LEFT_OUT, METHOD, REPRODUCE, SCORING
 
@@ -208,12 +209,17 @@ def page(document: dict[str, Any]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def write_page(out: Path, docs: Path) -> None:
+    """Write page and figures of the forecast in a folder to another."""
+    document = json.loads((out / FORECAST).read_text(encoding="utf-8"))
+    draw_shares(document["landers"], docs / "forecast_hera_shares.png")
+    draw_map(read_rows(out / TABLE, KINDS), document["landers"], docs / "forecast_hera_map.png")
+    (docs / "forecast_hera.md").write_text(page(document), encoding="utf-8")
+
+
 def main() -> None:
-    """Write page and figures."""
-    document = json.loads((HERE / "forecast.json").read_text(encoding="utf-8"))
-    draw_shares(document["landers"], DOCS / "forecast_hera_shares.png")
-    draw_map(read_rows(HERE / TABLE, KINDS), document["landers"], DOCS / "forecast_hera_map.png")
-    (DOCS / "forecast_hera.md").write_text(page(document), encoding="utf-8")
+    """Write them to docs/."""
+    write_page(command_line(__doc__, out=HERE).parse_args().out, DOCS)
 
 
 if __name__ == "__main__":
