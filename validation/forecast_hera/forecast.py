@@ -5,8 +5,8 @@
 Runs the study of every branch (branches.py) on soil, and on hard ground with a restitution drawn from 0 to 1, each in a
 folder of its own in --work. One that is there already, by the same code of the engine, is kept; one that was cut short
 goes on. Then writes to --out: landers.csv, a line for each lander; runs.json, what each study cost; forecast.json, the
-answers; and the page with its figures, which go to docs/ where --out is this folder. Last it compares the forecast
-with the one that stood here before.
+answers; and the page with its figures, which go to docs/ (and showcase/) where --out is this folder. Last it compares
+the forecast with the one that stood here before.
 """
 
 import json
@@ -24,6 +24,7 @@ from harness import Row, command_line, origin, write_document
 from landers import COUNTS, RUNS, TABLE, folder_name, follow, write_landers
 from write_page import DOCS, write_page
 
+import showcase
 from lithobrake.campaign import duration
 from lithobrake.pipeline.job import Silent
 
@@ -57,9 +58,7 @@ def expected_cpu(branch: Branch, ground: str) -> float:
     return LANDER_CPU[ground] * branch.weight * COUNTS[ground]
 
 
-def run_part(
-    branch: Branch, ground: str, count: int, work: Path, workers: int | None
-) -> tuple[list[Row], Row | None]:
+def run_part(branch: Branch, ground: str, count: int, work: Path, workers: int | None) -> tuple[list[Row], Row | None]:
     """The landers of a branch on a ground, and what they cost; None where they were there already."""
     started, cpu, watch = time.perf_counter(), cpu_seconds(), Watch()
     is_new = not (work / folder_name(branch, ground)).exists()
@@ -86,7 +85,9 @@ def run_all(work: Path, workers: int | None) -> tuple[list[Row], list[Row]]:
             costs[name] = {"landers": len(rows), **cost}
             write_document(path, costs)
             spent, fresh = spent + time.perf_counter() - started, fresh + expected_cpu(branch, ground)
-        print(f"    {in_words(rows, cost)}{f'; about {duration(left * spent / fresh)} left' if fresh else ''}", flush=True)
+        print(
+            f"    {in_words(rows, cost)}{f'; about {duration(left * spent / fresh)} left' if fresh else ''}", flush=True
+        )
     return landers, [{"study": name, **cost} for name, cost in costs.items()]
 
 
@@ -111,7 +112,10 @@ def main() -> None:
     made = {**totals, "code_sha256": digest(*package_files()), "studies": costs}
     write_document(options.out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
     after = write_answers(options.out)
-    write_page(options.out, DOCS if options.out.resolve() == HERE else options.out)
+    is_kept = options.out.resolve() == HERE
+    write_page(options.out, DOCS if is_kept else options.out)
+    if is_kept:
+        showcase.keep(HERE, DOCS, showcase.FOLDER)
     print("\n".join(comparison(before, after)))
 
 

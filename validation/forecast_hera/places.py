@@ -1,8 +1,7 @@
 """Where landers rest: the smallest regions that hold shares of them, and how much ground these cover.
 
-A region is one of directions from the centre (lithobrake.analysis.highest_density), whose area holds for a ball. On an
-ellipsoid the same directions cover more ground at the ends of the long axis and less at the poles: the ground is
-summed up here over directions that are spread evenly.
+A region is one of directions from the centre (lithobrake.analysis.highest_density), with an area on a ball. On an
+ellipsoid the same directions cover more ground at the ends of the long axis and less at the poles.
 """
 
 from typing import Any
@@ -14,8 +13,8 @@ from scipy.spatial import KDTree
 
 from lithobrake.analysis.highest_density import DensityRegion, highest_density
 
-DIRECTIONS = 20_000  # over which areas are summed up: a region of a tenth of the ground has 2000 of them
-GROUPS = 20  # of beds, each left out in turn for the interval of an area
+DIRECTIONS = 5000  # over which the ground is averaged: a region of a tenth of it has 500 of them
+HALVES = 30  # of the beds, for the interval of an area
 NORMAL_90 = 1.645  # half width of an interval of 90 % in standard errors
 SEED = 1
 
@@ -70,33 +69,36 @@ def direction(latitude: np.ndarray, longitude: np.ndarray) -> np.ndarray:
 
 
 def areas(points: np.ndarray, axes: np.ndarray) -> tuple[tuple[DensityRegion, ...], np.ndarray]:
-    """Regions of places [count, 3] on an ellipsoid of these semi-axes [m], and the ground that each covers [m2]."""
-    directions = even_directions(DIRECTIONS)
-    ground = ground_area(directions, axes) * 4.0 * np.pi / DIRECTIONS
-    found = highest_density(points).regions
-    return found, np.array([ground[inside(directions, one, points)].sum() for one in found])
+    """Regions of places [count, 3] on an ellipsoid of these semi-axes [m], and the ground that each covers [m2].
+
+    That is its area on the ball of the places' root mean square radius, times the mean ground for a unit of solid angle
+    in the region.
+    """
+    directions, square = even_directions(DIRECTIONS), np.mean(np.sum(points**2, axis=1))
+    ground, found = ground_area(directions, axes), highest_density(points).regions
+    return found, np.array([one.area_m2 / square * ground[inside(directions, one, points)].mean() for one in found])
 
 
 def regions(of: Sample, axes: np.ndarray) -> list[dict[str, Any]]:
     """Smallest regions of half and of 95 % of the landers, of as many of each branch as it weighs.
 
-    Their areas have intervals of 90 % by the jackknife over groups of beds.
+    Their areas have intervals of 90 %: the area scatters over random halves of the beds as it would over other beds, as
+    many as these, and does so where it is no smooth function of the places. Source: [Shao-1989].
     """
     random = np.random.default_rng(SEED)
     # As many of each branch as it weighs, and no lander twice.
     size = round(of.weight.sum() / of.weight.max())
     rows = np.sort(random.choice(len(of.rows), size, replace=False, p=of.weight / of.weight.sum()))
     points = np.column_stack([of.column(f"position_{axis}")[rows] for axis in "xyz"])
-    _, bed = np.unique(of.beds[rows], return_inverse=True)
-    group = random.permutation(bed.max() + 1)[bed] % GROUPS
+    beds, bed = np.unique(of.beds[rows], return_inverse=True)
     found, area = areas(points, axes)
-    without = np.array([areas(points[group != one], axes)[1] for one in range(GROUPS)])
-    error = np.sqrt((GROUPS - 1.0) / GROUPS * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
+    halves = [np.isin(bed, random.choice(len(beds), len(beds) // 2, replace=False)) for _ in range(HALVES)]
+    half_width = NORMAL_90 * np.std([areas(points[half], axes)[1] for half in halves], axis=0, ddof=1)
     total = float(np.mean(ground_area(even_directions(DIRECTIONS), axes)) * 4.0 * np.pi)
     return [
         {
-            "share": one.share, "area_m2": float(area[k]), "lower": float(max(area[k] - NORMAL_90 * error[k], 0.0)),
-            "upper": float(min(area[k] + NORMAL_90 * error[k], total)), "of_ground": float(area[k] / total),
+            "share": one.share, "area_m2": float(area[k]), "lower": float(max(area[k] - half_width[k], 0.0)),
+            "upper": float(min(area[k] + half_width[k], total)), "of_ground": float(area[k] / total),
             "outlines": [np.round(line, 2).tolist() for line in one.outlines],
         }
         for k, one in enumerate(found)

@@ -1,11 +1,11 @@
 """The landers that an answer is about: those of one spacecraft on one ground, and the bins in which they are scored."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from branches import branches
-from harness import Row
 
+Row = dict[str, Any]
 ENDS = ("at_rest", "escaped", "partner", "under_way")
 GROUNDS = ("soil", "hard")
 # What is scored of a lander at rest: lower edges of the bins; the last one is open.
