@@ -114,26 +114,28 @@ def test_rank_correlations_are_those_of_a_normal_law() -> None:
     assert none["lower"] < 0.0 < none["upper"]
 
 
-def test_what_is_scored_costs_the_bits_of_its_share() -> None:
-    """Of each branch, 7 of 8 landers rest within 20 to 40 min; with the eighth of a lander that each bin has before."""
-    from answers import branch_weights, shares
-    from branches import branches
-    from samples import BINS, sample
+def test_what_is_scored_costs_the_bits_of_its_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of one branch, 7 of 8 landers rest within 20 to 40 min, of another none; each bin has an eighth of one before."""
+    import answers
+    import samples
+    from branches import Branch
     from score import scores
 
-    times = [60.0 * 25.0] * 7 + [60.0 * 700.0]
+    both = tuple(Branch("juventas", name, "", "", weight, {}) for name, weight in (("one", 0.25), ("other", 0.75)))
+    for module in (answers, samples):
+        monkeypatch.setattr(module, "branches", lambda lander: both)
+    minutes = {"one": [25.0] * 7 + [700.0], "other": [5.0] * 8}
     rows = [
-        {"lander": "juventas", "branch": one.name, "ground": "soil", "end": "at_rest", "bed": k, "time_s": time}
-        for one in branches("juventas")
+        {"lander": "juventas", "branch": name, "ground": "soil", "end": "at_rest", "bed": k, "time_s": 60.0 * time}
+        for name, times in minutes.items()
         for k, time in enumerate(times)
     ]
-    of = sample(rows, "juventas", "soil")
-    mean, _ = shares(of, "time_min", branch_weights(of, "juventas", at_rest=True))
-    bins = len(BINS["time_min"])
-    assert bins == 8
-    assert mean[[2, 7, 0]] == pytest.approx([7.125 / 9.0, 1.125 / 9.0, 0.125 / 9.0])
-    found = scores({"time_min": mean.tolist()}, {"time_min": 2})
-    assert found["time_min"] == pytest.approx(math.log2(9.0 / 7.125))
+    of = samples.sample(rows, "juventas", "soil")
+    mean, _ = answers.shares(of, "time_min", answers.branch_weights(of, "juventas", at_rest=True))
+    assert len(samples.BINS["time_min"]) == 8
+    exact = [(0.25 * 0.125 + 0.75 * 8.125) / 9.0, (0.25 * 7.125 + 0.75 * 0.125) / 9.0]
+    assert mean[[0, 2]] == pytest.approx(exact)
+    assert scores({"time_min": mean.tolist()}, {"time_min": 2})["time_min"] == pytest.approx(-math.log2(exact[1]))
 
 
 def test_a_forecast_made_again_is_compared_number_by_number() -> None:

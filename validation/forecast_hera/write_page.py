@@ -106,7 +106,7 @@ def regions_table(landers: Answers) -> str:
     rows = []
     for name in landers:
         for one in landers[name]["soil"]["regions"]:
-            area, lower, upper = (plain(one[key]) for key in ("area_m2", "lower", "upper"))
+            area, lower, upper = (plain(one[key], 3) for key in ("area_m2", "lower", "upper"))
             ground = f"{100 * one['of_ground']:.0f} %"
             rows.append([name.capitalize(), f"{100 * one['share']:.0f} %", f"{area} ({lower}-{upper})", ground])
     return table(("lander", "share of the landers", "area [m2]", "part of all ground"), rows)
