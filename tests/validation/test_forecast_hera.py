@@ -51,8 +51,9 @@ def test_a_descent_comes_down_straight_on_its_aim_with_the_speed_of_its_mirror_i
 
 
 def test_chances_weigh_branches_and_nothing_is_impossible():
-    from answers import ENDS, branch_weights, sample, shares
+    from answers import branch_weights, shares
     from branches import branches
+    from samples import ENDS, sample
 
     names = [one.name for one in branches("juventas")]
     found = sample(
@@ -70,7 +71,8 @@ def test_chances_weigh_branches_and_nothing_is_impossible():
 
 
 def test_landers_of_one_bed_count_less():
-    from answers import CORRELATION, design_effect, sample
+    from answers import CORRELATION, design_effect
+    from samples import sample
 
     landers = rows({"rolling, at the surface": {"at_rest": 6}})
     assert design_effect(sample(landers, "juventas", "soil"), np.ones(6, dtype=bool)) == 1.0
@@ -80,7 +82,7 @@ def test_landers_of_one_bed_count_less():
 
 
 def test_cells_have_equal_area_and_go_east_from_the_date_line():
-    from answers import BANDS, SECTORS, cells
+    from samples import BANDS, SECTORS, cells
 
     random = np.random.default_rng(1)
     directions = random.standard_normal((24_000, 3))
@@ -107,7 +109,8 @@ def test_quantiles_weigh_landers():
 
 def test_ranks_are_those_within_branches() -> None:
     """Each branch falls, while both together rise."""
-    from answers import Sample, rank_correlation
+    from answers import rank_correlation
+    from samples import Sample
 
     branch = np.repeat([0, 1], 20)
     speed = np.concatenate([np.arange(20.0), 100.0 + np.arange(20.0)])
@@ -118,7 +121,57 @@ def test_ranks_are_those_within_branches() -> None:
 
 
 def test_who_misses_dimorphos_does_not_touch_down() -> None:
-    from answers import Sample, touched_down
+    from answers import touched_down
+    from samples import Sample
 
     rows = [{"speed": 0.05, "end": "at_rest"}, {"speed": 0.05, "end": "partner"}, {"speed": np.nan, "end": "escaped"}]
     assert touched_down(Sample(rows, np.zeros(3), np.ones(3))) == {"landers": 2, "at_rest": 1}
+
+
+def test_what_is_there_by_the_same_code_is_kept_with_what_it_cost(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    """Landers are made up; of three studies one was there already, and another was begun before."""
+    import forecast
+    from branches import branches
+    from landers import folder_name
+
+    three = branches("juventas")[:3]
+
+    def follow(branch, ground, count, work, workers, shown):
+        if branch != three[0]:
+            shown.progress(1.0, 2.0, "journeys")
+        return [{"end": end} for end in ("at_rest", "partner")]
+
+    monkeypatch.setattr(forecast, "follow", follow)
+    monkeypatch.setattr(forecast, "LANDERS", ("juventas",))
+    monkeypatch.setattr(forecast, "branches", lambda lander: three)
+    monkeypatch.setattr(forecast, "COUNTS", {"soil": 240})
+    (tmp_path / folder_name(three[1], "soil")).mkdir()
+    rows, costs = forecast.run_all(tmp_path, 1)
+    assert len(rows) == 6
+    said = capsys.readouterr().out
+    assert "2 of 3: juventas, small libration, ballistic, near end, soil" in said
+    assert said.count("1 of 2 landers at rest; kept, made by the same code of the engine") == 1
+    assert [(one["study"], one["landers"], one["from_nothing"]) for one in costs] == [
+        ("juventas, small libration, ballistic, near end, soil", 2, False),
+        ("juventas, large libration, at the surface, near end, soil", 2, True),
+    ]
+    assert "; about " in said
+
+
+def test_other_code_of_the_hard_ground_makes_its_landers_again() -> None:
+    from grounds import DrawnRestitution
+
+    from lithobrake.pipeline.runs.solver import function_identity
+
+    assert function_identity(DrawnRestitution()) == function_identity(DrawnRestitution())
+    assert function_identity(DrawnRestitution()) != function_identity(DrawnRestitution("other"))
+
+
+def test_numbers_of_the_page_have_their_digits_and_no_exponent() -> None:
+    from write_page import plain
+
+    assert [plain(one) for one in (0.0, 0.2, 0.183, 1.04, 23.4, 242.1, 58_357.6)] == [
+        "0", "0.20", "0.18", "1.0", "23", "240", "58000",
+    ]  # fmt: skip

@@ -2,7 +2,7 @@
 
     python validation/forecast_hera/answers.py [--out FOLDER]
 
-Reads landers.csv, writes forecast.json.
+Reads landers.csv and runs.json, writes forecast.json; the last step but one of forecast.py.
 
 Shares of a branch have a Dirichlet posterior: counts, divided by their design effect, plus one lander spread evenly
 over all ends (Perks' prior), so nothing is impossible. A lander's shares are those of its branches times their weights.
@@ -10,95 +10,37 @@ Numbers of the landers at rest weigh a branch by its weight times its share at r
 within branches.
 """
 
+import hashlib
+import json
 import sys
 import time
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+
+import hard_ground
 import numpy as np
 from branches import LANDERS, SCENARIOS, branches
-from forecast import FIRST, HERE, KINDS, TABLE, digest, package_files
+from harness import Row, command_line, origin, read_rows, write_document
+from landers import FIRST, KINDS, RUNS, TABLE
+from places import regions, semi_axes
+from samples import BINS, CELLS, ENDS, FACES, GROUNDS, Sample, categories, sample, those_down
 from scipy.stats import rankdata
 
-from lithobrake.analysis.highest_density import highest_density
+import lithobrake
 from lithobrake.study.touchdown_model import touchdown_version
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from harness import Row, command_line, origin, read_rows, write_document
-
-ENDS = ("at_rest", "escaped", "partner", "under_way")
-GROUNDS = ("soil", "hard")
+HERE = Path(__file__).parent
+FORECAST = "forecast.json"
+# What decides, beside the package, how the landers of a study file come down.
+SCRIPTS = ("branches.py", "descent.py", "grounds.py", "landers.py")
 INPUTS = ("mass_kg", *FIRST)
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 DRAWS, SEED = 4000, 1
 # Of landers on one bed, as `lithobrake plan` assumes it.
 CORRELATION = 0.07
-# What is scored of a lander at rest: lower edges of the bins; the last one is open.
-BINS: dict[str, tuple[float, ...]] = {
-    "time_min": (0, 10, 20, 40, 80, 160, 320, 640),
-    "contacts": (1, 2, 3, 5, 9, 17),
-    "first_speed_ratio": (0, 1e-9, 0.1, 0.2, 0.3, 0.4, 0.6),
-}
-FACES = ("+x", "-x", "+y", "-y", "+z", "-z")
-SECTORS, BANDS = 8, 3  # of longitude, and of the sine of latitude: cells of equal area on a ball
-CELLS = f"{BANDS} bands of sin(latitude) from the south, in each {SECTORS} sectors of longitude from -180 deg eastward"
-
-
-class Sample(NamedTuple):
-    """Landers of one spacecraft on one kind of ground, [count] each: rows, branch, weight."""
-
-    rows: list[Row]
-    branch: np.ndarray
-    weight: np.ndarray
-
-    def column(self, name: str) -> np.ndarray:
-        """Values of a column."""
-        return np.array([row[name] for row in self.rows])
-
-    @property
-    def beds(self) -> np.ndarray:
-        """Bed of each, by a number that no other branch has."""
-        return self.column("bed") + 1000 * self.branch
-
-    def where(self, chosen: np.ndarray) -> "Sample":
-        """The chosen landers, booleans [count]."""
-        rows = [row for row, one in zip(self.rows, chosen, strict=True) if one]
-        return Sample(rows, self.branch[chosen], self.weight[chosen])
-
-
-def sample(rows: list[Row], lander: str, ground: str) -> Sample:
-    """The landers of one spacecraft on a ground, each with its part of the weight of its branch.
-
-    A journey that failed says nothing of the lander, and is left out.
-    """
-    known = {one.name: (number, one.weight) for number, one in enumerate(branches(lander))}
-    own = [
-        row for row in rows
-        if (row["lander"], row["ground"]) == (lander, ground) and row["branch"] in known and row["end"] in ENDS
-    ]  # fmt: skip
-    branch = np.array([known[row["branch"]][0] for row in own])
-    counts = np.bincount(branch, minlength=len(known))
-    weight = np.array([known[row["branch"]][1] for row in own]) / counts[branch]
-    return Sample(own, branch, weight / weight.sum())
-
-
-def categories(of: Sample, name: str) -> tuple[np.ndarray, int]:
-    """Which category each lander is in, and how many there are."""
-    if name == "end":
-        return np.array([ENDS.index(end) for end in of.column("end")]), len(ENDS)
-    if name == "face":
-        return np.array([FACES.index(face) if face in FACES else -1 for face in of.column("face")]), len(FACES)
-    if name == "cell":
-        return cells(of.column("latitude_deg"), of.column("longitude_deg")), SECTORS * BANDS
-    values = of.column("time_s") / 60.0 if name == "time_min" else of.column(name)
-    return np.searchsorted(BINS[name], values, side="right") - 1, len(BINS[name])
-
-
-def cells(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> np.ndarray:
-    """Cell of each place: bands from south to north, in each the sectors eastward from longitude -180."""
-    band = np.floor((np.sin(np.radians(latitude_deg)) + 1.0) * 0.5 * BANDS).clip(0, BANDS - 1)
-    sector = np.floor((longitude_deg + 180.0) / 360.0 * SECTORS) % SECTORS
-    return (band * SECTORS + sector).astype(int)
 
 
 def shares(of: Sample, name: str, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -173,20 +115,6 @@ def number(of: Sample, name: str) -> dict[str, Any]:
     return levels | {"median_lower": float(lower), "median_upper": float(upper)}
 
 
-def regions(of: Sample) -> list[dict[str, Any]]:
-    """Smallest regions that hold half and 95 % of the landers at rest, of as many of each branch as it weighs."""
-    random = np.random.default_rng(SEED)
-    size = int((1.0 / of.weight.max()) * of.weight.sum())
-    rows = random.choice(len(of.rows), size, replace=False, p=of.weight / of.weight.sum())
-    points = np.array([[of.rows[row][f"position_{axis}"] for axis in "xyz"] for row in rows])
-    found = highest_density(points)
-    return [
-        {"share": one.share, "area_m2": one.area_m2, "largest_extent_m": one.largest_extent_m,
-         "outlines": [np.round(line, 2).tolist() for line in one.outlines]}
-        for one in found.regions
-    ]  # fmt: skip
-
-
 def what_decides(of: Sample) -> list[dict[str, Any]]:
     """How each uncertain number goes with the end, the time to rest and the first rebound of landers that touch down.
 
@@ -231,11 +159,6 @@ def within(values: np.ndarray, branch: np.ndarray) -> np.ndarray:
     return found
 
 
-def those_down(of: Sample) -> Sample:
-    """Those that touch down on Dimorphos."""
-    return of.where(np.isfinite(of.column("speed")))
-
-
 def touched_down(of: Sample) -> dict[str, int]:
     """How many landers touched down on Dimorphos, and how many of these came to rest there."""
     ends = those_down(of).column("end")
@@ -272,23 +195,36 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
         "touched_down": touched_down(of),
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
-        "regions": regions(resting),
+        "regions": regions(resting, semi_axes()) if ground == "soil" else [],
         "by_branch": by_branch(of, lander),
         "what_decides": what_decides(of) if ground == "soil" else [],
         "scored": scored,
     }
 
 
-def main() -> None:
-    """Write the forecast."""
-    options = command_line(__doc__, out=HERE).parse_args()
-    rows = read_rows(options.out / TABLE, KINDS)
+def digest(*paths: Path) -> str:
+    """SHA-256 of files one after the other."""
+    found = hashlib.sha256()
+    for path in paths:
+        found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def package_files() -> list[Path]:
+    """All that makes a study, in the order of their paths."""
+    return sorted(Path(lithobrake.__file__).parent.rglob("*.py"))
+
+
+def write_answers(out: Path) -> dict[str, Any]:
+    """Write the forecast beside its landers, and return it; the code is that by which the landers were made."""
+    rows = read_rows(out / TABLE, KINDS)
+    code = json.loads((out / RUNS).read_text(encoding="utf-8"))["code_sha256"]
     document = {
         "made": time.strftime("%Y-%m-%d"),
         "sha256": {
             "studies": {name: digest(SCENARIOS / f"{name}.toml") for name in LANDERS},
-            "branches": digest(HERE / "branches.py", HERE / "descent.py", HERE / "grounds.py"),
-            "code": digest(*package_files()), "results": digest(options.out / TABLE),
+            "branches": digest(*(HERE / name for name in SCRIPTS), Path(hard_ground.__file__)),
+            "code": code, "results": digest(out / TABLE),
         },
         "touchdown_version": touchdown_version(),
         "bins": {name: list(edges) for name, edges in BINS.items()} | {
@@ -297,7 +233,13 @@ def main() -> None:
         "landers": {name: {ground: answer(rows, name, ground) for ground in GROUNDS} for name in LANDERS},
         **origin("validation/forecast_hera/answers.py"),
     }  # fmt: skip
-    write_document(options.out / "forecast.json", document)
+    write_document(out / FORECAST, document)
+    return document
+
+
+def main() -> None:
+    """Write the forecast."""
+    write_answers(command_line(__doc__, out=HERE).parse_args().out)
 
 
 if __name__ == "__main__":

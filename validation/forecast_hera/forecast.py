@@ -1,132 +1,122 @@
-"""The forecast of the landings of Juventas and Milani on Dimorphos, from nothing: studies of all branches, and answers.
+"""The forecast of the landings of Juventas and Milani on Dimorphos, from nothing: one command.
 
-    python validation/forecast_hera/forecast.py --work FOLDER [--landers NAME ...] [--grounds NAME ...] [--workers N]
+    python validation/forecast_hera/forecast.py --work FOLDER [--out FOLDER] [--workers N]
 
 Runs the study of every branch (branches.py) on soil, and on hard ground with a restitution drawn from 0 to 1, each in a
-folder of its own in FOLDER; what is there is not run again. Writes landers.csv, a line for each lander, as each study
-ends, and runs.json. Then answers.py gives forecast.json, and write_page.py docs/forecast_hera.md.
+folder of its own in --work. One that is there already, by the same code of the engine, is kept; one that was cut short
+goes on. Then writes to --out: landers.csv, a line for each lander; runs.json, what each study cost; forecast.json, the
+answers; and the page with its figures, which go to docs/ (and showcase/) where --out is this folder. Last it compares
+the forecast with the one that stood here before.
 """
 
-import csv
-import hashlib
-import io
+import json
+import os
 import sys
 import time
-from itertools import product
 from pathlib import Path
 
-import numpy as np
-from branches import LANDERS, Branch, branches
-from grounds import RESTITUTION, hard_touchdown
-
-import lithobrake
-from lithobrake.pipeline.site import Site
-from lithobrake.results import StudyResults, Table
-from lithobrake.study import StudySource
-
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from harness import Row, command_line, origin, read_rows, write_document
 
-HERE = Path(__file__).parent
-TABLE = "landers.csv"
-WORDS = ("lander", "branch", "ground", "end", "face")
-KINDS = dict.fromkeys(WORDS, str)
-COUNTS = {"soil": 240, "hard": 400}  # landers of all branches
-# Columns of the first touchdown, by what the table calls them.
-FIRST = {
-    "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
-    "grain_friction": "grain.friction", "grain_restitution": "grain.restitution",
-    "grain_cohesion_n": "grain.cohesion_force", "young_modulus": "grain.young_modulus",
-    "hull_restitution": "lander.restitution", "hull_friction": "lander.friction",
-    "hull_cohesion_n": "lander.cohesion_force", "lander_mass": "lander.mass",
-}  # fmt: skip
+from answers import FORECAST, HERE, digest, package_files, write_answers
+from branches import LANDERS, Branch, branches
+from compare import comparison
+from harness import Row, command_line, origin, write_document
+from landers import COUNTS, RUNS, TABLE, folder_name, follow, write_landers
+from write_page import DOCS, write_page
 
+import showcase
+from lithobrake.campaign import duration
+from lithobrake.pipeline.job import Silent
 
-# Columns of the table of journeys.
-OWN = (
-    "bed", "end", "time_s", "latitude_deg", "longitude_deg", "position_x", "position_y", "position_z", "distance",
-    "contacts", "touchdowns", "face", "tilt_deg",
-)  # fmt: skip
+# CPU time of a lander, to tell the time left [s].
+LANDER_CPU = {"soil": 4.5, "hard": 0.1}
+SHOWN_EVERY = 60.0  # s
 
 
-def run_branch(branch: Branch, ground: str, work: Path, workers: int | None) -> StudyResults:
-    """The study of a branch on soil or on hard ground."""
-    tables, model = branch.tables(COUNTS[ground]), None
-    if ground == "hard":
-        tables["lander"]["restitution"], model = RESTITUTION, hard_touchdown
-    return lithobrake.run(tables, work / f"{branch.folder}_{ground}", workers=workers, model=model, report=False)
+class Watch(Silent):
+    """Notes whether a study has work to do, and shows now and then how far it is."""
+
+    def __init__(self) -> None:
+        """Nothing was done."""
+        self.worked, self.shown = False, time.monotonic()
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        """Show how far a piece of work is."""
+        self.worked = True
+        if time.monotonic() - self.shown > SHOWN_EVERY:
+            self.shown = time.monotonic()
+            print(f"    {what}: {done:.0f} of {total:.0f}", flush=True)
 
 
-def rows_of(branch: Branch, ground: str, study: StudyResults) -> list[Row]:
-    """A row for each lander of a study."""
-    journeys, touchdowns = study.journeys, study.touchdowns
-    mass = Site(StudySource.of_tables(branch.tables(COUNTS[ground])).study).sampled(journeys.row_count)["mass"]
-    first = {int(number): row for row, number in enumerate(touchdowns["journey"]) if touchdowns["touchdown"][row] == 0}
-    rows = []
-    for number in range(journeys.row_count):
-        row: Row = {
-            "lander": branch.lander, "branch": branch.name, "ground": ground, "journey": number,
-            "mass_kg": float(mass[number]), **{name: journeys[name][number] for name in OWN},
-        }  # fmt: skip
-        place = first.get(number)
-        for title, name in FIRST.items():
-            row[title] = np.nan if place is None or name not in touchdowns else float(touchdowns[name][place])
-        row["first_speed_ratio"] = speed_ratio(touchdowns, place)
-        rows.append(row)
-    return rows
+def cpu_seconds() -> float:
+    """CPU time of this process and of those that it started and that have ended [s]."""
+    return sum(os.times()[:4])
 
 
-def speed_ratio(touchdowns: Table, place: int | None) -> float:
-    """Speed out over speed in at the first touchdown, 0 where the lander stays."""
-    if place is None:
-        return float("nan")
-    if touchdowns["outcome"][place] == "captured":
-        return 0.0
-    return float(touchdowns["speed_out"][place] / touchdowns["impact.speed"][place])
+def expected_cpu(branch: Branch, ground: str) -> float:
+    """CPU time that the landers of a branch take, roughly [s]."""
+    return LANDER_CPU[ground] * branch.weight * COUNTS[ground]
 
 
-def digest(*paths: Path) -> str:
-    """SHA-256 of files one after the other."""
-    found = hashlib.sha256()
-    for path in paths:
-        found.update(path.read_bytes())
-    return found.hexdigest()
+def run_part(branch: Branch, ground: str, count: int, work: Path, workers: int | None) -> tuple[list[Row], Row | None]:
+    """The landers of a branch on a ground, and what they cost; None where they were there already."""
+    started, cpu, watch = time.perf_counter(), cpu_seconds(), Watch()
+    is_new = not (work / folder_name(branch, ground)).exists()
+    rows = follow(branch, ground, count, work, workers, watch)
+    if not watch.worked:
+        return rows, None
+    cost = {"cpu_s": round(cpu_seconds() - cpu, 1), "wall_s": round(time.perf_counter() - started, 1)}
+    return rows, {**cost, "from_nothing": is_new, "date": time.strftime("%Y-%m-%d"), "load": os.getloadavg()[0]}
 
 
-def package_files() -> list[Path]:
-    """All that makes a study, in the order of their paths."""
-    return sorted(Path(lithobrake.__file__).parent.rglob("*.py"))
+def run_all(work: Path, workers: int | None) -> tuple[list[Row], list[Row]]:
+    """The landers of all branches on both grounds, and what each study cost; the costs stay beside the studies."""
+    parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in branches(lander)]
+    path = work / RUNS
+    costs: dict[str, Row] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    landers, spent, fresh, left = [], 0.0, 0.0, sum(expected_cpu(*one) for one in parts)
+    for number, (branch, ground) in enumerate(parts, 1):
+        name, started = f"{branch.lander}, {branch.name}, {ground}", time.perf_counter()
+        print(f"{number} of {len(parts)}: {name}", flush=True)
+        rows, cost = run_part(branch, ground, COUNTS[ground], work, workers)
+        landers += rows
+        left -= expected_cpu(branch, ground)
+        if cost is not None:
+            costs[name] = {"landers": len(rows), **cost}
+            write_document(path, costs)
+            spent, fresh = spent + time.perf_counter() - started, fresh + expected_cpu(branch, ground)
+        print(
+            f"    {in_words(rows, cost)}{f'; about {duration(left * spent / fresh)} left' if fresh else ''}", flush=True
+        )
+    return landers, [{"study": name, **cost} for name, cost in costs.items()]
 
 
-def add_rows(path: Path, rows: list[Row]) -> None:
-    """Add the rows of a study to a CSV table on disk, all or none."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-    if not path.exists():
-        writer.writeheader()
-    for row in rows:
-        writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
-    with path.open("a", encoding="utf-8") as file:
-        file.write(text.getvalue())
+def in_words(rows: list[Row], cost: Row | None) -> str:
+    """Ends of landers and what they cost."""
+    rests = sum(row["end"] == "at_rest" for row in rows)
+    words = f"{rests} of {len(rows)} landers at rest"
+    if cost is None:
+        return f"{words}; kept, made by the same code of the engine"
+    return f"{words}; {duration(cost['wall_s'])}, {duration(cost['cpu_s'])} of CPU"
 
 
 def main() -> None:
-    """Run what is missing and note every lander."""
-    options = command_line(__doc__, work=Path, out=HERE, landers=LANDERS, grounds=tuple(COUNTS), workers=0).parse_args()
-    options.work.mkdir(parents=True, exist_ok=True)
-    table, started = options.out / TABLE, time.perf_counter()
-    done = {(row["lander"], row["branch"], row["ground"]) for row in read_rows(table, KINDS)}
-    for lander, ground in product(options.landers, options.grounds):
-        for branch in branches(lander):
-            if (lander, branch.name, ground) in done:
-                continue
-            study = run_branch(branch, ground, options.work, options.workers or None)
-            add_rows(table, rows_of(branch, ground, study))
-            ends = ", ".join(f"{end} {one['count']}" for end, one in study.summary["results"]["ends"].items())
-            print(f"{lander}, {branch.name}, {ground}: {ends}", flush=True)
-    command = "validation/forecast_hera/forecast.py --work FOLDER"
-    made = {"wall_s": round(time.perf_counter() - started), "code_sha256": digest(*package_files())}
-    write_document(options.out / "runs.json", origin(command) | made)
+    """Run what is missing, and write and compare the forecast."""
+    options = command_line(__doc__, work=Path, out=HERE, workers=0).parse_args()
+    before = json.loads((HERE / FORECAST).read_text(encoding="utf-8"))
+    for folder in (options.work, options.out):
+        folder.mkdir(parents=True, exist_ok=True)
+    landers, costs = run_all(options.work, options.workers or None)
+    write_landers(options.out / TABLE, landers)
+    totals = {key: round(sum(one[key] for one in costs)) for key in ("cpu_s", "wall_s")}
+    made = {**totals, "code_sha256": digest(*package_files()), "studies": costs}
+    write_document(options.out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
+    after = write_answers(options.out)
+    is_kept = options.out.resolve() == HERE
+    write_page(options.out, DOCS if is_kept else options.out)
+    if is_kept:
+        showcase.keep(HERE, DOCS, showcase.FOLDER)
+    print("\n".join(comparison(before, after)))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from answers import BINS, ENDS, FACES, cells
+from samples import BINS, ENDS, FACES, cells
 
 HERE = Path(__file__).parent
 

@@ -1,9 +1,12 @@
-"""Write docs/forecast_hera.md and its figures from landers.csv and forecast.json.
+"""Write docs/forecast_hera.md and its figures from landers.csv, runs.json, forecast.json and variants.json.
 
-python validation/forecast_hera/write_page.py
+    python validation/forecast_hera/write_page.py
+
+The last step of forecast.py.
 """
 
 import json
+import math
 import sys
 from collections.abc import Sequence
 from itertools import product
@@ -12,12 +15,14 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from answers import BINS, ENDS, FACES, GROUNDS
+
+from answers import FORECAST, HERE
 from figures import draw_map, draw_shares
-from forecast import HERE, KINDS, TABLE
-from harness import read_rows
+from harness import command_line, read_rows
+from landers import KINDS, RUNS, TABLE
 from page_text import broken
-from page_words import ABOUT, LEFT_OUT, METHOD, REPRODUCE, SCORING
+from page_words import ABOUT, LEFT_OUT, METHOD, REPRODUCE, SCORING, VARIANTS_SAY
+from samples import BINS, ENDS, FACES, GROUNDS
 
 DOCS = Path(__file__).parents[2] / "docs"
 UNLIKELY = 0.02
@@ -27,11 +32,16 @@ END_WORDS = {
     "at_rest": "at rest on Dimorphos", "escaped": "away from both bodies", "partner": "on Didymos",
     "under_way": "still moving after three days",
 }  # fmt: skip
+# Words of a number, and its unit in SI.
 NUMBER_WORDS = {
     "time_s": ("time from the first contact to rest [min]", 60.0), "contacts": ("contacts", 1.0),
     "distance": ("distance from the aim to rest [m]", 1.0),
     "first_speed_ratio": ("first rebound speed over impact speed", 1.0),
 }  # fmt: skip
+VARIANT_WORDS = {
+    "held_speed 0.03": "grains are held when slower than 0.03 of the lander, not 0.1 (`contact.held_speed`)",
+    "shape model alone": "shape of before DART, without Didymos, not an ellipsoid without Didymos",
+}
 BIN_WORDS = {
     "time_min": "minutes from the first contact to rest", "contacts": "contacts to rest",
     "first_speed_ratio": "first rebound speed over impact speed",
@@ -45,14 +55,22 @@ INPUT_WORDS = {
     "lander_mass": "mass of the lander",
 }  # fmt: skip
 DIGEST_WORDS = {
-    "branches": "branches.py, descent.py, grounds.py", "code": "all files of the package, by path",
-    "results": "landers.csv",
+    "branches": "branches.py, descent.py, grounds.py, landers.py, hard_ground.py",
+    "code": "all files of the package, by path", "results": "landers.csv",
 }  # fmt: skip
 
 
 def percent(one: dict[str, float]) -> str:
     """A share with its interval."""
     return f"{100 * one['share']:.0f} % ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
+
+
+def plain(value: float, digits: int = 2) -> str:
+    """A number to so many digits, without an exponent."""
+    if value == 0.0:
+        return "0"
+    places = digits - 1 - math.floor(math.log10(abs(value)))
+    return f"{round(value, places):.{max(places, 0)}f}"
 
 
 def table(head: Sequence[str], rows: list[list[str]]) -> str:
@@ -76,7 +94,8 @@ def numbers_table(landers: Answers) -> str:
     rows = []
     for name, ground in product(landers, GROUNDS):
         for key, (words, size) in NUMBER_WORDS.items():
-            one = {level: f"{value / size:.2g}" for level, value in landers[name][ground]["at_rest"][key].items()}
+            found = landers[name][ground]["at_rest"][key]
+            one = {level: f"{v:.0f}" if key == "contacts" else plain(v / size) for level, v in found.items()}
             median = f"{one['q50']} ({one['median_lower']}-{one['median_upper']})"
             rows.append([name.capitalize(), GROUND_WORDS[ground], words, one["q05"], median, one["q95"]])
     return table(("lander", "ground", "quantity", "5 %", "median (90 % interval)", "95 %"), rows)
@@ -84,14 +103,28 @@ def numbers_table(landers: Answers) -> str:
 
 def regions_table(landers: Answers) -> str:
     """Where."""
+    rows = []
+    for name in landers:
+        for one in landers[name]["soil"]["regions"]:
+            area, lower, upper = (plain(one[key], 3) for key in ("area_m2", "lower", "upper"))
+            ground = f"{100 * one['of_ground']:.0f} %"
+            rows.append([name.capitalize(), f"{100 * one['share']:.0f} %", f"{area} ({lower}-{upper})", ground])
+    return table(("lander", "share of the landers", "area [m2]", "part of all ground"), rows)
+
+
+def variants_table(path: Path) -> str:
+    """What choices are worth."""
     rows = [
-        [name.capitalize(), f"{100 * one['share']:.0f} %", f"{one['area_m2']:.3g}", f"{one['largest_extent_m']:.0f}"]
-        for name in landers
-        for one in landers[name]["soil"]["regions"]
-    ]
-    return table(
-        ("lander", "share of the landers at rest", "area of the smallest region [m2]", "largest extent [m]"), rows
-    )
+        [
+            one["lander"].capitalize(), VARIANT_WORDS[one["variant"]],
+            f"{one['at_rest']} and {one['at_rest_before']} of {one['landers']}",
+            f"{plain(one['median_time_s'] / 60.0)} and {plain(one['median_time_before_s'] / 60.0)}",
+            f"{plain(one['time_ratio'])} ({plain(one['lower'])}-{plain(one['upper'])})",
+        ]
+        for one in json.loads(path.read_text(encoding="utf-8"))["compared"]
+    ]  # fmt: skip
+    head = ("lander", "variant", "at rest: with it and without", "median time to rest [min]", "ratio (90 % interval)")
+    return table(head, rows)
 
 
 def faces_table(landers: Answers) -> str:
@@ -176,18 +209,17 @@ def first_line(landers: Answers) -> str:
     """The answer."""
     said = [f"{name.capitalize()} with {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
     hits = [
-        f"{of['soil']['touched_down']['at_rest']} of the {of['soil']['touched_down']['landers']} landers of "
-        f"{name.capitalize()}"
+        f"{of['soil']['touched_down']['at_rest']} of {of['soil']['touched_down']['landers']} of {name.capitalize()}"
         for name, of in landers.items()
     ]
     return (
-        f"They come to rest on Dimorphos: {', '.join(said)} (90 % intervals). Of those that touch down at all, "
-        f"{' and '.join(hits)} do."
+        f"They come to rest on Dimorphos: {', '.join(said)} (90 % intervals). Of the simulated landers that touch down "
+        f"at all, {' and '.join(hits)} come to rest."
     )
 
 
-def page(document: dict[str, Any]) -> str:
-    """The text of the page."""
+def page(document: dict[str, Any], cost: str) -> str:
+    """The text of the page; cost: what the landers took, in a sentence."""
     landers = document["landers"]
     counts = ", ".join(
         f"{name.capitalize()} {of['soil']['landers']} on soil and {of['hard']['landers']} on hard ground"
@@ -201,19 +233,33 @@ def page(document: dict[str, Any]) -> str:
         broken(METHOD["faces"]), faces_table(landers),
         broken(METHOD["decides"]), decides_table(landers),
         broken(METHOD["branches"]), branches_table(landers),
+        broken(METHOD["variants"]), variants_table(HERE / "variants.json"), broken(VARIANTS_SAY),
         broken(METHOD["priors"]), (HERE / "priors.md").read_text(encoding="utf-8").strip(),
         broken(METHOD["falsified"].format(unlikely=100 * UNLIKELY)), falsified_table(landers),
-        by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE), digests_table(document["sha256"]),
+        by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE.format(cost=cost)), digests_table(document["sha256"]),
     ]  # fmt: skip
     return "\n\n".join(parts) + "\n"
 
 
+def cost_words(runs: dict[str, Any]) -> str:
+    """What the landers took, in a sentence; none where it is not noted."""
+    if "cpu_s" not in runs:
+        return ""
+    return f"All studies took {runs['cpu_s'] / 60.0:.0f} minutes of CPU time."
+
+
+def write_page(out: Path, docs: Path) -> None:
+    """Write page and figures of the forecast in a folder to another."""
+    document = json.loads((out / FORECAST).read_text(encoding="utf-8"))
+    draw_shares(document["landers"], docs / "forecast_hera_shares.png")
+    draw_map(read_rows(out / TABLE, KINDS), document["landers"], docs / "forecast_hera_map.png")
+    runs = json.loads((out / RUNS).read_text(encoding="utf-8"))
+    (docs / "forecast_hera.md").write_text(page(document, cost_words(runs)), encoding="utf-8")
+
+
 def main() -> None:
-    """Write page and figures."""
-    document = json.loads((HERE / "forecast.json").read_text(encoding="utf-8"))
-    draw_shares(document["landers"], DOCS / "forecast_hera_shares.png")
-    draw_map(read_rows(HERE / TABLE, KINDS), document["landers"], DOCS / "forecast_hera_map.png")
-    (DOCS / "forecast_hera.md").write_text(page(document), encoding="utf-8")
+    """Write them to docs/."""
+    write_page(command_line(__doc__, out=HERE).parse_args().out, DOCS)
 
 
 if __name__ == "__main__":

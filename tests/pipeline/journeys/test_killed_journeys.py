@@ -1,26 +1,35 @@
-"""Kill -9 of the coordinator, of a worker, of both, amid journeys on soil; and a Dask cluster that loses a worker."""
+"""Kill -9 of the coordinator, of a worker, of both, amid journeys on soil; and a Dask cluster that loses a worker.
+
+The body of the study rolls, and its page is made.
+"""
 
 import random
 import shutil
 import time
+from dataclasses import replace
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import lithobrake
 from lithobrake.campaign import Ledger, RunStatus, read_records
 from lithobrake.pipeline.journeys.journey_tables import FILES
+from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
-from lithobrake.study import StudySource
+from lithobrake.report import write_report
+from lithobrake.smallbody import fly
+from lithobrake.study import StudySource, read_study
 
 from ...campaign.dask_cluster import Cluster, cluster
 from ..killed_studies import VICTIMS, kill, ledger, start
 from .soil_journeys import STUDY
 
-# Touchdowns that the ledger has when something is killed; there are 41 in all.
+# Touchdowns that the ledger has when something is killed; there are 30 in all.
 MOMENTS = (4, 10, 16, 24)
 WORKERS = 2
+ROLLING = STUDY.replace("[site]\n", "[site.rotation]\nyaw_deg = 30.0\nroll_deg = 60.0\n[site]\n")
 TABLES = (*FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
@@ -30,7 +39,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processe
 def calm(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the study, never killed."""
     folder = tmp_path_factory.mktemp("calm")
-    (folder / "soil.toml").write_text(STUDY)
+    (folder / "soil.toml").write_text(ROLLING)
     return lithobrake.run(folder / "soil.toml", folder / "out", workers=WORKERS, report=False).folder
 
 
@@ -110,3 +119,20 @@ def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: 
         run_study(source, begun, until="summary", scheduler=made.address, shown=shown)
         assert shown.worker.poll() is not None
     assert_same(begun, calm)
+
+
+def test_the_page_of_a_study_on_soil_of_a_body_that_rolls(calm: Path) -> None:
+    """Flights begin at the times of that motion, and end as the next touchdowns begin; on the page all landers rest."""
+    results = lithobrake.open_study(calm)
+    page = write_report(calm).read_text(encoding="utf-8")
+    assert "6 of 6" in page[: page.index("</header>")]
+    body, arcs, touchdowns = Site(read_study(calm / "study.toml")).body, results.arcs, results.touchdowns
+    state = [np.column_stack([arcs[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity")]
+    number = {(int(a), int(b)): k for k, (a, b) in enumerate(zip(arcs["sample"], arcs["arc"], strict=True))}
+    after = np.flatnonzero(touchdowns["touchdown"] > 0)
+    flights = [number[int(touchdowns["journey"][k]), int(touchdowns["touchdown"][k]) - 1] for k in after]
+    speed = touchdowns["impact.speed"][after]
+    again = fly(body, *state, 1e5, gravity="table", start_time=arcs["clock_s"])
+    assert again.impact_speed[flights] == pytest.approx(speed, rel=1e-6)
+    uniform = fly(replace(body, rotation=None), *state, 1e5, gravity="table", start_time=arcs["clock_s"])
+    assert np.abs(uniform.impact_speed[flights] / speed - 1.0).max() > 0.01

@@ -1,0 +1,48 @@
+"""Keep the forecast in showcase/forecast_hera: its answers, figures and hashes, the last step of forecast.py.
+
+python validation/forecast_hera/showcase.py
+"""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+
+from answers import FORECAST, HERE
+from harness import ROOT, write_document
+from landers import RUNS
+
+FOLDER = ROOT / "showcase" / "forecast_hera"
+FIGURES = ("forecast_hera_shares.png", "forecast_hera_map.png")
+
+
+def without_outlines(of: dict[str, Any]) -> dict[str, Any]:
+    """The answers of a lander on a ground, without the edges of its regions, which are long."""
+    regions = [{key: value for key, value in one.items() if key != "outlines"} for one in of["regions"]]
+    return {**of, "regions": regions}
+
+
+def keep(out: Path, docs: Path, folder: Path) -> None:
+    """Copy answers and figures of the forecast of a folder, and note how it was made."""
+    document, runs = (json.loads((out / name).read_text(encoding="utf-8")) for name in (FORECAST, RUNS))
+    (folder / "figures").mkdir(parents=True, exist_ok=True)
+    for name in FIGURES:
+        shutil.copy(docs / name, folder / "figures" / name)
+    landers = {
+        name: {ground: without_outlines(of) for ground, of in grounds.items()}
+        for name, grounds in document["landers"].items()
+    }
+    write_document(folder / "answers.json", {"made": document["made"], "bins": document["bins"], "landers": landers})
+    write_document(folder / "origin.json", {**runs, "sha256": document["sha256"]})
+
+
+def main() -> None:
+    """Keep the forecast that stands here."""
+    keep(HERE, ROOT / "docs", FOLDER)
+
+
+if __name__ == "__main__":
+    main()
