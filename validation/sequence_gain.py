@@ -236,7 +236,7 @@ def page_tables() -> str:
         lines.append(f"| {runs} | {kind} | {one['repeats']} | {widths} | {one['ratio']:.2f} ({low:.2f}-{high:.2f}) |")
     lines += [
         "",
-        "| landings | parts of soil, attitude, beds | random points | sequence | sequence, attitude in the regression |",
+        "| landings | parts of soil, attitude, beds | random points | sequence | sequence, attitude as a regressor |",
         "|---" * 5 + "|",
     ]
     found: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
