@@ -23,8 +23,8 @@ def soil_problems(study: Study) -> Iterator[str]:
         return
     if study.design.side_runs:
         yield (
-            "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions their "
-            "own; leave one of the two out"
+            "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions "
+            "their own; leave one of the two out"
         )
     yield from _emulator_problems(study)
     for name, soil in study.soil.items():
