@@ -266,8 +266,12 @@ def _inputs(data: RunsPage) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
     found, rows = _found_inputs(data), []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
-    for name, law in ((name, law) for name, law in _uncertain(data.study) if name in data.runs):
-        rows.append([*input_cells(name, law), "yes" if name in found else "no"])
+    for name, law in _uncertain(data.study):
+        if name in data.runs:
+            rows.append([*input_cells(name, law), "yes" if name in found else "no"])
+        elif name.startswith("soil."):
+            # A run draws the soils of all regions, and meets those that it comes to.
+            rows.append([*input_cells(name, law), ""])
     keys = {"impact point": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}
     drawn = [words for words in drawn_things(data) if not (words == "impact point" and "impact.place.x" in named)]

@@ -162,7 +162,7 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
 
 def soil_tables(data: JourneyPage) -> list[PageTable]:
     """What becomes of the landers by the soil of the region that they come down in; none for a study of one soil."""
-    columns = ["soil", "part of the surface", "touchdowns", "of these at rest", "of all journeys at rest there"]
+    columns = ["soil", "part of the surface", "touchdowns", "of these at rest", "journeys that end at rest there"]
     rows = [
         [
             name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests) if one.rests else "",

@@ -2,6 +2,8 @@
 
 import math
 import shutil
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,7 @@ from lithobrake.vocabulary.quantities import ELSEWHERE
 from ...smallbody.meshes import sphere_mesh
 
 RADIUS, DENSITY, FREQUENCY = 80.0, 2000.0, 8
+COUNT = 16
 # The least restitution with which a lander bounces off.
 BOUNCES = 0.2
 SINK = {"latitude_deg": [-90.0, 0.0], "grain": {"restitution": 0.1}}
@@ -49,12 +52,30 @@ TABLES: dict[str, Any] = {
         "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
         "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0},
     },
-    "journey": {"count": 24, "duration": 20000.0},
+    "journey": {"count": COUNT, "duration": 20000.0},
     "flight": {"gravity": "exact"},
 }  # fmt: skip
 
 
-@pytest.fixture(scope="session")
+class Here(Executor):
+    """Makes touchdowns at once, in this process: another would take longer to start than all of them."""
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
+        """Call a function."""
+        future: Future[Any] = Future()
+        future.set_result(function(*args, **kwargs))
+        return future
+
+
+@pytest.fixture(scope="module", autouse=True)
+def in_this_process() -> Iterator[None]:
+    """No study of this file starts another process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lithobrake.pipeline.study_run.LocalExecutor", lambda worker_count: Here())
+        yield
+
+
+@pytest.fixture(scope="module")
 def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A ball as a mesh."""
     vertices, faces = sphere_mesh(FREQUENCY)
@@ -177,25 +198,24 @@ def test_every_touchdown_is_on_the_soil_of_its_place(made: StudyResults, body_fi
     assert set(expected.tolist()) == {"sink", "strip", ELSEWHERE}
     assert (table["grain.restitution"] == np.where(north, 0.5, 0.1)).all()
     study = with_site_gravity(read(body_file, {"sink": SINK, "strip": STRIP}))
-    in_strip, design = Soils(Site(study)).drawn(range(24))["soil.strip.grain.friction"], DrawnDesign(study)
+    in_strip, design = Soils(Site(study)).drawn(range(COUNT))["soil.strip.grain.friction"], DrawnDesign(study)
     journey = table["journey"].astype(int)
-    own = np.array([design.own_soil(number)["grain.friction"] for number in range(24)])
+    own = np.array([design.own_soil(number)["grain.friction"] for number in range(COUNT)])
     # One draw of a journey for the strip, wherever it was before, and one for all other ground.
     assert table["grain.friction"].tolist() == np.where(strip, in_strip[journey], own[journey]).tolist()
-    back = [n for n in range(24) if len(set(table["soil"][journey == n].tolist())) > 1]
+    back = [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
     assert back
 
 
 def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_file: Path) -> None:
     given = tables(body_file, {"sink": SINK, "strip": STRIP}, journey={"count": 2})
     given["bed"]["bed_count"] = 2
-    given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 0.0}
+    given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 0.0, "frame": "body_fixed"}
     for pole, restitution in ((-1.0, 0.1), (1.0, 0.5)):
         # Straight down to a place beside the pole, 170 degrees east.
         down = {"position": [-10.0, 1.7, pole * (RADIUS + 2.0)], "velocity": [0.0, 0.0, -0.03 * pole]}
-        study = with_site_gravity(
-            StudySource.of_tables(given | {"delivery": given["delivery"] | {"release": down}}).study
-        )
+        flown = given | {"delivery": given["delivery"] | {"release": down}}
+        study = with_site_gravity(StudySource.of_tables(flown).study)
         design = DrawnDesign(study)
         assert [row["grain.restitution"] for row in design.rows] == [restitution] * 2
         assert [row["grain.friction"] for row in design.rows] == [design.own_soil(n)["grain.friction"] for n in (0, 1)]
@@ -223,10 +243,10 @@ def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
 
 
 def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
-    journey = {"count": 8}
+    few = {"journey": {"count": 4}, "bed": {"bed_count": 2}}
     everywhere = {"latitude_deg": [-90.0, 90.0], "grain": {"restitution": 0.5}}
-    run_touchdowns(tables(body_file, {}, journey=journey), tmp_path / "one")
-    run_touchdowns(tables(body_file, {"all": everywhere}, journey=journey), tmp_path / "all")
+    run_touchdowns(tables(body_file, {}, **few), tmp_path / "one")
+    run_touchdowns(tables(body_file, {"all": everywhere}, **few), tmp_path / "all")
     for name in ("journeys.csv", "arcs.csv", "designs/drawn.csv", "designs/touchdowns.csv"):
         assert (tmp_path / "all" / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
     plain, named = ((tmp_path / name / "touchdowns.csv").read_text().splitlines() for name in ("one", "all"))

@@ -1,6 +1,7 @@
 """Maps of the ground: true areas, metres from the aim point, graticule, poles, and nothing lost."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -172,3 +173,14 @@ def test_both_grounds_are_drawn_over_one_window() -> None:
     assert "50 % (40-60 %)" in list(words(figure))
     # All lie on the other side of the body: the shares alone are drawn.
     assert [axes.get_xlabel()[:5] for axes in alone.axes] == ["share"]
+
+
+def test_edges_of_soils_are_dotted_where_they_lie() -> None:
+    many = shown(np.array([9.0, 10.0, 11.0]), np.array([178.0, 179.0, 180.0]))
+    figure = local_figure(replace(many, soils={"ponds": [ring(10.0, 179.0, 1.0)], "elsewhere": []}))
+    assert "edges of soils (ponds)" in words(figure)
+    (edge,) = [line for line in figure.axes[0].lines if line.get_linestyle() == "--" and line.get_linewidth() == 1.1]
+    # A degree on a ball of 80 m is 1.4 m.
+    corners = np.abs(np.array([np.asarray(edge.get_xdata()), np.asarray(edge.get_ydata())]))
+    assert corners[1] == pytest.approx(80.0 * np.pi / 180.0, rel=1e-2)
+    assert corners[0] == pytest.approx(80.0 * np.pi / 180.0 * np.cos(np.radians(10.0)), rel=1e-2)
