@@ -1,20 +1,14 @@
-"""Studies of these tests take little time where nothing of theirs is looked at: fits and pictures."""
+"""Studies in the process of these tests are quick."""
 
 from collections.abc import Iterator
 
 import pytest
 
-from lithobrake.emulator import validation
-from lithobrake.report.figures.style import STYLE
+from ..quick_studies import quick_studies
 
 
 @pytest.fixture(scope="module", autouse=True)
-def quick_studies() -> Iterator[None]:
-    """Emulators are fitted anew without each quarter of the beds, and not without each of them; pictures are coarse.
-
-    What the emulator is worth is tested in tests/emulator, and the page in tests/report.
-    """
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validation, "MOST_FOLDS", 4)
-        patch.setitem(STYLE, "savefig.dpi", 50)
+def quick() -> Iterator[None]:
+    """See quick_studies; fixtures of a session are made before, and ask for it themselves."""
+    with quick_studies():
         yield

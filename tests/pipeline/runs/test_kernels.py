@@ -89,8 +89,8 @@ print(len(ahead), [form for form in called() if form not in ahead], ends.time.ma
 def keep(cache: Path) -> None:
     """Take what was compiled over to this user's kernels where it is missing: a fresh machine compiles it once then."""
     kept = disk_cache("dem").folder
-    for path in cache.glob("lithobrake/dem-*/dem.*") if kept else ():
-        if path.parent.name == kept.name and not (kept / path.name).exists():
+    for path in cache.glob("lithobrake/dem-*/dem.*"):
+        if kept is not None and path.parent.name == kept.name and not (kept / path.name).exists():
             with atomic_path(kept / path.name) as draft:
                 shutil.copy2(path, draft)
 
