@@ -5,16 +5,9 @@ import pytest
 
 from lithobrake import emulator
 from lithobrake.chaos import Normal, Uniform, sobol_sequence
-from lithobrake.emulator import validation
 from lithobrake.emulator.significance import found_inputs
 
 INPUTS = {"a": Uniform(0.0, 2.0), "b": Normal(0.0, 1.0), "c": Uniform(-1.0, 1.0)}
-
-
-@pytest.fixture(autouse=True)
-def few_folds(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Folds decide whether the inputs count at all, and say nothing of the mean law."""
-    monkeypatch.setattr(validation, "MOST_FOLDS", 4)
 
 
 def fitted(slope: float, noise: float, count: int, seed: int) -> emulator.Emulator:
