@@ -12,11 +12,13 @@ for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 # Beds that a test needs are poured: the tests of the library have one of their own.
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 
-# Files that take half a minute and more, the longest first: at the end one process would work on them while the other
-# waits.
+# Files that come first. One compiles all kernels of the engine, which the others then find, and another one that calls
+# none of them runs meanwhile. Then those that take long, the longest first: at the end one process would work on them
+# while the other waits.
 LONGEST = (
-    "test_killed.py", "test_whole_study.py", "test_examples.py", "test_calibration.py", "test_drawn_journeys.py",
-    "test_killed_journeys.py", "test_pouring.py", "test_notebooks.py", "test_state.py",
+    "test_kernels.py", "test_calibration.py",
+    "test_killed.py", "test_whole_study.py", "test_examples.py", "test_drawn_journeys.py", "test_killed_journeys.py",
+    "test_pouring.py", "test_notebooks.py", "test_aiming.py", "test_state.py", "test_recreate.py",
 )  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """One process that takes calls through a pipe: the coordinator's side of it, and its own."""
 
 import contextlib
+import gc
 import io
 import multiprocessing
 import os
@@ -123,12 +124,15 @@ def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main
         try:
             call = connection.recv_bytes()
         except (EOFError, OSError):
-            return
+            break
         answer = _answer(call, connection, script)
         try:
             connection.send_bytes(answer)
         except OSError:
-            return
+            break
+    # At its end Python would free compiled kernels and all else object by object, for as long as this took to load.
+    gc.collect()
+    gc.freeze()
 
 
 class _CallUnpickler(pickle.Unpickler):

@@ -12,7 +12,8 @@ import export_models
 import lithobrake
 from lithobrake.results import StudyResults
 
-from ..pipeline.journeys.bouncing_lander import bounce
+from ..pipeline.journeys.without_emulator import run_without_emulator
+from ..quick_studies import quick_studies
 from .delivered import delivered_tables
 
 
@@ -20,7 +21,8 @@ from .delivered import delivered_tables
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """The results of a study on Dimorphos."""
     out = tmp_path_factory.mktemp("export") / "out"
-    lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)
+    with quick_studies():
+        lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)
     return lithobrake.open_study(out)
 
 
@@ -28,7 +30,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Those of a study whose first landers are followed over their bounces on the soil."""
     out = tmp_path_factory.mktemp("bounces") / "out"
-    lithobrake.run(export_models.study_with_bounces(), out, workers=1, model=export_models.bounce, report=False)
+    with quick_studies():
+        lithobrake.run(export_models.study_with_bounces(), out, workers=1, model=export_models.bounce, report=False)
     return lithobrake.open_study(out)
 
 
@@ -36,7 +39,7 @@ def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 def delivered(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Those of a study of journeys from states along ICRF."""
     home = tmp_path_factory.mktemp("delivered")
-    lithobrake.run(delivered_tables(home), home / "out", workers=1, model=bounce, report=False)
+    run_without_emulator(delivered_tables(home), home / "out")
     # Nothing that is passed on needs the file of the states.
     (home / "states.csv").unlink()
     return lithobrake.open_study(home / "out")

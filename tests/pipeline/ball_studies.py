@@ -5,6 +5,8 @@ from pathlib import Path
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BALL, PROGRAM = EXAMPLES / "ball_on_plate.toml", EXAMPLES / "ball_on_plate.py"
+# Without looking for packages, of which the program needs none: sooner there, for each run.
+PYTHON = f"{sys.executable} -S"
 # Changes of its text, old by new; a later change of the same text takes the place of an earlier one.
 FEW_RUNS = {
     "screening_level = 2": "screening_level = 1",
@@ -32,7 +34,7 @@ test_count = 10
 def write_ball(path: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
     """Write the study file of the example, with these changes of its text and the Python of these tests."""
     path.write_text(BALL.read_text())
-    return edit(path, {"python3 ball_on_plate.py": f"{sys.executable} {program}"} | changes)
+    return edit(path, {"python3 ball_on_plate.py": f"{PYTHON} {program}"} | changes)
 
 
 def edit(path: Path, changes: dict[str, str]) -> Path:

@@ -18,8 +18,6 @@ SOIL: dict[str, Any] = {
     "grain.rolling_friction": {"distribution": "uniform", "lower": 0.0, "upper": 0.3},
     "grain.density": {"distribution": "uniform", "lower": 1500.0, "upper": 3000.0},
 }
-# All but the first two are known: an emulator of few inputs is fitted within a second.
-TWO_SOILS: dict[str, Any] = {"grain": {"young_modulus": 1e7, "rolling_friction": 0.15, "density": 2250.0}}
 
 
 @dataclass(frozen=True)

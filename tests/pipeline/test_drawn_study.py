@@ -33,11 +33,12 @@ def ball(folder: Path, run_count: int, more: str = "") -> Path:
 def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, str]:
     """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
-    said = said_by("run", ball(folder, 12), "--out", folder / "out", "--workers", 2)
+    run_study(StudySource.read(ball(folder, 12)), folder / "out", until="runs", worker_count=2)
+    first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
+    said = said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out", "--workers", 2)
     assert "stage 3 of 14: runs" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
-    first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
-    return folder, first, said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out")
+    return folder, first, said
 
 
 def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:

@@ -1,13 +1,11 @@
 """What a study tells of its long pieces of work while it runs."""
 
-import sys
-
 import pytest
 
 from lithobrake.pipeline import run_study
 from lithobrake.study import StudySource
 
-from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, write_ball
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, PYTHON, write_ball
 
 FEW = FEW_RUNS | FEW_SAMPLES
 FEW |= {
@@ -64,7 +62,7 @@ def told(study: tuple[Told, list[str]]) -> Told:
 
 def test_the_program_of_a_study_is_named_before_anything_starts_it(study: tuple[Told, list[str]]) -> None:
     (said,) = study[1]
-    assert said.endswith(f"every run that is still to be made starts: {sys.executable} {PROGRAM}")
+    assert said.endswith(f"every run that is still to be made starts: {PYTHON} {PROGRAM}")
 
 
 @pytest.mark.parametrize("stage", list(WORKS))

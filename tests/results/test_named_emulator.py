@@ -11,6 +11,8 @@ from lithobrake.chaos import LogUniform, Uniform
 from lithobrake.results import NamedEmulator
 from lithobrake.results.explorer_tables import ExplorerAttitude
 
+from ..quick_studies import quick_studies
+
 UNITS = {"grain.friction": "-", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
 BOUND = {
     "height": 0.5, "across": 1.0, "smallest": 0.001, "largest": 0.001, "mass_power": 0.0, "diameter_power": 2.0,
@@ -49,11 +51,12 @@ def named() -> NamedEmulator:
     upper[:, 0], upper[:, 1] = allowed(x[:, 2]), 0.5 * np.pi
     upper[:, 2] = upper[:, 0] / np.sqrt(0.001)
     inputs = {"grain.friction": Uniform(0.2, 0.9), "grain.young_modulus": LogUniform(1e6, 1e8)}
-    model = emulator.fit(
-        inputs | {"impact.speed": Uniform(0.1, 0.3)}, x, y, groups=np.arange(count) // 8,
-        outcome=np.where(np.isnan(y[:, 0]), "captured", "clear"), lower=[0.0, 0.0, 0.0, *[-np.inf] * 5], upper=upper,
-        riders=NAMES[3:], output_names=NAMES,
-    )  # fmt: skip
+    with quick_studies():
+        model = emulator.fit(
+            inputs | {"impact.speed": Uniform(0.1, 0.3)}, x, y, groups=np.arange(count) // 8,
+            outcome=np.where(np.isnan(y[:, 0]), "captured", "clear"), lower=[0.0, 0.0, 0.0, *[-np.inf] * 5],
+            upper=upper, riders=NAMES[3:], output_names=NAMES,
+        )  # fmt: skip
     return NamedEmulator(model, UNITS, lambda: BOUND)
 
 

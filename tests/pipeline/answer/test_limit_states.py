@@ -11,7 +11,7 @@ from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
-from ..synthetic_lander import TWO_SOILS, SyntheticLander, synthetic_tables
+from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 # About a tenth and a two-hundredth of the landers that leave are faster [m/s].
 FAST, FASTEST = 0.14, 0.21
@@ -90,8 +90,8 @@ def test_every_key_is_described_and_the_page_has_the_sentences(results: StudyRes
 
 
 def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
-    few = TWO_SOILS | {"design": {"run_count": 30}, "bed": {"bed_count": 1}, "monte_carlo": {"sample_count": 400}}
-    tables = synthetic_tables(**few, limit_states={"fast": "speed_out > 0.1"})
+    few: dict[str, dict[str, Any]] = {"design": {"run_count": 30}, "monte_carlo": {"sample_count": 400}}
+    tables = synthetic_tables(**few, bed={"bed_count": 1}, limit_states={"fast": "speed_out > 0.1"})
     results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
     state = results.summary["results"]["limit_states"]["fast"]
     assert (state["lower"], state["upper"], state["source"], state["inputs"]) == (None, None, "runs", {})
@@ -99,6 +99,6 @@ def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
 
 
 def test_an_output_that_no_run_has_is_refused(tmp_path: Path) -> None:
-    tables = synthetic_tables(**TWO_SOILS, design={"run_count": 30}, limit_states={"hard": "peak_acceleration > 50"})
+    tables = synthetic_tables(design={"run_count": 30}, limit_states={"hard": "peak_acceleration > 50"})
     with pytest.raises(ValueError, match=r"limit_states\.hard asks for peak_acceleration, which no run has"):
         lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)

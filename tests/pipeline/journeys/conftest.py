@@ -7,6 +7,7 @@ import pytest
 import lithobrake
 from lithobrake.results import StudyResults
 
+from ...quick_studies import quick_studies
 from .bouncing_lander import bounce, journey_tables
 
 
@@ -14,7 +15,8 @@ from .bouncing_lander import bounce, journey_tables
 def journeys_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a study of 48 journeys, five of which do not end at rest, with its page."""
     folder = tmp_path_factory.mktemp("journeys") / "study"
-    lithobrake.run(journey_tables(), folder, workers=1, model=bounce, report=False)
+    with quick_studies():
+        lithobrake.run(journey_tables(), folder, workers=1, model=bounce, report=False)
     return folder
 
 

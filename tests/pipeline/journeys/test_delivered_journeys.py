@@ -20,7 +20,8 @@ from lithobrake.smallbody import fly
 from lithobrake.study.source import StudySource
 from lithobrake.study.study import Study
 
-from .bouncing_lander import bounce, journey_tables
+from .bouncing_lander import journey_tables
+from .without_emulator import run_without_emulator
 
 COUNT = 24
 # Above the trailing side; of two in a row of ten the speed is away from the ground.
@@ -57,7 +58,7 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResults, np.nd
     folder = tmp_path_factory.mktemp("flown")
     states = write_states(folder / "states.csv", away=(3, 9))
     given = tables(delivery={"states": str(folder / "states.csv")})
-    lithobrake.run(given, folder / "out", workers=1, model=bounce)
+    run_without_emulator(given, folder / "out", report=True)
     return lithobrake.open_study(folder / "out"), states
 
 
@@ -130,10 +131,7 @@ def test_an_edited_table_makes_the_journeys_outdated(tmp_path: Path) -> None:
 def test_journeys_are_added_also_where_some_never_touch_down(tmp_path: Path) -> None:
     asked = {"half_width": 0.16, "largest_run_count": 96}
     release = RELEASE | {"velocity_std": 0.04}
-    lithobrake.run(
-        tables(delivery={"release": release}, design=asked), tmp_path / "out", workers=1, model=bounce, report=False
-    )
-    results = lithobrake.open_study(tmp_path / "out").results
+    results = run_without_emulator(tables(delivery={"release": release}, design=asked), tmp_path / "out").results
     at_rest = results.ends["at_rest"]
     assert results.delivery.count < results.journeys
     assert results.journeys == 96 or at_rest.upper - at_rest.lower <= 2.0 * 0.16

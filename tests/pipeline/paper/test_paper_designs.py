@@ -122,7 +122,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A finished study of a program that scatters."""
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
-    (folder / "study.toml").write_text(STUDY.format(python=sys.executable))
+    (folder / "study.toml").write_text(STUDY.format(python=f"{sys.executable} -S"))
     ended = lithobrake("run", folder / "study.toml", "--out", folder / "out", "--workers", 2)
     assert ended.returncode == 0, ended.stderr
     return folder / "out"

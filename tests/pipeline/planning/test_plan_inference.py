@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.pipeline import InferredStudy, plan_lines, plan_study
+from lithobrake.pipeline.inference.expected_inference import ExpectedInference
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import StudySource
 
@@ -22,9 +23,13 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_with_an_emulator_it_says_how_many_bounces_would_halve_what_is_unknown(study: Path) -> None:
+def test_with_an_emulator_it_says_how_many_bounces_would_halve_what_is_unknown(
+    study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, planned = list[ExpectedInference](), InferredStudy.plan
+    monkeypatch.setattr(InferredStudy, "plan", lambda inferred: made.append(planned(inferred)) or made[-1])
     plan = plan_study(study, study.parent / "out", infers=True)
-    expected = InferredStudy.open(study.parent / "out").plan()
+    (expected,) = made
     assert plan.inference == expected
     assert expected.outputs == ("speed_out", "elevation_out", "spin_out")
     content = json.loads(json.dumps(plan.to_json(), allow_nan=False))["inference"]

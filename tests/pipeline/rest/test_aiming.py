@@ -21,7 +21,7 @@ from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
 from ...synthetic_landings import WEAK
-from ..synthetic_lander import TWO_SOILS, SyntheticLander, synthetic_tables
+from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 ARRIVAL = {
     "speed": {"distribution": "uniform", "lower": 0.005, "upper": 0.4},
@@ -32,7 +32,7 @@ AIM: dict[str, Any] = {
     "within": ["incidence_deg < 45", "distance_p95 < 500"],
     "lander_count": 2,
 }
-FEW = TWO_SOILS | {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 100}}
+FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 100}}
 
 
 def tables(**aim: Any) -> dict[str, Any]:

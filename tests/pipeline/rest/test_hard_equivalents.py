@@ -9,7 +9,7 @@ import lithobrake
 from lithobrake.pipeline.rest.hard_equivalents import implied
 from lithobrake.smallbody import HardSurface, Impacts
 
-from ..synthetic_lander import TWO_SOILS, SyntheticLander, synthetic_tables
+from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 
 def test_hard_ground_implies_itself() -> None:
@@ -29,8 +29,7 @@ def test_hard_ground_implies_itself() -> None:
 
 
 def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
-    few = TWO_SOILS | {"design": {"run_count": 30}, "monte_carlo": {"sample_count": 100}, "rest": {"count": 20}}
-    tables = synthetic_tables(**few)
+    tables = synthetic_tables(design={"run_count": 30}, monte_carlo={"sample_count": 100}, rest={"count": 20})
     out = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
     assert not (out.folder / "restitution.csv").exists()
     assert out.summary["results"]["rest"]["equivalent"] is None
