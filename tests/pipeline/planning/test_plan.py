@@ -306,7 +306,7 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
 def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
     study = drawn(**changes)
     found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
-    assert said in found if said else "All runs" not in found and "beds are what" not in found
+    assert said in found if said else "All runs" not in found and "the unit of an interval" not in found
 
 
 def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle(tmp_path: Path) -> None:
