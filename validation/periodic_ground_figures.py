@@ -31,7 +31,7 @@ OUTPUTS = {
     "spin_out": ("spin rate", "rad/s", 1.0),
     "penetration": ("penetration", "cm", 100.0),
 }
-WORDS = {"walls": "walls", "periodic": "periodic"}
+WORDS = {"walls": "walls", "periodic": "period"}
 OUTCOMES = {
     "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
 }  # fmt: skip

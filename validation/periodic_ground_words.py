@@ -11,9 +11,11 @@ What do the walls of a bed change, and do the periodic images of a narrow bed ch
 - **Walls make beds less dense.** The solid fraction is {walls} between walls, from narrow to wide, and {tiles} on
   periodic beds.
 - **Images have no clear effect.** Rebound speed, elevation and spin rate were fitted against the logarithm of the
-  period. Of the {count} slopes, the largest in magnitude is {most} standard errors ({output}, {at}); the next is {next}. An effect
+  period. Of the {count} slopes, the largest in magnitude is {most} standard errors ({output}, {at}); the next is
+  {next}. An effect
   on that one quantity is not excluded. On the narrowest bed some landers travel farther than its period.
-- **Cost.** A periodic bed costs about as much to pour as one between walls with as many grains. A landing costs somewhat
+- **Cost.** A periodic bed costs about as much to pour as one between walls with as many grains. A landing costs
+  somewhat
   more, because the bed is denser, and more again at 75 degrees, because a lost lander ends early. On the narrowest
   periodic bed, which loses none, a landing at 15 degrees costs less than between walls.
 

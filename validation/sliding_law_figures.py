@@ -43,8 +43,8 @@ with its long edge along the direction of motion, across it, oblique to it, or i
 motion along the bed, level or down a slope, by an instantaneous push.
 
 The **effective friction** is the energy lost, potential energy included, until the box is at rest again or leaves the
-bed, divided by its weight normal to the bed and the path of its centroid. Means are weighted by the path: energy lost by
-all, over weight and path of all.
+bed, divided by its weight normal to the bed and the path of its centroid. Means are weighted by the path: energy lost
+by all, over weight and path of all.
 
 Speeds are given as Froude numbers v² / (g d), d being the grain diameter. By similarity only the Froude number,
 friction, restitution and E / (rho g d) matter. The last is 1e5 here, from a gravity of 0.02 m/s2 with E = 4.5e5 Pa. At
