@@ -14,64 +14,28 @@ import matplotlib
 
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
+import numpy as np
+from page_text import broken
 from periodic_ground import GROUNDS, WAYS
+from periodic_ground_words import TEXT
 
 from lithobrake.report.figures.style import QUIET, STYLE, TEST, TRAINING
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 Entry = dict[str, Any]
-# What is drawn and told of a landing: name, unit, and what an SI value is multiplied by.
+# What is drawn and tabulated of a landing: name, unit, and what an SI value is multiplied by.
 OUTPUTS = {
     "speed_out": ("rebound speed", "cm/s", 100.0),
     "elevation_out": ("elevation", "deg", 180.0 / math.pi),
-    "spin_out": ("spin", "rad/s", 1.0),
-    "penetration": ("depth", "cm", 100.0),
+    "spin_out": ("spin rate", "rad/s", 1.0),
+    "penetration": ("penetration", "cm", 100.0),
 }
-HEAD = """# Periodic ground: what walls and images do
-
-Written by `python validation/periodic_ground_figures.py`.
-
-The soil and the lander of the quick study, at the medians of their laws, on beds between walls of
-0.7 m, of twice and of four times that width (4 and 16 times the area), and on ground that repeats.
-Beds hold as many grains per area. The lander comes down anywhere on ground that repeats, and in the
-middle half of a bed with walls, so that these move away from it as beds grow. Grains that are far
-from the lander and slower than three hundredths of it are held (`contact.held_speed = 0.03`).
-
-A lander is lost where it crosses the edge of its bed and does not clearly fly: it has no outcome,
-and is left out of all means. Means stand with their standard errors, from beds as clusters. Depth
-is the penetration. Of the images: does a lander on a small tile feel that its images land beside
-it, or that it meets the ground again that it has passed? The tiles of 0.56 to 1.4 m answer that.
-
-![Rebound by ground](periodic_ground.png)
-
-- **Walls select.** At 75 degrees half of the landers leave a bed of 0.7 m laterally, and those with
-  an outcome left faster and flatter than all do where none is lost. The farther the walls, the
-  fewer are lost, and the nearer speed, elevation and spin come to those of ground that repeats.
-- **Walls loosen.** Beds between walls are less dense, the narrower the more.
-- **Images do not show.** Speed, elevation and spin have no trend with the width of the tile that
-  exceeds their errors, though on the smallest some landers travel farther than it is wide.
-- **What it costs.** A pour of as many grains costs no more than between walls. A landing costs
-  somewhat more, as the ground is denser, and at 75 degrees more again, as a lander that is lost
-  ends early. On the smallest tile a landing that loses nothing costs less than between walls.
-
-"""
-SLOPES = """
-## Slopes
-
-The same soil with a friction of 0.3, less than the tangent of either slope, 0.4 m/s, 30 degrees
-from the normal and downhill. A periodic bed is 0.7 m wide and held by its rough floor, one between
-walls 1.4 m, by its lower wall (`python validation/periodic_slopes.py`). Between walls there are
-three beds a slope, too few for errors that can be trusted.
-"""
-STUDIES = """
-## The studies of the scenarios
-
-Each with the beds of its file, and with the other sides (the quick study on both widths). Numbers
-of all landings that left; returns and shares with their 90 % intervals.
-"""
-WORDS = {"walls": "walls", "periodic": "tile"}
-# Beds between walls as they grow, and then ground that repeats, from the smallest tile on.
+WORDS = {"walls": "walls", "periodic": "period"}
+OUTCOMES = {
+    "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
+}  # fmt: skip
+# Beds between walls as they grow, and then periodic ones, from the narrowest on.
 ORDER = sorted(GROUNDS, key=lambda name: (GROUNDS[name].sides != "walls", GROUNDS[name].width))
 
 
@@ -105,15 +69,13 @@ def draw(grounds: dict[str, Entry]) -> None:
                     axis.set_ylabel(f"{label} [{unit}]")
                 words = [f"{WORDS[GROUNDS[name].sides]}\n{GROUNDS[name].width:g}" for name in known]
                 axis.set_xticks(range(len(known)), words, fontsize=6.5)
-        figure.supxlabel(
-            "width between walls, or of the tile that repeats [m]; bars: two standard errors, over beds", fontsize=9
-        )
+        figure.supxlabel("width between walls, or period [m]; bars: two standard errors, over beds", fontsize=9)
         figure.savefig(PAGES / "periodic_ground.png", dpi=150)
 
 
 def bed_table(grounds: dict[str, Entry]) -> list[str]:
     """A line a ground: how its beds lie, and what they cost."""
-    lines = ["| ground | grains | beds | solid fraction | contacts a grain | CPU of a pour [s] |", "|---" * 6 + "|"]
+    lines = ["| bed | grains | beds | solid fraction | coordination number | CPU time of a bed [s] |", "|---" * 6 + "|"]
     for name in ORDER:
         entry = grounds[name]
         cells = [f"{name} | {GROUNDS[name].grain_count} | {entry['beds']}"]
@@ -127,7 +89,7 @@ def bed_table(grounds: dict[str, Entry]) -> list[str]:
 def landing_table(grounds: dict[str, Entry], way: str) -> list[str]:
     """A line a ground: what became of the landings of a way."""
     heads = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
-    lines = ["| ground | landings | lost | captured | farther than a period | " + " | ".join(heads) + " | CPU [s] |"]
+    lines = ["| bed | landings | lost | captured | displacement > period | " + " | ".join(heads) + " | CPU time [s] |"]
     lines.append("|---" * (6 + len(OUTPUTS)) + "|")
     for name in ORDER:
         entry = grounds[name][way]
@@ -169,11 +131,13 @@ def slope_table() -> list[str]:
 def study_table() -> list[str]:
     """A line a study that periodic_studies.py read."""
     heads = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
-    lines = ["| study | bed | outcomes | returns [%] | escape [%] | " + " | ".join(heads) + " | solid fraction |"]
+    lines = [
+        "| study | bed | outcomes | return fraction [%] | escape [%] | " + " | ".join(heads) + " | solid fraction |"
+    ]
     lines.append("|---" * (6 + len(OUTPUTS)) + "|")
     for one in json.loads((HERE / "periodic_studies.json").read_text())["studies"]:
         bed, returns, escaped = one["bed"], one["returns"], one["shares"]["escaped"]
-        ends = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in sorted(one["outcomes"].items()))
+        ends = ", ".join(f"{count} {OUTCOMES[word]}" for word, count in sorted(one["outcomes"].items()))
         cells = [one["title"], f"{bed['sides']}, {bed['grain_count']} on {bed['width'][0]:g} m", ends]
         cells += [
             f"{100 * share['share']:.1f} ({100 * share['lower']:.1f} to {100 * share['upper']:.1f})"
@@ -184,18 +148,65 @@ def study_table() -> list[str]:
     return lines
 
 
+def trends(grounds: dict[str, Entry]) -> list[tuple[float, str, str]]:
+    """Return slopes of speed, elevation and spin over the logarithm of the period, in their standard errors.
+
+    With the output and the way to land of each; weighted least squares over the periodic beds.
+    """
+    names = [name for name in ORDER if GROUNDS[name].sides != "walls" and grounds[name]["beds"]]
+    x = np.log([GROUNDS[name].width for name in names])
+    found = []
+    for way in WAYS:
+        for key in ("speed_out", "elevation_out", "spin_out"):
+            of = [grounds[name][way][key] for name in names]
+            weight = np.array([1.0 / one["standard_error"] ** 2 for one in of])
+            away = x - np.average(x, weights=weight)
+            slope = weight * away @ np.array([one["mean"] for one in of]) / (weight @ away**2)
+            found.append((float(slope * math.sqrt(weight @ away**2)), OUTPUTS[key][0], in_words(way)))
+    return sorted(found, key=lambda one: -abs(one[0]))
+
+
+def lost_of(entry: Entry) -> str:
+    """Return how many of the landings are lost."""
+    return f"{entry['outcomes'].get('left_sideways', 0)} of {entry['landings']}"
+
+
+def speed_and_elevation(entry: Entry) -> str:
+    """Return the mean speed and elevation with their standard errors."""
+    return " and ".join(f"{_value(entry[key], OUTPUTS[key][2])} {OUTPUTS[key][1]}"
+                        for key in ("speed_out", "elevation_out"))  # fmt: skip
+
+
+def findings(grounds: dict[str, Entry]) -> dict[str, Any]:
+    """Return the numbers of the first sentences."""
+    way = list(WAYS)[1]
+    walls = [name for name in ORDER if GROUNDS[name].sides == "walls"]
+    tiles = [name for name in ORDER if GROUNDS[name].sides != "walls"]
+    slopes = trends(grounds)
+    (most, output, at), (following, *_) = slopes[:2]
+    solid = {name: grounds[name]["solid_fraction"]["mean"] for name in ORDER}
+    return {
+        "way": in_words(way), "lost": ", ".join(f"{lost_of(grounds[name][way])} ({name})" for name in walls),
+        "narrow": speed_and_elevation(grounds[walls[0]][way]), "wide": speed_and_elevation(grounds[tiles[-1]][way]),
+        "walls": ", ".join(f"{solid[name]:.3f}" for name in walls),
+        "tiles": f"{min(solid[name] for name in tiles):.3f} to {max(solid[name] for name in tiles):.3f}",
+        "most": f"{most:.1f}", "output": output, "at": at, "next": f"{following:.1f}", "count": len(slopes),
+    }  # fmt: skip
+
+
 def main() -> None:
     """Draw and write."""
     content = json.loads((HERE / "periodic_ground.json").read_text())
     grounds = content["grounds"]
     draw(grounds)
-    parts = [HEAD, "## Beds", "", *bed_table(grounds)]
-    for way in WAYS:
-        parts += ["", f"## {in_words(way)}", "", *landing_table(grounds, way)]
-    parts += [SLOPES, *slope_table(), STUDIES, *study_table()]
-    made = f"`{content['command']}`, {content['date']}, {content['machine']}, one process, load {content['load']:.0f}."
-    parts += ["", made]
-    (PAGES / "periodic_ground.md").write_text("\n".join(parts) + "\n", encoding="utf-8")
+    landings = [f"### {in_words(way)}\n\n" + "\n".join(landing_table(grounds, way)) for way in WAYS]
+    page = TEXT.format(
+        **findings(grounds), beds="\n".join(bed_table(grounds)), landings="\n\n".join(landings),
+        slopes="\n".join(slope_table()), studies="\n".join(study_table()),
+        made=f"`{content['command']}`, {content['date']}, {content['machine']}, one process, load "
+        f"{content['load']:.0f}",
+    )  # fmt: skip
+    (PAGES / "periodic_ground.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

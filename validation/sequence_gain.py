@@ -234,11 +234,9 @@ def page_tables() -> str:
         low, high = one["ratio_interval"]
         widths = f"{one['scatter_points']:.2f} | {one['implied_points']:.2f}"
         lines.append(f"| {runs} | {kind} | {one['repeats']} | {widths} | {one['ratio']:.2f} ({low:.2f}-{high:.2f}) |")
-    lines += [
-        "",
-        "| landings | parts of soil, attitude, beds | random points | sequence | sequence, attitude as a regressor |",
-        "|---" * 5 + "|",
-    ]
+    heads = ["landings", "parts of soil, attitude, beds", "random points", "sequence",
+             "sequence, attitude in the regression"]  # fmt: skip
+    lines += ["", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     found: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
     for row in read_rows(SYNTHETIC, {}, others=str):
         of = (row["runs"], f"{float(row['soil']):g}, {float(row['attitude']):g}, {float(row['bed']):g}")

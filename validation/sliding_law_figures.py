@@ -6,7 +6,6 @@ Reads sliding_law.json and sliding_law.csv beside it; writes sliding_law.png and
 """
 
 import json
-import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from page_text import broken
 from sliding_law import ATTITUDES, CAPTURED_FROUDE, Row, as_usual, noted
 
 from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, SITE, STYLE
@@ -22,28 +22,65 @@ from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, SITE, STY
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 OTHERS = {
-    "restitution": "restitution 0.8 in place of 0.5", "stiffness": "ten times as stiff",
+    "restitution": "restitution 0.8 instead of 0.5", "stiffness": "ten times as stiff",
     "grain_friction": "friction 0.8 between grains, 0.2 of the lander", "size=0.5": "half the edges",
     "size=1.5": "1.5 times the edges",
 }  # fmt: skip
-HEAD = """# Sliding on a bed of hulls
+TEXT = """\
+# Sliding on a bed of hulls
 
-Written by `python validation/sliding_law_figures.py`.
+Does a captured lander slide by Coulomb's law with the friction of its contacts?
 
-A captured lander slides on by Coulomb's law, with the friction of hull and grain. Does it? The box
-of the quick study (0.1 x 0.1 x 0.227 m, 2 kg) lies on beds of 200 hulls of 9 cm, 1.5 m long and two to
-three grains deep, all of one material. It came to rest there by itself, dropped from just above the
-grains with its long edge along the way, across it, aslant, or any way round. Then it is pushed
-along the bed, level or down a slope, by an instant speed. What it has lost of its energy, height
-included, when it lies still again or leaves the bed, over its weight on the bed and the way of its
-centroid, is its effective friction. Means are over the way: energy lost by all, over weight and way
-of all.
+{answer}
 
-Speeds are Froude numbers v² / (g d). By similarity nothing but these, friction, restitution and
-E / (rho g d) counts. The last is 1e5 here, by a gravity of 0.02 m/s2 with E = 4.5e5 Pa: on an
-asteroid of 5e-5 m/s2 the same pushes are those of 1.1e3 Pa. Real soils are stiffer, by which a step
-is shorter and the overlap, a thousandth of a grain here, smaller; a row below has 1e6. A captured
-lander, v² < g a with its smallest edge a, has a Froude number below 1.1 here.
+![Effective friction](sliding_law.png)
+
+## Set-up
+
+The box of the quick study (0.1 x 0.1 x 0.227 m, 2 kg) lies on beds of 200 hulls of 9 cm, all of one material. Beds are
+1.5 m long and two to three grains deep. The box came to rest there by itself. It was dropped from just above the grains
+with its long edge along the direction of motion, across it, oblique to it, or in any orientation. It is then set in
+motion along the bed, level or down a slope, by an instantaneous push.
+
+The **effective friction** is the energy lost, potential energy included, until the box is at rest again or leaves the
+bed, divided by its weight normal to the bed and the path of its centroid. Means are weighted by the path: energy lost
+by all, over weight and path of all.
+
+Speeds are given as Froude numbers v² / (g d), d being the grain diameter. By similarity only the Froude number,
+friction, restitution and E / (rho g d) matter. The last is 1e5 here, from a gravity of 0.02 m/s2 with E = 4.5e5 Pa. At
+5e-5 m/s2 the same pushes correspond to 1.1e3 Pa. Real soils are stiffer; the overlap is a thousandth of a grain here,
+and smaller there. One row below has 1e6. A captured lander, with v² < g a and a its smallest edge, has a Froude number
+below 1.1 here.
+
+## Why the law differs
+
+{reasons}
+
+"Standard error" is that of the mean over beds. "Scatter" is the standard deviation from push to push, weighted by path.
+
+## By speed, all slopes
+
+{speeds}
+
+## By slope
+
+{slopes}
+
+## By attitude
+
+{attitudes}
+
+## Other parameters
+
+{others}
+
+## Limits
+
+All grains of a bed have one size, so nothing follows for finer or mixed grains. Many rows rest on 4 to 13 pushes.
+
+## Reproduce this page
+
+`python validation/sliding_law_figures.py` writes the page and its figure. The pushes: {made}.
 """
 
 
@@ -60,12 +97,12 @@ def draw(rows: list[Row], found: dict[str, Any]) -> None:
             size = [12.0 * row["way"] for row in of]
             left.scatter(x, [row["effective_friction"] for row in of], size, color=colour, alpha=0.75, label=attitude)
         law, ends = found["law"], np.array([0.15, 0.85])
-        told = law["intercept"] + law["slope"] * ends
-        left.plot(ends, told, color=INK, lw=1.4, label="law, and its scatter")
-        left.fill_between(ends, told - law["scatter"], told + law["scatter"], color=QUIET, alpha=0.2, lw=0)
-        left.plot(ends, ends, "--", color=SITE, lw=1.2, label="Coulomb's, of the contacts")
+        line = law["intercept"] + law["slope"] * ends
+        left.plot(ends, line, color=INK, lw=1.4, label="fit, and its scatter")
+        left.fill_between(ends, line - law["scatter"], line + law["scatter"], color=QUIET, alpha=0.2, lw=0)
+        left.plot(ends, ends, "--", color=SITE, lw=1.2, label="Coulomb's law, contacts")
         left.set(xlabel="friction of the contacts", ylabel="effective friction", ylim=(0.0, 2.0))
-        left.set_title("As slow as captured landers; areas: way")
+        left.set_title("At the speed of captured landers; area: path")
         left.legend(fontsize=7.5, loc="upper left", ncols=2)
         for friction, colour in zip((0.2, 0.4, 0.8), INPUT_COLOURS, strict=False):
             of = [one for one in found["by_froude"] if one["friction"] == friction]
@@ -82,7 +119,7 @@ def draw(rows: list[Row], found: dict[str, Any]) -> None:
 
 def table(groups: list[dict[str, Any]], name: str, words: str) -> list[str]:
     """A line a group."""
-    lines = [f"| friction | {words} | pushes | effective friction | error over beds | scatter | mean way [grains] |"]
+    lines = [f"| friction | {words} | pushes | effective friction | standard error | scatter | mean path [grains] |"]
     lines.append("|---" * 7 + "|")
     for one in groups:
         value = one[name] if isinstance(one[name], str) else f"{one[name]:g}"
@@ -98,7 +135,7 @@ def cells(one: dict[str, Any]) -> str:
 
 def other_table(found: dict[str, Any]) -> list[str]:
     """Other settings beside the like pushes."""
-    lines = ["| changed | pushes | effective friction | scatter | like pushes unchanged | scatter |", "|---" * 6 + "|"]
+    lines = ["| changed | pushes | effective friction | scatter | same pushes unchanged | scatter |", "|---" * 6 + "|"]
     for name, words in OTHERS.items():
         other, usual = found["others"][name]["other"], found["others"][name]["usual"]
         lines.append(
@@ -108,39 +145,45 @@ def other_table(found: dict[str, Any]) -> list[str]:
     return lines
 
 
-def findings(found: dict[str, Any], rows: list[Row]) -> str:
-    """What the pushes say, in a paragraph."""
-    law, usual = found["law"], as_usual(rows)
+def answer(found: dict[str, Any]) -> str:
+    """Return the law that the pushes give."""
+    law = found["law"]
+    return (
+        f"No: the effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ from "
+        f"0.2 to 0.8, at Froude numbers up to {CAPTURED_FROUDE:g}. Pushes scatter by {law['scatter']:.2f} about this "
+        f"line and by {law['scatter_about_coulomb']:.2f} about Coulomb's law with μ itself, which holds only near μ = "
+        "0.8."
+    )
+
+
+def reasons(rows: list[Row]) -> str:
+    """Return what holds or slows the lander besides its contacts."""
+    usual = as_usual(rows)
     steep = [row for row in usual if row["friction"] < row["slope"]]
     stopped = sum(row["stopped"] for row in steep)
-    words = (
-        f"Effective friction is {law['intercept']:.2f} + {law['slope']:.2f} μ for contacts of friction μ, from 0.2 to 0"
-        f".8, at Froude numbers of {CAPTURED_FROUDE:g} and less. Pushes scatter by {law['scatter']:.2f} about that "
-        f"line, by {law['scatter_about_coulomb']:.2f} about Coulomb's law with μ itself, which holds about 0.8 alone: "
-        "smooth landers are held by the stones that they lie among and not by their contacts. Of "
-        f"{len(steep)} pushes down a slope that is steeper than the friction of the contacts {stopped} came to rest, "
-        "where Coulomb's law lets all go on. Scatter is where the lander lies: one that catches an edge stops within "
-        "half a grain whatever its friction. Faster pushes lose more over their way. Smaller landers lie deeper among "
-        "the stones and are held more, larger ones no less; more friction between grains than of the lander holds it "
-        "more too. All beds are of equal grains, so of finer or mixed ones nothing is said."
+    return (
+        "- **Smooth landers** are held by the grains that they lie among, not by the friction of their contacts. Of "
+        f"{len(steep)} pushes down a slope steeper than that friction, {stopped} came to rest. By Coulomb's law none "
+        "would.\n- **Scatter** depends on where the lander lies. One that catches an edge stops within half a grain at "
+        "any friction.\n- **Faster pushes** lose more energy per path.\n- **Smaller landers** lie deeper among the "
+        "grains and are held more; larger ones are held no less.\n- **More friction between grains** than at the "
+        "lander holds it more, too."
     )
-    return "\n".join(textwrap.wrap(words, 100, break_long_words=False, break_on_hyphens=False))
 
 
 def main() -> None:
     """Draw and write."""
     found, rows = json.loads((HERE / "sliding_law.json").read_text()), noted(HERE / "sliding_law.csv")
     draw(rows, found)
-    made = f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time."
-    parts = [
-        HEAD, "## What comes out\n", findings(found, rows), "\n![Effective friction](sliding_law.png)\n", made,
-        "\nErrors are those of the mean over beds; scatter is from push to push; both weigh a push by its way.",
-        "\n## By speed, all slopes\n", *table(found["by_froude"], "froude", "Froude number"),
-        "\n## By slope\n", *table(found["by_slope"], "slope", "tangent of the slope"),
-        "\n## By attitude\n", *table(found["by_attitude"], "attitude", "long edge"),
-        "\n## What else counts\n", *other_table(found),
-    ]  # fmt: skip
-    (PAGES / "sliding_law.md").write_text("\n".join(parts) + "\n")
+    page = TEXT.format(
+        answer=answer(found), reasons=reasons(rows),
+        speeds="\n".join(table(found["by_froude"], "froude", "Froude number")),
+        slopes="\n".join(table(found["by_slope"], "slope", "tangent of the slope")),
+        attitudes="\n".join(table(found["by_attitude"], "attitude", "long edge")),
+        others="\n".join(other_table(found)),
+        made=f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time",
+    )  # fmt: skip
+    (PAGES / "sliding_law.md").write_text(broken(page) + "\n")
 
 
 if __name__ == "__main__":

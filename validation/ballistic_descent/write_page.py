@@ -4,9 +4,7 @@ python validation/ballistic_descent/write_page.py
 """
 
 import json
-import re
 import sys
-import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -16,69 +14,19 @@ import matplotlib.pyplot as plt
 import numpy as np
 from ballistic_descent import DISTANCES, HERE, KINDS, LATITUDES, LONGITUDES, MAP_DISTANCE, RESTITUTIONS, SPEEDS, TABLE
 from bands import Band, band_of
+from page_words import TEXT
 
 from lithobrake.report.figures.style import INK, STYLE
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+sys.path.append(str(Path(__file__).parents[1]))
 from harness import PAGES, Row, read_rows
+from page_text import broken
 
 LEVELS = (0.5, 0.7, 0.8, 0.9)  # shares at rest from which a site counts as reliable
 PUBLISHED = Band(320.0, 380.0)  # deg east of the meridian that looks away from the primary
 BAR = 10.0  # deg, for either end of the band
 GROUNDS = (*(f"e = {one:g}" for one in RESTITUTIONS), "soil")
-HEAD = """# Ballistic descents to Dimorphos
-
-Written by `python validation/ballistic_descent/write_page.py`.
-
-[Celik-2019] and [Sanchez-2017] ask where a lander without propulsion can be released so that it
-lands reliably on the moon of a binary: circular restricted three-body problem, touchdown along the
-local vertical, release errors of 90 m and 2 cm/s (3 sigma), restitution as the design parameter.
-Their result for the larger moons: longitudes 320 to 20 degrees near the equator.
-
-Here: {sites} sites on the equator, and as many at 20 and at 40 degrees for one distance (the model is
-the same north and south), on a ball of Dimorphos' volume ({radius:.1f} m), {apart:.0f} m from
-Didymos. Each is met along its vertical at 24 speeds from 4.8 to 14 cm/s. The descent is integrated
-back in time to the release, at a distance from the moon's centre; from there {landers} landers with
-the errors of [Celik-2019] fly on, in the gravity of both bodies, bounce and come to rest within two
-days, or not. Hard ground keeps 0.9 of the speed along it, or what a friction of 0.6 leaves, and
-captured landers slide with that friction. Soil: each impact repeats one of the 20 simulated
-touchdowns of `scenarios/mission.toml` that are nearest in speed and incidence.
-
-Only the abstracts could be read. They name neither the distance of the release, nor the share that
-counts as reliable, nor where longitude 0 lies, and [Sanchez-2017] has other errors (1 sigma 10 m
-and 1 cm/s). So distances and shares are scanned. Longitudes are counted east from the meridian that
-looks away from Didymos, as the axis from the larger to the smaller body has it in the three-body
-problem. The touchdown speed is read in two ways: the least of the 24 with which a descent from that
-distance exists, and the one with which most landers come to rest, as restitution was the design
-parameter from which touchdown speeds followed.
-
-![Share at rest](ballistic_descent.png)
-"""
-
-VERDICT = """A band is the range of longitudes on the equator, around the highest share, in which at least a
-given share of the landers comes to rest; its ends agree within {bar:g} degrees of 320 and 20.
-
-- **At the least speed the band does not come out.** Descents at the least speed linger near the
-  Lagrange points, where the errors of the release grow: the published longitudes are hardly
-  better than the others (mean shares differ by {least_low:+.2f} to {least_high:+.2f} with e = 0.5 and 0.7).
-- **At the best speed it does.** The published longitudes are better by {best_low:.2f} to
-  {best_high:.2f} on hard ground from 300 m on with e = 0.5 and 0.7, and {agree} of the {bounded} bands of
-  hard ground that are neither all nor none have both ends within {bar:g} degrees: those of some 60
-  degrees' length. Wider ones belong to closer releases and lower shares. Counted from the side of
-  Didymos, {other} do.
-- **The distance matters as much as the site**, and what is published does not say it.
-- **New: soil.** On the soil of the mission study nearly all that touch down rest, so that only
-  descents that miss Dimorphos are lost: from 400 m every longitude keeps at least {soil_400:.0%} of
-  the landers, from 1 km the best keeps {soil_1000:.0%}. At 600 m the best speed is the highest that was
-  tried at {at_end} of {sites} longitudes, so shares there are lower bounds.
-
-Shares have a standard error of up to 5 points ({landers} landers), and the best of 24 speeds is some
-points too high.
-"""
-BANDS = """## Bands on the equator, at the best speed
-
-Longitudes [deg] of the band that holds the highest share; bold: both ends agree.
-"""
 
 
 def shares(rows: list[Row], ground: str, distance: float, latitude: float, column: str = "at_rest") -> np.ndarray:
@@ -101,7 +49,9 @@ def bands(rows: list[Row], ground: str) -> dict[float, list[Band]]:
 def band_table(rows: list[Row], ground: str) -> list[str]:
     """Lines of the bands on the equator of a ground."""
     lines = [
-        "| release [m] | " + " | ".join(f"share >= {level:g}" for level in LEVELS) + " | highest share | there [deg] |",
+        "| release [m] | "
+        + " | ".join(f"fraction >= {level:g}" for level in LEVELS)
+        + " | highest fraction | at longitude [deg] |",
         "|---|" + "---|" * (len(LEVELS) + 2),
     ]
     for distance, found in bands(rows, ground).items():
@@ -115,7 +65,7 @@ def band_table(rows: list[Row], ground: str) -> list[str]:
 def latitude_table(rows: list[Row]) -> list[str]:
     """Lines of the shares at rest by latitude and ground, mean over all longitudes and over the published band."""
     turned = inside()
-    lines = ["| ground | latitude [deg] | longitudes 320 to 20 | all others |", "|---|---|---|---|"]
+    lines = ["| ground | latitude [deg] | longitudes 320 to 20 | other longitudes |", "|---|---|---|---|"]
     for ground in GROUNDS:
         for latitude in LATITUDES:
             found = shares(rows, ground, MAP_DISTANCE, latitude)
@@ -143,7 +93,7 @@ def draw(rows: list[Row], to: Path) -> None:
         for axis in axes[1]:
             axis.set_xlabel("longitude from the side away from Didymos [deg east]")
         for axis in axes[:, 0]:
-            axis.set_ylabel("share at rest on Dimorphos")
+            axis.set_ylabel("fraction at rest on Dimorphos")
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(DISTANCES))
         figure.savefig(to, dpi=110)
         plt.close(figure)
@@ -165,7 +115,7 @@ def mean_shares(rows: list[Row], ground: str, distance: float) -> list[float]:
 
 def mean_table(rows: list[Row]) -> list[str]:
     """Lines of the mean shares of every ground and distance."""
-    head = "| ground | release [m] | least speed: 320 to 20 | all others | best speed: 320 to 20 | all others |"
+    head = "| ground | release [m] | lowest speed: 320 to 20 | others | best speed: 320 to 20 | others |"
     lines = [head, "|---|---|---|---|---|---|"]
     for ground in GROUNDS:
         for distance in DISTANCES:
@@ -174,8 +124,8 @@ def mean_table(rows: list[Row]) -> list[str]:
     return lines
 
 
-def verdict(rows: list[Row]) -> str:
-    """What the rows say, in words."""
+def numbers(rows: list[Row]) -> dict[str, str | int]:
+    """Return the numbers of the page's sentences."""
     hard = [ground for ground in GROUNDS if ground != "soil"]
     real = [
         band for ground in hard for found in bands(rows, ground).values() for band in found
@@ -184,27 +134,20 @@ def verdict(rows: list[Row]) -> str:
     turned = Band(PUBLISHED.begin + 180.0, PUBLISHED.end + 180.0)
     means = {(g, d): mean_shares(rows, g, d) for g in hard for d in DISTANCES}
     least = [one[0] - one[1] for (g, _), one in means.items() if g != hard[-1]]
+    last = [one[0] - one[1] for (g, _), one in means.items() if g == hard[-1]]
     best = [one[2] - one[3] for (g, d), one in means.items() if d >= 300.0 and g != hard[-1]]
     speeds = [row["best_speed_m_s"] for row in rows
               if (row["ground"], row["distance_m"], row["latitude_deg"]) == ("soil", MAP_DISTANCE, 0.0)]  # fmt: skip
-    words = VERDICT.format(
-        bar=BAR, least_low=min(least), least_high=max(least), best_low=min(best), best_high=max(best),
-        agree=sum(band.agrees(PUBLISHED, BAR) for band in real), bounded=len(real),
-        other=sum(band.agrees(turned, BAR) for band in real), soil_400=shares(rows, "soil", 400.0, 0.0).min(),
-        soil_1000=shares(rows, "soil", 1000.0, 0.0).max(), sites=len(LONGITUDES), landers=int(rows[0]["landers"]),
-        at_end=sum(speed > SPEEDS[-1] - 1e-9 for speed in speeds),
-    )  # fmt: skip
-    return wrapped(words.replace("%", " %"))
-
-
-def wrapped(text: str) -> str:
-    """Paragraphs and entries of lists in lines of a hundred characters."""
-    filled = [
-        textwrap.fill(" ".join(part.split()), 100, subsequent_indent="  " if part.startswith("- ") else "")
-        for part in re.split(r"\n\n|\n(?=- )", text.strip())
-    ]
-    together = "\n".join(one if one.startswith("- ") else f"\n{one}\n" for one in filled).strip()
-    return together + "\n"
+    return {
+        "bar": f"{BAR:g}", "least_low": f"{min(least):+.2f}", "least_high": f"{max(least):+.2f}",
+        "last_low": f"{min(last):+.2f}", "last_high": f"{max(last):+.2f}",
+        "best_low": f"{min(best):.2f}", "best_high": f"{max(best):.2f}", "bounded": len(real),
+        "agree": sum(band.agrees(PUBLISHED, BAR) for band in real),
+        "other": sum(band.agrees(turned, BAR) for band in real),
+        "soil_400": f"{100.0 * shares(rows, 'soil', 400.0, 0.0).min():.0f} %",
+        "soil_1000": f"{100.0 * shares(rows, 'soil', 1000.0, 0.0).max():.0f} %", "sites": len(LONGITUDES),
+        "landers": int(rows[0]["landers"]), "at_end": sum(speed > SPEEDS[-1] - 1e-9 for speed in speeds),
+    }  # fmt: skip
 
 
 def title(ground: str) -> str:
@@ -217,17 +160,14 @@ def main() -> None:
     rows = read_rows(HERE / TABLE, KINDS)
     made = json.loads((HERE / TABLE).with_suffix(".json").read_text(encoding="utf-8"))
     draw(rows, PAGES / "ballistic_descent.png")
-    numbers = {"radius": made["moon_radius_m"], "apart": made["apart_m"], "landers": int(rows[0]["landers"])}
-    lines = [HEAD.format(sites=len(LONGITUDES), **numbers), "## Does the published band come out?", ""]
-    lines += [*mean_table(rows), "", verdict(rows), BANDS]
-    for ground in GROUNDS:
-        lines += [f"### {title(ground).capitalize()}", "", *band_table(rows, ground), ""]
-    lines += [f"## Other latitudes, released at {MAP_DISTANCE:g} m, at the best speed", "", *latitude_table(rows), ""]
-    lines += [
-        f"`{made['command']}`, {made['date']}, {made['machine']},",
-        f"{made['cpu_s_of_rows']} s of CPU time, and that of the mission study where it is not there.",
-    ]
-    (PAGES / "ballistic_descent.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    tables = [f"### {title(ground).capitalize()}\n\n" + "\n".join(band_table(rows, ground)) for ground in GROUNDS]
+    page = TEXT.format(
+        **numbers(rows), radius=f"{made['moon_radius_m']:.1f}", apart=f"{made['apart_m']:.0f}",
+        means="\n".join(mean_table(rows)), bands="\n\n".join(tables), map=f"{MAP_DISTANCE:g}",
+        latitudes="\n".join(latitude_table(rows)),
+        made=f"`{made['command']}`, {made['date']}, {made['machine']}, {made['cpu_s_of_rows']} s of CPU time",
+    )  # fmt: skip
+    (PAGES / "ballistic_descent.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
