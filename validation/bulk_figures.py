@@ -86,7 +86,7 @@ def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
     for axis, column in zip(axes, columns, strict=False):
         table = grouped(rows, by, column)
         for place, values in enumerate(table.values()):
-            single, = axis.plot([place] * len(values), values, "o", color=TRAINING, alpha=0.6, markeredgewidth=0.0)
+            (single,) = axis.plot([place] * len(values), values, "o", color=TRAINING, alpha=0.6, markeredgewidth=0.0)
             mean = axis.errorbar(
                 place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color=INK,
                 markersize=18, capsize=4,
@@ -94,8 +94,10 @@ def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
         handles = {"one run": single, "mean and standard deviation": mean}
         expected = EXPECTED.get((name, column), [])
         if expected:
-            handles["published"], = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
-        axis.set_xticks(range(len(table)), [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table])
+            (handles["published"],) = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
+        # Names in two lines stand beside each other.
+        names = [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table]
+        axis.set_xticks(range(len(table)), names)
         axis.set(xlabel=LABELS[by], ylabel=LABELS[column], xlim=(-0.5, len(table) - 0.5))
         if axis is axes[0]:
             figure.legend(handles.values(), handles, loc="outside lower center", ncols=3)
