@@ -95,9 +95,9 @@ def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
         expected = EXPECTED.get((name, column), [])
         if expected:
             (handles["published"],) = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
-        axis.set_xticks(
-            range(len(table)), [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table]
-        )
+        # Names in two lines stand beside each other.
+        names = [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table]
+        axis.set_xticks(range(len(table)), names)
         axis.set(xlabel=LABELS[by], ylabel=LABELS[column], xlim=(-0.5, len(table) - 0.5))
         if axis is axes[0]:
             figure.legend(handles.values(), handles, loc="outside lower center", ncols=3)

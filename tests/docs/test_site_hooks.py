@@ -1,4 +1,4 @@
-"""What the site adds to mkdocs: equations as MathML, and the pictures of the showcase."""
+"""What the site adds to mkdocs: equations as MathML, figures that lead to their files, and those of the showcase."""
 
 import runpy
 from types import SimpleNamespace
@@ -38,6 +38,13 @@ def test_equations_of_a_page_have_no_command_that_is_left_as_it_is(page: Any, ho
         assert "\\" not in found, latex
         # An environment that is not known leaves its marks of alignment in the text.
         assert "<mi>&</mi>" not in found, latex
+
+
+def test_a_figure_leads_to_its_file_and_a_picture_in_a_line_does_not(hooks: dict[str, Any]) -> None:
+    picture = '<img alt="a map" src="../map.png" />'
+    figure = hooks["on_page_content"](f"<p>{picture}</p>")
+    assert figure == f'<p class="figure"><a href="../map.png">{picture}</a></p>'
+    assert hooks["on_page_content"](f"<p>see {picture}</p>") == f"<p>see {picture}</p>"
 
 
 def test_pictures_of_the_showcase_are_part_of_the_site(hooks: dict[str, Any]) -> None:

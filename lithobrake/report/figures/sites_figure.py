@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from lithobrake.report.figures.map_frames import degrees
 from lithobrake.report.figures.style import INK, QUIET, RULE, SITE, TRAINING
 from lithobrake.results.shares import ShareInterval
 from lithobrake.results.site_map import SiteAgreement, SiteCell, SiteEnds, SiteMap
@@ -149,14 +150,14 @@ def _graticule(axes: Axes) -> None:
     for latitude in range(-60, 61, 30):
         axes.plot(*hammer(np.full(181, latitude), turn).T, color=RULE, linewidth=0.4, alpha=0.8, zorder=3)
         x, y = hammer(np.array([latitude]), np.array([-180.0]))[0]
-        words = "0" if latitude == 0 else f"{abs(latitude)} {'N' if latitude > 0 else 'S'}"
+        words = degrees(latitude, "N", "S")
         # Beside the edge, which runs away from the equator to the right.
         off = (-3.0, 0.06 * latitude)
         axes.annotate(words, (x, y), off, textcoords="offset points", ha="right", va="center", fontsize=6.0)
     for longitude in range(-120, 121, 60):
         line = hammer(0.5 * turn, np.full(181, longitude))
         axes.plot(*line.T, color=RULE, linewidth=0.4, alpha=0.8, zorder=3)
-        words = "0" if longitude == 0 else f"{abs(longitude)} {'E' if longitude > 0 else 'W'}"
+        words = degrees(longitude, "E", "W")
         axes.annotate(
             words, tuple(line[90]), (1.5, 1.5), textcoords="offset points", fontsize=6.0, color="white",
             path_effects=_rim(), zorder=5,
