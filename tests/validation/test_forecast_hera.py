@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import dimorphos, fly
+from lithobrake.study import read_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -48,6 +49,15 @@ def test_a_descent_comes_down_straight_on_its_aim_with_the_speed_of_its_mirror_i
         assert end.impact_speed[0] == pytest.approx(FASTER * least_speed(body, tip, up), rel=1e-3)
         assert math.degrees(end.incidence[0]) < 0.2
         assert end.position[0] == pytest.approx(tip, abs=0.2)
+
+
+def test_branches_share_no_draws_and_the_first_is_the_study_file() -> None:
+    from branches import LANDERS, SCENARIOS, branches
+
+    for lander in LANDERS:
+        seeds = [one.tables(240)["seed"] for one in branches(lander)]
+        assert len(set(seeds)) == len(seeds)
+        assert seeds[0] == read_study(SCENARIOS / f"{lander}.toml").seed
 
 
 def test_chances_weigh_branches_and_nothing_is_impossible():

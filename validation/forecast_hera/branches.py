@@ -7,7 +7,7 @@ lander's branches add up to 1; they are judgement, not measurement, so every ans
 import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,8 @@ STUDY = dict[str, Any]
 class Branch:
     """A lander on one Dimorphos by one descent.
 
-    weight: of the lander's branches. changes: by dotted key; None takes a key away.
+    weight: of the lander's branches. changes: by dotted key; None takes a key away. number: among the branches, which
+    have soils, beds and arrivals of their own; the first has those of the study file.
     """
 
     lander: str
@@ -47,6 +48,7 @@ class Branch:
     aim: str
     weight: float
     changes: Mapping[str, Any]
+    number: int = 0
 
     @property
     def name(self) -> str:
@@ -63,7 +65,7 @@ class Branch:
         tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
         count = round(self.weight * landers)
         changes = {
-            **self.changes, "title": f"{tables['title']}: {self.name}",
+            **self.changes, "title": f"{tables['title']}: {self.name}", "seed": tables["seed"] + self.number,
             # Every answer is of simulated landings.
             "journey.emulated_count": 0, "journey.count": count,
             "bed.bed_count": max(FEWEST_BEDS, round(count / LANDERS_A_BED)),
@@ -111,7 +113,7 @@ def branches(lander: str) -> tuple[Branch, ...]:
         found.append(Branch(lander, "large libration", "at the surface", aim, LARGE / 2.0, large))
     anywhere = {"delivery.longitude_deg": {"distribution": "uniform", "lower": -180.0, "upper": 180.0}}
     found.append(Branch(lander, "rolling", "at the surface", "", ROLLING, anywhere | turning("rolling")))
-    return tuple(found)
+    return tuple(replace(one, number=number) for number, one in enumerate(found))
 
 
 def turning(rotation: str) -> STUDY:

@@ -48,7 +48,7 @@ that.
 - Large libration starts with 20 degrees of yaw, 1 of pitch and 2 of roll; its pole goes up to 45 degrees away.
 - Rolling starts with 30 degrees of yaw and 60 of roll: the pole turns over, while the long axis stays within 36 degrees
 of Didymos.
-- A lander arrives at any time of 30 days of that motion.
+- A lander arrives at any time of 30 days of that motion. Each branch has landers, soils and beds of its own.
 - At the surface: speed, angle and place of the first contact are drawn, as after a controlled descent.
 - Ballistic: released 200 m from the centre on the way to a vertical touchdown, 1.25 times as fast as the least, with
 errors of 90 m and 2 cm/s (3 sigma) in each direction [Celik-2019].
