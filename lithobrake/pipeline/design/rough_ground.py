@@ -6,10 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
-from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame
-from lithobrake.pipeline.design.arrival import SPIN, attitude_inputs, impact_inputs
+from lithobrake.geometry.contact_frame import arriving
+from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import ORIENTATION
 
 Row = dict[str, float]
 AZIMUTH, INCIDENCE, SPEED = "impact.azimuth_deg", "impact.incidence_deg", "impact.speed"
@@ -70,14 +69,12 @@ def on_rough_ground(study: Study, rows: Sequence[Row], axes: np.ndarray, met: np
 
 
 def _seen_from(row: Row, axes: np.ndarray, met: np.ndarray) -> Row:
-    angle, into_frame = math.radians(row[INCIDENCE]), about_z(-math.radians(row[AZIMUTH]))
+    angle = math.radians(row[INCIDENCE])
     incoming = math.sin(angle) * axes[0] - math.cos(angle) * axes[2]
-    attitude = from_frame(axes) * into_frame * attitude_of(row, ORIENTATION)
-    spin = (from_frame(axes) * into_frame).apply([row[name] for name in SPIN])
     incidence = math.acos(min(max(-float(incoming @ met[2]), 0.0), 1.0))
     return {
         **row,
         **impact_inputs(row[SPEED], incidence),
         MEAN_INCIDENCE: row[INCIDENCE],
-        **attitude_inputs(met, row[AZIMUTH], attitude, spin),
+        **attitude_inputs(met, row[AZIMUTH], *arriving(row, axes)),
     }

@@ -17,8 +17,8 @@ from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, 
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
 from lithobrake.pipeline.journeys.journey_model import on_ground
-from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 AFTER = {
     TouchdownOutcome.CAPTURED.value: JourneyEnd.AT_REST.value,
