@@ -111,6 +111,7 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
+    "geometry/boulder_limits.py",
     "geometry/longest_grain.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
