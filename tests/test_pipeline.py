@@ -22,8 +22,8 @@ from lithobrake.pipeline.rest import journeys as rest
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.restitution_table import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, acceleration, draw, in_words_of_the_study, medians
-from lithobrake.vocabulary.quantities import ARC, OUTPUTS
+from lithobrake.study.touchdown_model import PLACE, acceleration, draw, in_words_of_the_study, medians
+from lithobrake.vocabulary.quantities import ARC, ORIENTATION, OUTPUTS
 
 from .paper_tables import paper_tables
 

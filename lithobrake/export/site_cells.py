@@ -7,7 +7,7 @@ from lithobrake.export.flown import plain_name
 from lithobrake.export.maps import NOTE, MapFrame, write_features
 from lithobrake.results.site_map import SiteMap
 
-UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: nine places in ten of the cell"
+UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
 
 
 def site_cells_file(place: Path) -> Path:
@@ -16,22 +16,22 @@ def site_cells_file(place: Path) -> Path:
 
 
 def write_site_cells(site_map: SiteMap, place: Path) -> Path:
-    """Write a polygon for each cell of a map, with its numbers, null where it has none; returns the file.
+    """Write a polygon for each site of a map, with its numbers, null where it has none; returns the file.
 
-    Borders of cells are lines of constant latitude or longitude, as straight lines in these coordinates are.
+    Borders of sites are lines of constant latitude or longitude, as straight lines in these coordinates are.
     """
     radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
     frame, path = MapFrame(plain_name(site_map.body), radius), site_cells_file(place)
     features = []
-    for number, cell in enumerate(site_map.cells):
-        south, north, west, east = cell.bounds_deg
+    for number, site in enumerate(site_map.cells):
+        south, north, west, east = site.bounds_deg
         ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
         features += [
             {
                 "type": "Feature",
                 "id": number,
                 "geometry": {"type": "Polygon", "coordinates": [ring]},
-                "properties": cell.row,
+                "properties": site.row,
             }
         ]
     write_features(frame, path, "sites", features, note=f"{NOTE}; {UNITS}")

@@ -11,13 +11,14 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.export.flown import Flown, has_journeys
 from lithobrake.export.frames import Frame
-from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame, quaternion, spin_of
+from lithobrake.geometry.contact_frame import arriving, attitude_of, from_frame, quaternion, spin_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.landing_again import landing_study
 from lithobrake.smallbody import tumble
+from lithobrake.smallbody.free_rotation import turned_freely
 from lithobrake.smallbody.hopping import impact_frame
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import ORIENTATION, lander
+from lithobrake.study.touchdown_model import lander
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, VELOCITY_OUT
 
@@ -107,14 +108,9 @@ def _flight(study: Study, flown: Flown, flight: int, row: Row, *, is_first: bool
     normal = shape.normals[shape.nearest(place)[1]]
     inertia = _inertia(study, row)
     if is_first:
-        frame = from_frame(impact_frame(incoming[None], normal[None])[0])
-        into = frame * about_z(-math.radians(row["impact.azimuth_deg"]))
-        spin = into.apply([row[f"impact.spin_{axis}"] for axis in "xyz"]) + turning
-        start = quaternion(into * attitude_of(row, ORIENTATION))
-        # Back in time from the touchdown, whose axes the body had not yet turned into.
-        attitudes, spins = tumble(inertia, np.array([start]), spin[None], np.array([-time]))
-        ahead = about_z(rate * time)
-        attitude, spin = ahead * Rotation.from_quat(attitudes[0], scalar_first=True), ahead.apply(spins[0])
+        down, spin = arriving(row, impact_frame(incoming[None], normal[None])[0])
+        # Back in time from the touchdown.
+        attitude, spin = turned_freely(inertia, down, spin + turning, float(flown.spin_period[flight]), -time)
     else:
         local = np.array([row[name] for name in VELOCITY_OUT])
         frame = from_frame(_axes(normal, incoming, flown.velocity[flight], local))

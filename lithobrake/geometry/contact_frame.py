@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.vocabulary.quantities import ORIENTATION_OUT, SPIN_OUT
+from lithobrake.vocabulary.quantities import ORIENTATION, ORIENTATION_OUT, SPIN, SPIN_OUT
 
 
 def attitude_of(outputs: Mapping[str, float], names: tuple[str, ...] = ORIENTATION_OUT) -> Rotation:
@@ -32,6 +32,15 @@ def quaternion(attitude: Rotation) -> tuple[float, float, float, float]:
 def from_frame(axes: np.ndarray) -> Rotation:
     """The rotation that turns vectors of a frame with these axes in rows [3, 3] into those of the body."""
     return Rotation.from_matrix(axes.T)
+
+
+def arriving(inputs: Mapping[str, float], axes: np.ndarray) -> tuple[Rotation, np.ndarray]:
+    """Attitude of a lander as a touchdown begins, and its spin against the ground [rad/s], both fixed to the body.
+
+    inputs: of the touchdown, in the frame of its bed; axes: of the touchdown in rows, [3, 3], body-fixed.
+    """
+    out_of_bed = from_frame(axes) * about_z(-math.radians(inputs["impact.azimuth_deg"]))
+    return out_of_bed * attitude_of(inputs, ORIENTATION), out_of_bed.apply([inputs[name] for name in SPIN])
 
 
 def about_z(angle: float) -> Rotation:

@@ -58,10 +58,10 @@ def _warnings(site_map: SiteMap) -> list[str]:
 
 
 def _tiles(site_map: SiteMap) -> list[Tile]:
-    shares = [cell.ends.at_rest.share for cell in site_map.cells if cell.ends is not None]
+    shares = [site.ends.at_rest.share for site in site_map.cells if site.ends is not None]
     if not shares or site_map.at_rest is None:
         return []
-    best = sum(cell.not_worse for cell in site_map.cells)
+    best = sum(site.not_worse for site in site_map.cells)
     hours = site_map.duration_s / HOUR
     return [
         Tile(percent(site_map.at_rest.share).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
@@ -107,14 +107,14 @@ def _agreement(site_map: SiteMap) -> PageTable:
 
 
 def _best(site_map: SiteMap) -> PageTable:
-    answered = [cell for cell in site_map.cells if cell.ends is not None]
+    answered = [site for site in site_map.cells if site.ends is not None]
     order = sorted(answered, key=_least, reverse=True)[:BEST]
     return _table(site_map, order, f"The {len(order)} sites with the highest lower end of the interval")
 
 
-def _least(cell: SiteCell) -> tuple[float, float]:
-    assert cell.ends is not None
-    rests = cell.ends.at_rest
+def _least(site: SiteCell) -> tuple[float, float]:
+    assert site.ends is not None
+    rests = site.ends.at_rest
     return (rests.share if rests.lower is None else rests.lower), rests.share
 
 
@@ -127,23 +127,23 @@ def _table(site_map: SiteMap, cells: "tuple[SiteCell, ...] | list[SiteCell]", ti
     ]
     note = (
         f"Middle of each site [deg]. Fractions and medians with {percent(site_map.level)} intervals; slope and light "
-        "as the mean, and the span of nine places in ten, over the site. Journeys: of the study, with their first "
+        "as the mean over the site, and the span of 90 % of its area. Journeys: of the study, with their first "
         "touchdown there."
     )
-    rows = [_row(cell, names) for cell in cells]
+    rows = [_row(site, names) for site in cells]
     return PageTable(title, columns, rows, note, numbers=frozenset((*columns[:2], columns[-1])))
 
 
-def _row(cell: SiteCell, names: tuple[str, ...]) -> list[str]:
-    ends = cell.ends
+def _row(site: SiteCell, names: tuple[str, ...]) -> list[str]:
+    ends = site.ends
     if ends is None:
-        of_landers = [f"not answered ({cell.beyond})", "", "", "", ""]
+        of_landers = [f"not answered ({site.beyond})", "", "", "", ""]
     else:
         shares = [_share(one) for one in (ends.at_rest, ends.partner, ends.escaped)]
         of_landers = [*shares, _estimate(ends.time_s, HOUR), _estimate(ends.distance_m, 1.0)]
-    light = [_spread(cell.light[name], 100.0) for name in names]
-    ground = [_spread(cell.slope_deg, 1.0), *light, "yes" if cell.not_worse else ""]
-    return [f"{cell.latitude_deg:.0f}", f"{cell.longitude_deg:.0f}", *of_landers, *ground, str(cell.journeys)]
+    light = [_spread(site.light[name], 100.0) for name in names]
+    ground = [_spread(site.slope_deg, 1.0), *light, "yes" if site.not_worse else ""]
+    return [f"{site.latitude_deg:.0f}", f"{site.longitude_deg:.0f}", *of_landers, *ground, str(site.journeys)]
 
 
 def _share(share: BoundedShare) -> str:

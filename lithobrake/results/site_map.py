@@ -14,19 +14,19 @@ MEDIANS = ("time_s", "distance_m")
 
 @dataclass(frozen=True)
 class SiteSpread:
-    """A number that differs over a cell: its mean, and the ends between which nine places in ten lie."""
+    """A number that differs over a site: its mean, and the ends between which it is on 90 % of the area."""
 
     mean: float
-    """over the places of the cell"""
+    """over the site"""
     low: float
-    """5 % of the places have less"""
+    """5 % of the area has less"""
     high: float
-    """5 % of the places have more"""
+    """5 % of the area has more"""
 
 
 @dataclass(frozen=True)
 class SiteEnds:
-    """What becomes of the landers of a cell, by the emulator of the touchdowns.
+    """What becomes of the landers of a site, by the emulator of the touchdowns.
 
     Shares are those of the landers of known end; their bounds hold whatever becomes of the others, over other beds and
     other landers.
@@ -48,7 +48,7 @@ class SiteEnds:
 
 @dataclass(frozen=True)
 class SiteCell:
-    """Aim points that are spread evenly over a cell, and the landers that are delivered there."""
+    """A site: a cell of equal area with aim points all over it, and the landers that are delivered there."""
 
     latitude_deg: float
     """of its middle"""
@@ -67,15 +67,15 @@ class SiteCell:
     beyond: str
     """what such impacts are beyond the touchdowns of the study, the most frequent first; empty where there are none"""
     ends: SiteEnds | None
-    """null where so many ends are unknown that the cell is not answered"""
+    """null where so many ends are unknown that the site is not answered"""
     not_worse: bool
-    """whether it cannot be told from the cell of most landers at rest"""
+    """whether it cannot be told from the site of most landers at rest"""
     slope_deg: SiteSpread
     """of the facets against gravity, rotation and the partner's tide"""
     gravity: SiteSpread
     """acceleration of what rests there [m/s2]"""
     light: Mapping[str, SiteSpread]
-    """fraction of a day in which "sun" and "earth" are seen, over places and seasons; those that [sky] asks for"""
+    """fraction of a day in which "sun" and "earth" are seen, over area and seasons; those that [sky] asks for"""
     journeys: int
     """journeys of the study with their first touchdown there"""
 
@@ -86,7 +86,7 @@ class SiteCell:
 
     @property
     def row(self) -> dict[str, Any]:
-        """The cell as a row of sites.csv; None where it has no such number."""
+        """The site as a row of sites.csv; None where it has no such number."""
         own = ("latitude_deg", "longitude_deg", "south_deg", "north_deg", "west_deg", "east_deg")
         row: dict[str, Any] = {name: getattr(self, name) for name in own}
         row |= {"answered": int(self.ends is not None), "unknown": self.unknown, "beyond": self.beyond}
@@ -146,7 +146,7 @@ class SiteMap:
     duration_s: float
     """longest journey [s]"""
     landers: int
-    """landers of each cell, the same in all"""
+    """landers of each site, the same in all"""
     refits: int
     """refits of the emulator to beds drawn with replacement, of which each lander keeps one"""
     beds: int
@@ -154,14 +154,14 @@ class SiteMap:
     touchdowns: int
     """touchdowns that it was fitted to"""
     area_m2: float
-    """of a cell, on the ball of the body's volume"""
+    """of a site, on the ball of the body's volume"""
     at_rest: ShareInterval | None
-    """landers at rest over all answered cells, as large as each other; null where none is answered"""
+    """landers at rest over all answered sites, as large as each other; null where none is answered"""
     cells: tuple[SiteCell, ...]
     agreement: tuple[SiteAgreement, ...]
     """with the journeys of the study: over the whole body, then in regions with enough of them"""
 
     @property
     def answered(self) -> int:
-        """How many cells are answered."""
+        """How many sites are answered."""
         return sum(cell.ends is not None for cell in self.cells)

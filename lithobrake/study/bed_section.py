@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from lithobrake.geometry.boulder_limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import Number, Numbers, Section, Whole
 
 Metres = Annotated[float, Number("m", above=0)]
@@ -11,8 +12,6 @@ Metres = Annotated[float, Number("m", above=0)]
 # (docs/estimates.md). An interval needs a dozen beds.
 LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
 FEWEST_BEDS, MOST_BEDS = 12, 1000
-# As touchdown/boulders.py has it, which takes a solver to load.
-LARGEST_COVERAGE = 0.3
 
 
 class Constant(Section):

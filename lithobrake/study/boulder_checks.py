@@ -3,13 +3,11 @@
 import math
 from collections.abc import Iterator
 
+from lithobrake.geometry.boulder_limits import BOULDER_REACH
 from lithobrake.geometry.longest_grain import longest_reach
 from lithobrake.study.bed_section import BoulderSection, Constant
 from lithobrake.study.period_checks import SKINS, TWO_IMAGES
 from lithobrake.study.study import Study
-
-# As touchdown/boulders.py has it, which takes a solver to load: how far a boulder reaches, in its diameters.
-BOULDER_REACH = 0.75
 
 
 def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iterator[str]:

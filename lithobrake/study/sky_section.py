@@ -13,21 +13,21 @@ SkyBody = Literal["sun", "earth", "orbiter"]
 
 class OrbitSection(Section):
     """Heliocentric orbit of the body, or of the binary that it is in, by osculating elements (ecliptic and equinox of
-    J2000), as a catalogue of small bodies has them."""
+    J2000), as a catalogue of small bodies has them. The examples are those of Didymos [SBDB-Didymos]."""
 
-    semi_major_axis_au: Annotated[float, Number("", above=0)] = Field(examples=["1.6427"])
+    semi_major_axis_au: Annotated[float, Number("", above=0)] = Field(examples=["1.64271"])
     """Semi-major axis in astronomical units."""
-    eccentricity: Annotated[float, Number("", at_least=0, below=1)] = Field(examples=["0.3833"])
+    eccentricity: Annotated[float, Number("", at_least=0, below=1)] = Field(examples=["0.383123"])
     """Eccentricity."""
-    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] = Field(examples=["3.414"])
+    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] = Field(examples=["3.41388"])
     """Inclination."""
-    node_deg: Turn = Field(examples=["72.99"])
+    node_deg: Turn = Field(examples=["72.9858"])
     """Longitude of the ascending node."""
-    perihelion_deg: Turn = Field(examples=["319.6"])
+    perihelion_deg: Turn = Field(examples=["319.5807"])
     """Argument of perihelion."""
-    mean_anomaly_deg: Turn = Field(examples=["0.0"])
+    mean_anomaly_deg: Turn = Field(examples=["260.861"])
     """Mean anomaly at `epoch`."""
-    epoch: str = Field(examples=['"2022-10-21T00:00:00"'])
+    epoch: str = Field(examples=['"2026-06-09T00:00:00"'])
     """Date and time at which these elements hold (UTC)."""
 
 

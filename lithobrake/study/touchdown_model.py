@@ -18,6 +18,7 @@ from lithobrake.study.bed_section import Constant, PowerLaw
 from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
@@ -34,7 +35,6 @@ PLACE = ("impact.place.x", "impact.place.y")
 # Height of the lowest hop that leaves the bed, in largest diameters of the lander, where the study says nothing.
 HOP_PER_LANDER = 3.0
 TIME_LEFT = "journey.time_left"
-ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 
 
 def medians(study: Study) -> dict[str, float]:
@@ -111,6 +111,7 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
+    "geometry/boulder_limits.py",
     "geometry/longest_grain.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",

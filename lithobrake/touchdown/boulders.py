@@ -7,18 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.dem import ConvexHull, folded, period_of
+from lithobrake.geometry.boulder_limits import BOULDER_REACH, LARGEST_COVERAGE
 from lithobrake.touchdown.grains import GrainSizes, make_grain_within
 
 Floats = NDArray[np.float64]
-# How far a boulder reaches from its centroid at most, in diameters of the sphere of equal volume. An ellipsoid with the
-# axes of blocks on Ryugu, 2 : sqrt(2) : 1, reaches 0.71. Source: [Michikami-2022].
-BOULDER_REACH = 0.75
-# Points of the cloud whose envelope is a boulder, at least: of fewer points hardly an envelope keeps to that reach.
+# Points of the cloud whose envelope is a boulder, at least: of fewer hardly an envelope keeps to BOULDER_REACH.
 BOULDER_POINTS = 30
 # Part of the volume that poured grains fill: where the surface will lie is not known before the bed is poured.
 SOLID_FRACTION = 0.6
-# Discs dropped at random cover 0.547 of the ground until no more fits [Feder-1980]; boulders are wider than these.
-LARGEST_COVERAGE = 0.3
 PLACES_TRIED = 1000
 SURFACE_STEPS = 40
 # Of its height, that a boulder reaches above the floor at least.

@@ -3,13 +3,14 @@
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import campaign_models as models
 import numpy as np
 import pytest
-from dask_cluster import cluster
+from dask_cluster import Cluster, cluster
 from test_chains import chains, what_came_of_chains
 
 from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Runs, Tally, read_records, run
@@ -29,17 +30,23 @@ def what_came(runs: Runs) -> list[tuple[Any, ...]]:
     return [(e.key, e.status, e.outcome, e.inputs, e.outputs, e.draws, e.seed, e.reason) for e in runs.records]
 
 
+def losing_a_worker(made: Cluster, is_time: Callable[[Tally], bool]) -> Callable[[Tally], None]:
+    """Add two workers; give what kills the first of them when it is time."""
+    made.add_worker("first")
+    made.add_worker("second")
+
+    def lose(state: Tally) -> None:
+        if is_time(state) and made.processes["first"].poll() is None:
+            made.processes["first"].kill()
+            made.processes["first"].wait()
+
+    return lose
+
+
 def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: Path) -> None:
     here = campaign(tmp_path / "here.sqlite", LocalExecutor(2))
     with cluster(tmp_path) as made:
-        made.add_worker("first")
-        made.add_worker("second")
-
-        def lose_a_worker(state: Tally) -> None:
-            if state.done >= 10 and made.processes["first"].poll() is None:
-                made.processes["first"].kill()
-                made.processes["first"].wait()
-
+        lose_a_worker = losing_a_worker(made, lambda state: state.done >= 10)
         there = campaign(tmp_path / "there.sqlite", DaskExecutor(made.address), progress=lose_a_worker)
         assert made.processes["first"].poll() is not None
     assert there == here
@@ -47,14 +54,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: 
 
 def test_chains_on_a_cluster_that_loses_a_worker_are_those_of_this_machine(tmp_path: Path) -> None:
     with cluster(tmp_path) as made:
-        made.add_worker("first")
-        made.add_worker("second")
-
-        def lose_a_worker(state: Tally) -> None:
-            if state.ended >= 30 and made.processes["first"].poll() is None:
-                made.processes["first"].kill()
-                made.processes["first"].wait()
-
+        lose_a_worker = losing_a_worker(made, lambda state: state.ended >= 30)
         with DaskExecutor(made.address) as executor:
             there = chains(tmp_path, executor, models.collatz_after_a_moment, progress=lose_a_worker)
         assert made.processes["first"].poll() is not None

@@ -9,8 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.export import write_attitudes, write_ephemerides, write_spk
 from lithobrake.results import StudyResults, Table
-from lithobrake.study.touchdown_model import ORIENTATION
-from lithobrake.vocabulary.quantities import ORIENTATION_OUT
+from lithobrake.vocabulary.quantities import ORIENTATION, ORIENTATION_OUT
 
 from ..smallbody.kernels import LSK
 from .delivered import ATTITUDE, EPOCH, RATES, delivered_states

@@ -8,6 +8,7 @@ import pytest
 
 from lithobrake.smallbody import HeliocentricOrbit, latitudes_over
 from lithobrake.smallbody.sun_and_earth import earth_place
+from lithobrake.study.sky_section import OrbitSection
 
 pytest.importorskip("spiceypy")
 pytest.importorskip("erfa")
@@ -34,6 +35,16 @@ def test_an_ellipse_has_its_perihelion_where_its_elements_say() -> None:
     north = np.array([0.0, -math.sin(OBLIQUITY), math.cos(OBLIQUITY)])
     assert near == pytest.approx(0.96 * north, abs=1e-9)
     assert far == pytest.approx(-2.24 * north, abs=1e-3)
+
+
+def test_the_orbit_of_the_template_takes_didymos_to_where_horizons_has_it() -> None:
+    """Three and a half years before its epoch; planets have changed the orbit since by some hundredths of a degree."""
+    examples = [field.examples or [""] for field in OrbitSection.model_fields.values()]
+    *elements, epoch = (one[0].strip('"') for one in examples)
+    orbit = HeliocentricOrbit(*map(float, elements), datetime.fromisoformat(epoch))
+    (found,) = orbit.place([datetime(2022, 12, 8, 20, 7, 15)])
+    horizons = np.array([0.1321900534972707, 1.022633896837742, 0.4564442166808176])
+    assert np.linalg.norm(found - horizons) < math.radians(0.06) * np.linalg.norm(horizons)
 
 
 def test_earth_is_where_another_library_has_it() -> None:

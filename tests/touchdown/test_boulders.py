@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull
+from lithobrake.geometry.boulder_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, Boulders, GrainSizes, pour_bed, settling
 from lithobrake.touchdown.boulders import (
-    BOULDER_REACH,
     SOLID_FRACTION,
     cut_below,
     free_places,
@@ -153,12 +153,3 @@ def test_rain_stays_clear_of_boulders(ground: Bed) -> None:
     way[:, :2] -= 0.8 * np.rint(way[:, :2] / 0.8)
     reach = np.array([grain.bounding_radius for grain in grains]) + ground.grains[0].bounding_radius
     assert (np.linalg.norm(way, axis=1) > reach - 1e-12).all()
-
-
-def test_the_study_file_has_the_limits_of_the_bed() -> None:
-    """They stand twice, so that a study is read without what pours beds."""
-    from lithobrake.study import bed_section, boulder_checks
-    from lithobrake.touchdown import boulders as module
-
-    assert bed_section.LARGEST_COVERAGE == module.LARGEST_COVERAGE
-    assert boulder_checks.BOULDER_REACH == module.BOULDER_REACH

@@ -19,7 +19,7 @@ from descents import Descents, Floats, back_in_time, balls, radius
 from soil import RecordedSoil
 
 import lithobrake
-from lithobrake.smallbody import Body, Bounce, HardSurface, Launch, fly, hop
+from lithobrake.smallbody import Body, Bounce, HardSurface, Launch, hop
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, timed, write_document
@@ -60,10 +60,11 @@ def shares(body: Body, descents: Descents, bounce: Bounce) -> tuple[Floats, Floa
     """
     states, is_outside = launches(body, descents)
     place, velocity = states[is_outside, :3], states[is_outside, 3:]
-    hits = fly(body, place, velocity, DURATION, gravity="table").status == "impact"
-    ends = hop(body, Launch(place, velocity), bounce, DURATION, friction=FRICTION, gravity="table", seed=SEED).status
+    journeys = hop(body, Launch(place, velocity), bounce, DURATION, friction=FRICTION, gravity="table", seed=SEED)
+    # What hits the primary without having bounced or slid before has not met the moon.
+    past = (journeys.status == "partner") & (journeys.bounce_count == 0) & (journeys.slid_time == 0.0)
     both = np.zeros((2, len(states)))
-    both[:, is_outside] = hits, ends == "settled"
+    both[:, is_outside] = np.isfinite(journeys.impact_speed) & ~past, journeys.status == "settled"
     touched, rested = both.reshape(2, -1, LANDERS).mean(axis=2)
     return touched, rested
 

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.dem import Material
+from lithobrake.geometry.boulder_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, BedRecipe, GrainSizes, pour_bed, stored_or_poured
-from lithobrake.touchdown.boulders import BOULDER_REACH, Boulders
+from lithobrake.touchdown.boulders import Boulders
 from lithobrake.touchdown.surface import heights_at
 
 # Cumulative index of the number of blocks larger than D: of those above 5 m, and the flattest of smaller ones.

@@ -74,14 +74,22 @@ def collision_step(pair: int, pairs: Pairs, flight: Flight, plans: Plans, speed:
 
 @kernel
 def contact_step(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, rules: Rules) -> float:
-    """Return the step [s] of a contact: a part of the collision with the energy that it has now."""
+    """Return the step [s] of a contact: a part of the collision with the energy that it has now, and no longer than of
+    one that begins at the speed which it may gain before a plan is made anew.
+
+    An overlap that is but rounding has no energy of its own: its step would last while its bodies fall through each
+    other.
+    """
     normal, overlap, elastic = row(pairs.normal, pair), pairs.overlap[pair], pairs.elastic_force[pair]
     speed = dot(closing_velocity(pair, bodies, pairs, plans), normal)
     inverse_mass = plans.inverse_mass[pair]
     energy = 0.4 * elastic * overlap + 0.5 * speed * speed / inverse_mass
     deepest = (2.5 * energy * overlap**1.5 / elastic) ** 0.4
     fastest = (2.0 * energy * inverse_mass) ** 0.5
-    return min(HERTZ_TIME * deepest / (fastest * steps_at(fastest, flight, rules)), plans.longest[pair])
+    step = HERTZ_TIME * deepest / (fastest * steps_at(fastest, flight, rules))
+    first, second = pairs.first[pair], pairs.second[pair]
+    gain = flight.slack[first] + (flight.slack[second] if second >= 0 else 0.0)
+    return min(step, collision_step(pair, pairs, flight, plans, gain, rules), plans.longest[pair])
 
 
 @kernel
@@ -97,16 +105,28 @@ def closing_velocity(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> V
 
 
 @kernel
+def way_since(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> tuple[float, float]:
+    """Return the way [m] of a body's surface up to now [s], and the speed [m/s] gained since it was moved, at most."""
+    time = now - flight.time[body]
+    gained = 0.0 if flight.held[body] else time * weight(rules)
+    return bodies.travel[body] + time * (surface_speed(bodies, flight, body) + gained), gained
+
+
+@kernel
 def plan_apart(
     pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, agenda: Agenda, now: float, rules: Rules
 ) -> None:  # fmt: skip
-    """Make a pair due when it could touch first, as nothing near has been found. Writes to agenda."""
+    """Make a pair due when it could touch first, as nothing near has been found. Writes to agenda.
+
+    Only one of the two may have been moved to now [s].
+    """
     first, second = pairs.first[pair], pairs.second[pair]
-    gap = pairs.wake[pair] - bodies.travel[first] - (now - flight.time[first]) * surface_speed(bodies, flight, first)
+    way, gained = way_since(bodies, flight, first, now, rules)
+    gap, speed = pairs.wake[pair] - way, closing_speed(bodies, flight, first, second) + gained
     if second >= 0:
-        gap -= bodies.travel[second] + (now - flight.time[second]) * surface_speed(bodies, flight, second)
+        way, gained = way_since(bodies, flight, second, now, rules)
+        gap, speed = gap - way, speed + gained
     acceleration = relative_weight(flight, first, second, rules)
-    speed = closing_speed(bodies, flight, first, second)
     put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
 
 

@@ -141,9 +141,12 @@ def weight(rules: Rules) -> float:
 
 @kernel
 def relative_weight(flight: Flight, first: int, second: int, rules: Rules) -> float:
-    """Return the acceleration [m/s2] with which two fall against each other: none where both fall freely."""
-    falls_alone = second < 0 or flight.held[first] != flight.held[second]
-    return weight(rules) if falls_alone else 0.0
+    """Return a bound on the acceleration [m/s2] with which two fall against each other: none where both are held.
+
+    Of two that move freely, one may fly while the other rests on a third.
+    """
+    both_held = second >= 0 and flight.held[first] and flight.held[second]
+    return 0.0 if both_held else weight(rules)
 
 
 @kernel

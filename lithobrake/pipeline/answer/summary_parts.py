@@ -17,7 +17,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.json_values import to_json
 from lithobrake.results.run_results import OutputRange
 from lithobrake.results.site_results import BedNumbers
-from lithobrake.results.study_results import SUMMARY_FORMAT
+from lithobrake.results.study_files import SUMMARY_FORMAT
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance, RunTimes
 from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import TOUCHDOWN

@@ -26,10 +26,10 @@ from lithobrake.results.comparison import ComparedAnswer, ComparedNumber, StudyC
 from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.results.json_values import to_json
 from lithobrake.study import Study, StudySource
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE
+from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.percentages import LEVEL
-from lithobrake.vocabulary.quantities import TOUCHDOWN
+from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
 
 # What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
 COMMON = {

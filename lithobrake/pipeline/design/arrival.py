@@ -6,10 +6,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.contact_frame import about_z, from_frame, quaternion
-from lithobrake.study.touchdown_model import ORIENTATION
+from lithobrake.vocabulary.quantities import ORIENTATION, SPIN
 
 Row = dict[str, float]
-SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 # A lander that comes in along the ground meets it from above all the same.
 FLATTEST_DEG = 89.9
 

@@ -13,7 +13,7 @@ from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, 
 from lithobrake.pipeline.design.free_rotation import lander_inertia, turned_in_flight
 from lithobrake.pipeline.design.local_ground import on_ground
 from lithobrake.pipeline.design.release_draws import released_states
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_uniforms, roughness
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_uniforms, met_ground
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
@@ -37,6 +37,7 @@ class Descents:
     flights         in axes fixed to the body; their start time is that of the partner's motion and the body's rotation
     axes            of the first touchdown, in rows, [count, 3, 3], x along the incoming horizontal velocity, z along
                     the normal of the ground that is met; of those that touch down
+    incidence       on the ground that is met [rad], [count]
     attitude, spin  at the start, fixed to the body, of a lander whose states have them: [count, 4] as w, x, y, z, and
                     against axes that do not turn [rad/s], [count, 3]; else None
     """
@@ -45,6 +46,7 @@ class Descents:
     first: int
     flights: "Flights"
     axes: np.ndarray
+    incidence: np.ndarray
     attitude: Rotation | None
     spin: np.ndarray | None
 
@@ -81,10 +83,10 @@ class Descents:
             spin_period=columns["spin_period"],
         )
         down = flights.status == FlightStatus.IMPACT
-        axes = _axes(study, flights, down, first)
+        axes, incidence = _met_ground(study, flights, down, first)
         _refuse_fast(study, flights.impact_speed[down])
         attitude, spin = _turning(states, into_body)
-        return cls(study, first, flights, axes, attitude, spin)
+        return cls(study, first, flights, axes, incidence, attitude, spin)
 
     @property
     def touches_down(self) -> np.ndarray:
@@ -129,14 +131,10 @@ class Descents:
 
     def _impact(self, lander: int) -> Row:
         """Speed and incidence of a first touchdown, on the ground that is met."""
-        flights, mean = self.flights, float(self.flights.incidence[lander])
-        speed = float(flights.impact_speed[lander])
+        met = impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
         if not self.study.site.roughness_deg:
-            return impact_inputs(speed, mean)
-        from lithobrake.smallbody import incidence_on
-
-        met = incidence_on(flights.velocity[lander][None], self.axes[lander][None, 2])
-        return impact_inputs(speed, float(met[0])) | {MEAN_INCIDENCE: np.degrees(mean)}
+            return met
+        return met | {MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
 
     def _attitude(self, lander: int, row: Row) -> Row:
         """Attitude and spin of a lander at its first touchdown, where its state has them."""
@@ -151,18 +149,13 @@ class Descents:
         return attitude_inputs(self.axes[lander], row[AZIMUTH], attitude, spin)
 
 
-def _axes(study: Study, flights: "Flights", down: np.ndarray, first: int) -> np.ndarray:
-    """Axes of the first touchdowns of the landers that are down, those of the others those of the body."""
-    from lithobrake.smallbody import met_normals
-    from lithobrake.smallbody.hopping import impact_frame
-
-    axes, velocity = np.tile(np.eye(3), (len(flights), 1, 1)), flights.velocity[down]
+def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
+    """Axes and incidences of the first touchdowns of the landers that are down; axes of the others: the body's."""
+    axes, incidence = np.tile(np.eye(3), (len(flights), 1, 1)), np.array(flights.incidence)
     up = flights.body.shape.normals[flights.facet[down]]
-    if study.site.roughness_deg:
-        uniforms = np.array([first_uniforms(study, first + one) for one in np.flatnonzero(down).tolist()])
-        up = met_normals(velocity, up, roughness(study), uniforms.reshape(-1, 2))
-    axes[down] = impact_frame(velocity, up)
-    return axes
+    uniforms = np.array([first_uniforms(study, first + one) for one in np.flatnonzero(down).tolist()]).reshape(-1, 2)
+    axes[down], incidence[down] = met_ground(study, flights.velocity[down], up, incidence[down], uniforms)
+    return axes, incidence
 
 
 def _is_icrf(study: Study) -> bool:

@@ -28,7 +28,8 @@ from lithobrake.pipeline.design.release_draws import RELEASE
 from lithobrake.study import Study, StudyError
 from lithobrake.study.bed_section import FEWEST_BEDS, MOST_BEDS
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT, given_attitude, medians
+from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

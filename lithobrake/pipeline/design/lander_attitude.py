@@ -8,8 +8,9 @@ from scipy.spatial.transform import Rotation
 from lithobrake.geometry.attitude_terms import AttitudeTerms, orthonormal, seen_from_lander
 from lithobrake.pipeline.design.drawn_design import AZIMUTH, DrawnDesign
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import ORIENTATION, lander, medians
+from lithobrake.study.touchdown_model import lander, medians
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 # Names of the terms among the inputs of a touchdown.
 PREFIX = "attitude."

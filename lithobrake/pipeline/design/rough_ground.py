@@ -6,10 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
-from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame
-from lithobrake.pipeline.design.arrival import SPIN, attitude_inputs, impact_inputs
+from lithobrake.geometry.contact_frame import arriving
+from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import ORIENTATION
 
 Row = dict[str, float]
 AZIMUTH, INCIDENCE, SPEED = "impact.azimuth_deg", "impact.incidence_deg", "impact.speed"
@@ -22,6 +21,23 @@ def roughness(study: Study) -> float:
     return math.radians(study.site.roughness_deg or 0.0)
 
 
+def met_ground(
+    study: Study, velocity: np.ndarray, up: np.ndarray, incidence: np.ndarray, uniforms: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Axes of touchdowns in rows, [count, 3, 3], and incidences [rad], [count], on the ground that landers meet.
+
+    velocity [m/s] and up, the normals of the facets, both [count, 3]; incidence: against these [rad], [count];
+    uniforms [count, 2]: numbers between 0 and 1 that draw the gradient of rough ground.
+    """
+    from lithobrake.smallbody import incidence_on, met_normals
+    from lithobrake.smallbody.hopping import impact_frame
+
+    if not study.site.roughness_deg:
+        return impact_frame(velocity, up), incidence
+    normal = met_normals(velocity, up, roughness(study), uniforms)
+    return impact_frame(velocity, normal), incidence_on(velocity, normal)
+
+
 def first_axes(study: Study, axes: np.ndarray, rows: Sequence[Row]) -> np.ndarray:
     """Axes of first touchdowns in rows, [count, 3, 3], from those on the facets of the shape.
 
@@ -29,13 +45,10 @@ def first_axes(study: Study, axes: np.ndarray, rows: Sequence[Row]) -> np.ndarra
     """
     if not study.site.roughness_deg or not len(rows):
         return axes
-    from lithobrake.smallbody import met_normals
-    from lithobrake.smallbody.hopping import impact_frame
-
     angle = np.radians([row.get(MEAN_INCIDENCE, row[INCIDENCE]) for row in rows])
     incoming = np.sin(angle)[:, None] * axes[:, 0] - np.cos(angle)[:, None] * axes[:, 2]
     uniforms = np.array([first_uniforms(study, int(row["journey"])) for row in rows])
-    return impact_frame(incoming, met_normals(incoming, axes[:, 2], roughness(study), uniforms))
+    return met_ground(study, incoming, axes[:, 2], angle, uniforms)[0]
 
 
 def first_uniforms(study: Study, journey: int) -> np.ndarray:
@@ -56,14 +69,12 @@ def on_rough_ground(study: Study, rows: Sequence[Row], axes: np.ndarray, met: np
 
 
 def _seen_from(row: Row, axes: np.ndarray, met: np.ndarray) -> Row:
-    angle, into_frame = math.radians(row[INCIDENCE]), about_z(-math.radians(row[AZIMUTH]))
+    angle = math.radians(row[INCIDENCE])
     incoming = math.sin(angle) * axes[0] - math.cos(angle) * axes[2]
-    attitude = from_frame(axes) * into_frame * attitude_of(row, ORIENTATION)
-    spin = (from_frame(axes) * into_frame).apply([row[name] for name in SPIN])
     incidence = math.acos(min(max(-float(incoming @ met[2]), 0.0), 1.0))
     return {
         **row,
         **impact_inputs(row[SPEED], incidence),
         MEAN_INCIDENCE: row[INCIDENCE],
-        **attitude_inputs(met, row[AZIMUTH], attitude, spin),
+        **attitude_inputs(met, row[AZIMUTH], *arriving(row, axes)),
     }

@@ -9,9 +9,9 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.rough_ground import first_axes
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.site import Site
+from lithobrake.vocabulary.quantities import SPIN
 
 Row = dict[str, float]
-SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 
 @dataclass(frozen=True)

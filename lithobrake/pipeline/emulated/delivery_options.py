@@ -23,9 +23,8 @@ from lithobrake.study import Study
 from lithobrake.study.journey_sections import arrival_key
 from lithobrake.study.lander_sides import directions_of_sides
 from lithobrake.study.question_sections import SIDE
-from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, UNKNOWN_END
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, ORIENTATION, UNKNOWN_END
 
 SITE = "site."
 

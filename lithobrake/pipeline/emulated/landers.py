@@ -10,7 +10,7 @@ from lithobrake.pipeline.design.arrival import FLATTEST_DEG
 from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.local_ground import AZIMUTH, friction_of, ground_inputs
-from lithobrake.pipeline.design.rough_ground import roughness
+from lithobrake.pipeline.design.rough_ground import met_ground
 from lithobrake.pipeline.emulated.answers import Answers
 from lithobrake.pipeline.emulated.arrivals import Arrivals
 from lithobrake.pipeline.emulated.landings_between import LandingsBetween, NextImpacts
@@ -18,8 +18,8 @@ from lithobrake.pipeline.emulated.touchdown_emulator import GRAVITY, INCIDENCE, 
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS
 from lithobrake.pipeline.journeys.journey_model import on_ground
-from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 AFTER = {
     TouchdownOutcome.CAPTURED.value: JourneyEnd.AT_REST.value,
@@ -169,22 +169,18 @@ class EmulatedLanders:
         hit = flown.status == FlightStatus.IMPACT
         down = going[hit]
         self.speed[down] = flown.impact_speed[hit]
-        self.incidence[down] = np.minimum(np.degrees(flown.incidence[hit]), FLATTEST_DEG)
-        self._meet_ground(down, flown.velocity[hit], job.site.body.shape.normals[flown.facet[hit]], number)
+        up = job.site.body.shape.normals[flown.facet[hit]]
+        self._meet_ground(down, flown.velocity[hit], up, flown.incidence[hit], number)
         self.spin[down] = self._arriving_spin(down, spin[hit], flown.start.time[hit], flown.time[hit], period[hit])
 
-    def _meet_ground(self, down: np.ndarray, velocity: np.ndarray, up: np.ndarray, number: int) -> None:
+    def _meet_ground(
+        self, down: np.ndarray, velocity: np.ndarray, up: np.ndarray, incidence: np.ndarray, number: int
+    ) -> None:
         """Lay the frames of the next impacts: velocities [m/s] and normals of the facets, [count, 3]."""
-        from lithobrake.smallbody import incidence_on, met_normals
-        from lithobrake.smallbody.hopping import impact_frame
-
-        study, normal = self.job.study, up
-        if study.site.roughness_deg:
-            seed = hashed_seed(study.seed, self.title, "roughness", number)
-            uniforms = np.random.default_rng(seed).random((len(self.end), 2))[down]
-            normal = met_normals(velocity, up, roughness(study), uniforms)
-            self.incidence[down] = np.minimum(np.degrees(incidence_on(velocity, normal)), FLATTEST_DEG)
-        self.axes[down] = impact_frame(velocity, normal)
+        seed = hashed_seed(self.job.study.seed, self.title, "roughness", number)
+        uniforms = np.random.default_rng(seed).random((len(self.end), 2))[down]
+        self.axes[down], met = met_ground(self.job.study, velocity, up, incidence, uniforms)
+        self.incidence[down] = np.minimum(np.degrees(met), FLATTEST_DEG)
 
     def _arriving_spin(
         self, down: np.ndarray, spin: np.ndarray, start: np.ndarray, time: np.ndarray, period: np.ndarray

@@ -13,14 +13,14 @@ from lithobrake.geometry.contact_frame import about_z
 from lithobrake.pipeline.design.local_ground import AZIMUTH, friction_of, ground_inputs
 from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
 from lithobrake.pipeline.emulated.answers import Answers
-from lithobrake.pipeline.emulated.arrivals import SPIN, Arrivals, Row
+from lithobrake.pipeline.emulated.arrivals import Arrivals, Row
 from lithobrake.pipeline.emulated.touchdown_emulator import ALONG, ASIDE, DURATION, INCIDENCE, SPEED
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.journey_model import JourneyModel
 from lithobrake.pipeline.runs.touchdown_runs import touchdowns
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, TIME_LEFT
+from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import SPIN_OUT, VELOCITY_OUT
+from lithobrake.vocabulary.quantities import ORIENTATION, SPIN, SPIN_OUT, VELOCITY_OUT
 
 # Of these landings alone: what the study says of its runs is of those of its journeys.
 LEDGER = "emulated.sqlite"

@@ -13,14 +13,13 @@ from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_o
 from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT, RIDERS, fitted, outputs_of_runs
 from lithobrake.pipeline.emulated.answers import Answers
-from lithobrake.pipeline.emulated.arrivals import SPIN
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, TO_REST
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, SPIN, TO_REST
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation

@@ -8,7 +8,6 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.attitude_terms import AttitudeTerms
 from lithobrake.pipeline.design.lander_attitude import PREFIX
 from lithobrake.pipeline.emulate.explorer_tables import save_explorer, tables_of_refits
-from lithobrake.pipeline.emulated.arrivals import SPIN
 from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
@@ -16,7 +15,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.study import Study
 from lithobrake.study.lander_sides import directions_of_sides, side_words
-from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
+from lithobrake.vocabulary.quantities import JOURNEY_DESIGN, SPIN
 
 FILE = "touchdown_explorer.h5"
 

@@ -14,7 +14,7 @@ from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
 from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.design.free_rotation import turned_in_flight
 from lithobrake.pipeline.design.local_ground import friction_of, ground_inputs
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE
+from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, met_ground
 from lithobrake.pipeline.journeys.journey_model import on_ground
 from lithobrake.pipeline.journeys.resting_attitude import side_down
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
@@ -166,14 +166,9 @@ class Journey:
 
     def _meet_ground(self, flight: "Flights", gradient: list[float]) -> float:
         """Lay the frame of the next touchdown, by two uniform numbers; gives the incidence in it [rad]."""
-        from lithobrake.smallbody import incidence_on, met_normals
-        from lithobrake.smallbody.hopping import impact_frame
-
-        up, incidence = self.model.body.shape.normals[flight.facet], flight.incidence
-        if self.model.roughness:
-            up = met_normals(flight.velocity, up, self.model.roughness, np.array([gradient]))
-            incidence = incidence_on(flight.velocity, up)
-        self.axes = impact_frame(flight.velocity, up)[0]
+        up, uniforms = self.model.body.shape.normals[flight.facet], np.array([gradient])
+        axes, incidence = met_ground(self.model.design.study, flight.velocity, up, flight.incidence, uniforms)
+        self.axes = axes[0]
         return float(incidence[0])
 
     def _note_flight(self, velocity: np.ndarray, time: float) -> None:

@@ -9,7 +9,6 @@ import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.free_rotation import lander_inertia
-from lithobrake.pipeline.design.rough_ground import roughness
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study.touchdown_model import PLACE
@@ -48,11 +47,6 @@ class JourneyModel:
     def seed(self) -> int:
         """Of the study."""
         return self.design.study.seed
-
-    @property
-    def roughness(self) -> float:
-        """Root mean square slope of the ground at the lander's scale [rad]."""
-        return roughness(self.design.study)
 
     @property
     def duration(self) -> float:

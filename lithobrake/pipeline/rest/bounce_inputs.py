@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
+from lithobrake.vocabulary.quantities import SPIN
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Impacts
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
 # Without these two among the uncertain inputs the expansion says nothing about an impact that differs from the first.
 NEEDED = ("impact.speed", "impact.incidence_deg")
-SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 
 def why_no_soil(study: Study) -> str | None:

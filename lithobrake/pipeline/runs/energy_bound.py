@@ -12,6 +12,7 @@ from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander, stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import SPIN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 # More energy than that of the bound, by what time steps and printed digits are off.
 SLACK = 0.01
 LEAVES = {"speed_out", "spin_out"}
-SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 
 
 class EnergyBound(NamedTuple):

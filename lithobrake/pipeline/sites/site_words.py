@@ -22,26 +22,26 @@ def place_words(latitude_deg: float, longitude_deg: float) -> str:
 
 def _statement(found: SiteMap) -> str:
     """How many rest, where most do, and whether landings agree."""
-    total, answered = len(found.cells), [cell for cell in found.cells if cell.ends is not None]
+    total, answered = len(found.cells), [site for site in found.cells if site.ends is not None]
     if not answered or found.at_rest is None:
         return (
             f"None of {total} sites has a result: their impacts are outside the range of the touchdowns of the study "
             f"({found.cells[0].beyond}). Deliver the landers of the study all over the body."
         )
-    shares = [cell.ends.at_rest.share for cell in answered if cell.ends is not None]
+    shares = [site.ends.at_rest.share for site in answered if site.ends is not None]
     where = f"all {total} sites" if len(answered) == total else f"the {len(answered)} of {total} sites with a result"
     said = (
         f"Within {found.duration_s / HOUR:.3g} h {with_interval(found.at_rest, level=found.level)} of the landers come "
         f"to rest over {where}, by site {span(min(shares), max(shares), 0)}."
     )
-    best = [cell for cell in answered if cell.not_worse]
+    best = [site for site in answered if site.not_worse]
     if best and len(best) == len(answered) > 1:
         said += " No site can be distinguished from the best."
     elif best:
-        cell = max(best, key=lambda one: one.ends.at_rest.share if one.ends else 0.0)
+        site = max(best, key=lambda one: one.ends.at_rest.share if one.ends else 0.0)
         count = f"{len(best)} sites" if len(best) > 1 else "One site"
         cannot = "cannot be distinguished from the best" if len(best) > 1 else "is better than every other"
-        said += f" {count} {cannot}, at {place_words(cell.latitude_deg, cell.longitude_deg)}."
+        said += f" {count} {cannot}, at {place_words(site.latitude_deg, site.longitude_deg)}."
     return f"{said} {_compared(found)}"
 
 

@@ -21,7 +21,7 @@ from lithobrake.vocabulary.percentages import percent
 Array = NDArray[np.float64]
 HOUR = 3600.0
 COLUMNS = 2
-# Points on each side of a cell, which the projection bends.
+# Points on each side of a site, which the projection bends.
 SIDE = 12
 GOOD, BAD, GROUND, LIGHT = "viridis", "magma_r", "cividis", "cividis"
 # In inches: a map with its title, its colour bar, what stands between them, and the margins.
@@ -30,7 +30,7 @@ WIDE, HIGH, GAP, FOOT = 4.55, 2.1, 0.12, 0.5
 
 @dataclass(frozen=True)
 class SiteSheet:
-    """A map: title, the number of a cell (NaN where it has none), colours, the ends of the scale if they are set."""
+    """A map: title, the number of a site (NaN where it has none), colours, the ends of the scale if they are set."""
 
     title: str
     read: Callable[[SiteCell], float]
@@ -41,7 +41,7 @@ class SiteSheet:
 
 def sheets(site_map: SiteMap) -> list[SiteSheet]:
     """The maps of a body, each with its unit."""
-    rests = [cell.ends.at_rest for cell in site_map.cells if cell.ends is not None]
+    rests = [site.ends.at_rest for site in site_map.cells if site.ends is not None]
     lowest = min((one.share if one.lower is None else one.lower for one in rests), default=0.0)
     whole = (10.0 * math.floor(10.0 * lowest), 100.0)
     found = [SiteSheet("at rest [%]", _of_ends(lambda ends: 100.0 * ends.at_rest.share), GOOD, whole, is_marked=True)]
@@ -52,7 +52,7 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
         SiteSheet("median time to rest [h]", _median("time_s", HOUR), BAD),
         SiteSheet("median distance from the aim point [m]", _median("distance_m", 1.0), BAD),
         SiteSheet("escaped or on the partner [%]", _of_ends(lambda e: 100 * (e.escaped.share + e.partner.share)), BAD),
-        SiteSheet("slope against gravity [deg]", lambda cell: cell.slope_deg.mean, GROUND),
+        SiteSheet("slope against gravity [deg]", lambda site: site.slope_deg.mean, GROUND),
     ]
     names = site_map.cells[0].light
     words = {"sun": "sunlight", "earth": "Earth in sight"}
@@ -62,19 +62,19 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
 
 
 def _of_ends(read: Callable[[SiteEnds], float]) -> Callable[[SiteCell], float]:
-    return lambda cell: math.nan if cell.ends is None else read(cell.ends)
+    return lambda site: math.nan if site.ends is None else read(site.ends)
 
 
 def _median(name: str, unit: float) -> Callable[[SiteCell], float]:
-    def read(cell: SiteCell) -> float:
-        found = None if cell.ends is None else getattr(cell.ends, name)
+    def read(site: SiteCell) -> float:
+        found = None if site.ends is None else getattr(site.ends, name)
         return math.nan if found is None else float(found.value) / unit
 
     return read
 
 
 def _light(name: str) -> Callable[[SiteCell], float]:
-    return lambda cell: 100.0 * cell.light[name].mean
+    return lambda site: 100.0 * site.light[name].mean
 
 
 def sites_figure(site_map: SiteMap) -> Figure:
@@ -86,14 +86,14 @@ def sites_figure(site_map: SiteMap) -> Figure:
     rows = -(-len(drawn) // COLUMNS)
     width, height = COLUMNS * WIDE + 0.1, rows * (HIGH + GAP) + FOOT
     figure = Figure(figsize=(width, height))
-    polygons = [hammer(*_border(*cell.bounds_deg)) for cell in site_map.cells]
+    polygons = [hammer(*_border(*site.bounds_deg)) for site in site_map.cells]
     for number, sheet in enumerate(drawn):
         row, column = divmod(number, COLUMNS)
         left, bottom = 0.1 + column * WIDE, height - (row + 1) * (HIGH + GAP) + GAP
         axes = figure.add_axes((left / width, bottom / height, (WIDE - 0.65) / width, (HIGH - 0.28) / height))
-        cells = _draw(axes, site_map, sheet, polygons)
+        colours = _draw(axes, site_map, sheet, polygons)
         bar = figure.add_axes(((left + WIDE - 0.6) / width, (bottom + 0.3) / height, 0.1 / width, 1.35 / height))
-        scale: Any = figure.colorbar(cells, cax=bar)
+        scale: Any = figure.colorbar(colours, cax=bar)
         scale.outline.set_visible(False)
         bar.tick_params(labelsize=7.0, length=2.0)
     _legend(figure, site_map, 0.1 / height)
@@ -112,7 +112,7 @@ def hammer(latitude_deg: Array, longitude_deg: Array) -> Array:
 
 
 def _border(south: float, north: float, west: float, east: float) -> tuple[Array, Array]:
-    """Latitudes and longitudes along the border of a cell [deg], [count]."""
+    """Latitudes and longitudes along the border of a site [deg], [count]."""
     up, along = np.linspace(south, north, SIDE), np.linspace(west, east, SIDE)
     latitude = [up, np.full(SIDE, north), up[::-1], np.full(SIDE, south)]
     longitude = [np.full(SIDE, west), along, np.full(SIDE, east), along[::-1]]
@@ -120,8 +120,8 @@ def _border(south: float, north: float, west: float, east: float) -> tuple[Array
 
 
 def _draw(axes: Axes, site_map: SiteMap, sheet: SiteSheet, polygons: Sequence[Array]) -> PolyCollection:
-    """Colour the cells that have a number, hatch the others, and frame the best."""
-    values = np.array([sheet.read(cell) for cell in site_map.cells])
+    """Colour the sites that have a number, hatch the others, and frame the best."""
+    values = np.array([sheet.read(site) for site in site_map.cells])
     known = np.isfinite(values)
     coloured = [polygons[one] for one in np.flatnonzero(known).tolist()]
     cells = PolyCollection(coloured, array=values[known], cmap=sheet.colours)
@@ -132,7 +132,7 @@ def _draw(axes: Axes, site_map: SiteMap, sheet: SiteSheet, polygons: Sequence[Ar
     lacking = [polygons[one] for one in np.flatnonzero(~known).tolist()]
     axes.add_collection(PolyCollection(lacking, facecolor="white", edgecolor=QUIET, hatch="////", linewidth=0.2))
     if sheet.is_marked and _some_are_best(site_map):
-        best = [polygons[one] for one, cell in enumerate(site_map.cells) if cell.not_worse]
+        best = [polygons[one] for one, site in enumerate(site_map.cells) if site.not_worse]
         axes.add_collection(PolyCollection(best, facecolor="none", edgecolor=SITE, linewidth=0.9, zorder=4))
     axes.set_title(sheet.title)
     _graticule(axes)
@@ -141,7 +141,7 @@ def _draw(axes: Axes, site_map: SiteMap, sheet: SiteSheet, polygons: Sequence[Ar
 
 def _some_are_best(site_map: SiteMap) -> bool:
     """Whether some of the sites that are answered cannot be told from the best, and others can."""
-    return 0 < sum(cell.not_worse for cell in site_map.cells) < site_map.answered
+    return 0 < sum(site.not_worse for site in site_map.cells) < site_map.answered
 
 
 def _graticule(axes: Axes) -> None:
@@ -194,7 +194,7 @@ def _legend(figure: Figure, site_map: SiteMap, bottom: float) -> None:
         marks += [Patch(facecolor="none", edgecolor=QUIET, hatch="////", label="outside the training range")]
     axes = figure.add_axes((0.02, bottom, 0.96, 0.01))
     axes.set_axis_off()
-    words = "Every cell has the same area."
+    words = "Every site has the same area."
     axes.legend(handles=marks, ncol=2, loc="lower left", title=words, title_fontsize=7.5, alignment="left")
 
 

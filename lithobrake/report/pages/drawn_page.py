@@ -9,7 +9,6 @@ from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.calibration_figure import calibration_figure
 from lithobrake.report.figures.rare_figure import rare_figure
 from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
-from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
@@ -20,8 +19,6 @@ from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.report.words import captions, drawn_captions
 from lithobrake.report.words.drawn_captions import rare_caption
 from lithobrake.report.words.drawn_warnings import warnings
-from lithobrake.report.words.labels import PAPER_OUTPUTS
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM
 
 if TYPE_CHECKING:
@@ -34,7 +31,9 @@ RETURNS_ROW = {"returns": "return fraction"}
 def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     landings, live = {plot.name: plot for plot in landing_plots(data)}, [*landing_views(data), *explorer_sections(data)]
-    samples = Plot("outputs", "Distribution of the rebound", drawn_captions.samples(data), lambda: _samples(data))
+    samples = Plot(
+        "outputs", "Distribution of the rebound", drawn_captions.samples(data), lambda: any_study.draw_outputs(data)
+    )
     sections = [
         any_study.where(data),
         PageSection("When", tables=time_tables(data)),
@@ -103,14 +102,3 @@ def _variance(data: RunsPage) -> "Figure | None":
 
 def _calibration(data: DrawnPage) -> "Figure":
     return calibration_figure(data.emulator.scores.outputs)
-
-
-def _samples(data: DrawnPage) -> "Figure | None":
-    samples, runs = data.samples, data.runs
-    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
-    if not leaves.any():
-        return None
-    left = runs["outcome"] == TouchdownOutcome.CLEAR
-    return scatter_figure(
-        {name: samples[name][leaves] for name in PAPER_OUTPUTS}, {name: runs[name][left] for name in PAPER_OUTPUTS}
-    )

@@ -7,7 +7,6 @@ import numpy as np
 from lithobrake.report.content import Content, PageSection, Plot
 from lithobrake.report.figures.count_figure import Design, count_figure
 from lithobrake.report.figures.error_figure import error_figure
-from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.sobol_figure import sobol_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
@@ -17,7 +16,6 @@ from lithobrake.report.tables import paper_tables as tables
 from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.report.words import captions
 from lithobrake.report.words.labels import PAPER_OUTPUTS
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,7 +26,7 @@ def paper_content(data: PaperPage) -> Content:
     method = [
         Plot("counts", "Runs of the designs", captions.counts(data), lambda: _counts(data)),
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("outputs", "Distribution of the rebound", captions.scatter(data), lambda: _outputs(data)),
+        Plot("outputs", "Distribution of the rebound", captions.scatter(data), lambda: any_study.draw_outputs(data)),
     ]
     sure = [Plot("errors", "Accuracy of the expansion", captions.errors(data), lambda: _errors(data))]
     why = [Plot("sobol", "What matters", captions.sobol(data), lambda: _sobol(data))]
@@ -65,14 +63,3 @@ def _sobol(data: PaperPage) -> "Figure":
 
 def _errors(data: PaperPage) -> "Figure":
     return error_figure(data.scores["refined"], data.scores["test_kept"], data.scores["test_all"])
-
-
-def _outputs(data: PaperPage) -> "Figure | None":
-    samples, runs = data.samples, data.runs
-    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
-    if not leaves.any():
-        return None
-    left = runs["outcome"] == TouchdownOutcome.CLEAR
-    return scatter_figure(
-        {name: samples[name][leaves] for name in PAPER_OUTPUTS}, {name: runs[name][left] for name in PAPER_OUTPUTS}
-    )

@@ -11,15 +11,17 @@ from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, whole_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
+from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.shares import Share
 from lithobrake.report.live.body_view import body_views
-from lithobrake.report.page_data import PageData, PaperPage, SampledPage
+from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
 from lithobrake.report.words import captions
 from lithobrake.report.words.captions import hours, thousands
+from lithobrake.report.words.labels import PAPER_OUTPUTS
 from lithobrake.results.shares import CountedShare
 from lithobrake.vocabulary.fate_colours import FATE_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -119,6 +121,18 @@ def whole_words(data: SampledPage) -> str:
     looked_at, count = data.results.shares.sample_count, data.results.monte_carlo.sample_count
     words = f"{thousands(looked_at)} samples"
     return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
+
+
+def draw_outputs(data: DrawnPage | PaperPage) -> "Figure | None":
+    """The outputs of samples that leave beside those of runs; None where no sample does."""
+    samples, runs = data.samples, data.runs
+    leaves = samples["outcome"] == TouchdownOutcome.CLEAR
+    if not leaves.any():
+        return None
+    left = runs["outcome"] == TouchdownOutcome.CLEAR
+    return scatter_figure(
+        {name: samples[name][leaves] for name in PAPER_OUTPUTS}, {name: runs[name][left] for name in PAPER_OUTPUTS}
+    )
 
 
 def draw_body(data: SampledPage) -> "Figure":

@@ -11,7 +11,7 @@ from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.lander_attitude import with_side_down
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study, check_tables
-from lithobrake.study.touchdown_model import ORIENTATION
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ..journeys.soil_journeys import STUDY
 

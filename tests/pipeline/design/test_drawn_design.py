@@ -15,7 +15,8 @@ from lithobrake.pipeline.design.place_region import place_region, smallest_width
 from lithobrake.study import Study, check_tables
 from lithobrake.study.bed_section import LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
-from lithobrake.study.touchdown_model import ORIENTATION, PLACE, draw, medians
+from lithobrake.study.touchdown_model import PLACE, draw, medians
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
 SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")

@@ -11,7 +11,7 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.study import Study, check_tables
 from lithobrake.study.lander_sides import directions_of_sides, side_words, sides_down
-from lithobrake.study.touchdown_model import ORIENTATION
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ..journeys.soil_journeys import STUDY
 

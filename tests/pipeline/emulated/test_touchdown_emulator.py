@@ -24,8 +24,8 @@ from lithobrake.results.emulated_results import EmulatedJourneys
 from lithobrake.study import StudyError
 from lithobrake.study.lander_sides import sides_down
 from lithobrake.study.reader import check_tables
-from lithobrake.study.touchdown_model import ORIENTATION
 from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ..journeys.bouncing_lander import TABLES, bounce, journey_tables
 

@@ -16,7 +16,8 @@ from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import RoughGround, fly
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
-from lithobrake.study.touchdown_model import ORIENTATION, acceleration
+from lithobrake.study.touchdown_model import acceleration
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 from .test_journeys import JOURNEYS, SPIN, TABLES, hard_ground
 

@@ -1,0 +1,106 @@
+"""The folder of a study as it is read: its files as they were made, its summary, its tables of rows."""
+
+import math
+import os
+import shlex
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.files.reading import DamagedFileError, read_json, read_rows, reading
+from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
+from lithobrake.results.journey_tables import JOURNEYS
+from lithobrake.vocabulary.quantities import Quantity, quantity
+
+if TYPE_CHECKING:
+    from lithobrake.results.table import Table
+
+SUMMARY_FORMAT = 4
+# Columns that hold no numbers.
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
+# Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
+OF_SAMPLES = ("samples.h5", "flights.csv", "rest.csv", "emulator.json", "explorer.h5")
+
+
+class StudyFiles:
+    """A study's folder, for reading only."""
+
+    def __init__(self, folder: str | os.PathLike[str]) -> None:
+        """Look at a study's folder. Raises ValueError when it is none."""
+        self.folder = Path(folder)
+        if not any((self.folder / name).is_file() for name in ("summary.json", KEYS, "runs.sqlite")):
+            raise ValueError(f"{self.folder} holds no results of a study; name the folder of one that ran")
+        self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """summary.json: the tables "study", "results" and "provenance" (docs/summary.md has every key)."""
+        path, tables = self._file("summary.json"), dict.fromkeys(("study", "results", "provenance"), dict)
+        content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
+        if content["format_version"] != SUMMARY_FORMAT:
+            raise DamagedFileError(
+                f"{path} has format {content['format_version']}; this version reads {SUMMARY_FORMAT}; {self.remedy}"
+            )
+        return content
+
+    @property
+    def study(self) -> dict[str, Any]:
+        """The study as it was understood, with all defaults, as the tables of its file."""
+        tables: dict[str, Any] = self.summary["study"]
+        return tables
+
+    @cached_property
+    def study_text(self) -> str:
+        """The study file as it was written."""
+        path = self._file(STUDY_FILE)
+        with reading(path, self.remedy):
+            return path.read_text(encoding="utf-8")
+
+    def _noted_files(self) -> set[str]:
+        """The files that the stages of the study make; none where the folder does not note them."""
+        if not (self.folder / KEYS).is_file():
+            return set()
+        noted = read_json(self.folder / KEYS, dict, self.remedy)
+        with reading(self.folder / KEYS, self.remedy):
+            return {file for stage in noted.get("stages", {}).values() for file in stage["files"]}
+
+    def _file(self, name: str) -> Path:
+        """The path of a file of the folder, there or not.
+
+        Raises ValueError for one that changed after it was made, and for one of samples where landings were followed.
+        """
+        if name in OF_SAMPLES and not (self.folder / name).is_file() and (self.folder / JOURNEYS).is_file():
+            raise ValueError(
+                f"{self.folder} has journeys of landings, and no samples of an emulator: ask for journeys or touchdowns"
+            )
+        return intact_file(self.folder, name, self.remedy)
+
+    def _rows(self, name: str, columns: Sequence[str]) -> list[dict[str, Any]]:
+        """The rows of a CSV file, numbers as numbers; columns: that it has to have."""
+        path = self._file(name)
+        with reading(path, self.remedy):
+            return [
+                {title: cell if title in _WORDS else float(cell or "nan") for title, cell in row.items()}
+                for row in read_rows(path, columns, self.remedy)
+            ]
+
+    def _table(
+        self, row: str, rows: Sequence[Mapping[str, Any]], first: Sequence[str], known: Mapping[str, Quantity]
+    ) -> "Table":
+        """A table of rows by title; a row that lacks a number has none there. first: columns that it has at least."""
+        absent = {title: "" if title in _WORDS else math.nan for title in (*first, *(t for one in rows for t in one))}
+        names = {title: title.removeprefix("input:").removeprefix("output:") for title in absent}
+        columns = {names[title]: [one.get(title, none) for one in rows] for title, none in absent.items()}
+        return self._described(row, columns, known)
+
+    def _described(self, row: str, columns: Mapping[str, Any], known: Mapping[str, Quantity]) -> "Table":
+        from lithobrake.results.table import Table
+
+        return Table.of(row, {name: (quantity(name, known, self._units), values) for name, values in columns.items()})
+
+    @cached_property
+    def _units(self) -> dict[str, str]:
+        from lithobrake.study.units import input_units
+
+        return input_units()
