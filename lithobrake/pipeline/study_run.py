@@ -76,6 +76,15 @@ def run(
     return StudyResults(folder)
 
 
+def _say_solver(command: str, shown: Progress) -> None:
+    """Say which program or server of the user's the runs ask, if any."""
+    if command:
+        what = "model of a server, which every run that is still to be made asks"
+        if not command.startswith(PREFIX):
+            what = "program, which every run that is still to be made starts"
+        shown.say(f"This study names a {what}: {command}")
+
+
 def run_study(
     source: StudySource,
     out: Path,
@@ -101,11 +110,7 @@ def run_study(
     stages_until(study, until)
     Soils(Site(study)).refuse(source.name)
     refuse_others_folder(source, out)
-    if study.solver.command:
-        what = "model of a server, which every run that is still to be made asks"
-        if not study.solver.command.startswith(PREFIX):
-            what = "program, which every run that is still to be made starts"
-        shown.say(f"This study names a {what}: {study.solver.command}")
+    _say_solver(study.solver.command, shown)
     folder = StudyFolder(out)
     # The bits of a least-squares fit depend on the threads of the linear algebra.
     with (
