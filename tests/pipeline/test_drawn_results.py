@@ -25,6 +25,11 @@ from .synthetic_lander import SyntheticLander, outputs_of, synthetic_tables
 SIDE = {"design": {"run_count": 150, "side_runs": True}}
 
 
+@pytest.fixture(scope="module", autouse=True)
+def quick() -> None:
+    """In the place of quick studies: the scores of this emulator are looked at."""
+
+
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """A study of 150 landings with side runs, to its page."""

@@ -17,6 +17,8 @@ from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, Launch, hop
 from lithobrake.study.source import StudySource
 
+from .without_emulator import run_without_emulator
+
 JOURNEYS = 24
 TABLES: dict[str, Any] = {
     "seed": 3,
@@ -61,7 +63,7 @@ def hard_ground(values: dict[str, float], seed: int) -> dict[str, Any]:
 
 def run(folder: Path, **changes: dict[str, Any]) -> Any:
     tables = TABLES | {name: TABLES.get(name, {}) | keys for name, keys in changes.items()}
-    return lithobrake.run(tables, folder, workers=1, model=hard_ground, report=False)
+    return run_without_emulator(tables, folder, hard_ground)
 
 
 def rows(folder: Path, name: str) -> dict[str, np.ndarray]:

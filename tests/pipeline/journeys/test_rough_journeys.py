@@ -20,6 +20,7 @@ from lithobrake.study.touchdown_model import acceleration
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from .test_journeys import JOURNEYS, SPIN, TABLES, hard_ground
+from .without_emulator import run_without_emulator
 
 POINTED = {"orientation": [0.6, 0.0, 0.8, 0.0], "spin_x": 0.02, "spin_z": -0.01}
 
@@ -65,7 +66,7 @@ def test_a_lander_arrives_as_on_smooth_ground() -> None:
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("rough") / "out"
-    return lithobrake.run(tables(25.0), folder, workers=1, model=hard_ground, report=False)
+    return run_without_emulator(tables(25.0), folder, hard_ground)
 
 
 def test_each_touchdown_has_the_velocity_with_which_its_flight_ends(made: Any) -> None:

@@ -18,7 +18,11 @@ from ..ball_studies import PAPERS, drawn, write_ball
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of a program, with an emulator of its runs in the folder beside it."""
-    path = write_ball(tmp_path_factory.mktemp("plan") / "study.toml", {PAPERS: drawn(24)})
+    changes = {
+        PAPERS: drawn(24),
+        'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }': "friction = 0.2",
+    }
+    path = write_ball(tmp_path_factory.mktemp("plan") / "study.toml", changes)
     run_study(StudySource.read(path), path.parent / "out", until="emulator", worker_count=1)
     return path
 
