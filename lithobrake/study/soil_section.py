@@ -20,7 +20,7 @@ from lithobrake.study.material_sections import (
 from lithobrake.study.quantity import Numbers, Scalar, Section, Uncertain
 from lithobrake.vocabulary.plain_text import show
 
-Between = tuple[float, float]
+Ends = tuple[float, float]
 
 
 class SoilGrainSection(Section):
@@ -58,11 +58,11 @@ class SoilSection(Section):
     with the region's materials. A lander has one draw of the soil of each region, which it meets again whenever it
     comes back."""
 
-    latitude_deg: Annotated[Between, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
+    latitude_deg: Annotated[Ends, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
     """Between which planetocentric latitudes it lies; absent, here and below: at any."""
-    longitude_deg: Annotated[Between, Numbers("deg", at_least=-360, at_most=360, count=2)] | None = None
+    longitude_deg: Annotated[Ends, Numbers("deg", at_least=-360, at_most=360, count=2)] | None = None
     """From which longitude eastward to which; [170, -170] goes across 180."""
-    slope_deg: Annotated[Between, Numbers("deg", at_least=0, at_most=180, count=2, ascending=True)] | None = None
+    slope_deg: Annotated[Ends, Numbers("deg", at_least=0, at_most=180, count=2, ascending=True)] | None = None
     """Between which slopes its facets lie, at their centres against gravity, rotation and the partner's tide at the
     medians of [site]; above 90 the ground does not hold what lies on it."""
     facets: str | None = Field(default=None, examples=['"ponds.csv"'])

@@ -6,18 +6,21 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from copy import deepcopy
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
 import lithobrake
 from lithobrake.pipeline import run_study, study_status
+from lithobrake.pipeline.answer.variance_of_runs import parts_of_variance
 from lithobrake.pipeline.commands.one_landing import landing_inputs
 from lithobrake.pipeline.commands.site_maps import map_sites
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.planning.planned_soils import planned_soils
+from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.results import StudyResults
@@ -346,3 +349,19 @@ def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> No
     assert results.emulated is not None
     assert results.emulated.why is not None
     assert "[soil] gives regions their own" in results.emulated.why
+
+
+def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) -> None:
+    given = read(body_file, {"sink": SINK, "strip": STRIP}, journey={"count": 64}, bed={"bed_count": 4})
+    study, nothing = with_site_gravity(given), None
+    job = Job(DrawnDesign(study), Site(study), {}, cast(Any, nothing), cast(Any, nothing), Silent())
+    rows, words = job.design.rows, [""] * 64
+    runs = DesignRuns(words, words, words, {name: np.array([row[name] for row in rows]) for name in rows[0]}, {})
+    # What the strip alone decides is told of all journeys, whether they begin in there or not.
+    friction, more = Soils(job.site).drawn(range(64))["soil.strip.grain.friction"], np.sin(7.0 * np.arange(64))
+    decided = 10.0 * friction + 0.05 * more
+    found = parts_of_variance(job, runs, decided, "all runs")
+    assert found is not None
+    assert set(found.soil_by_input) == {"grain.friction", "soil.strip.grain.friction"}
+    assert found.soil_by_input["soil.strip.grain.friction"].share > 0.8
+    assert found.soil_by_input["grain.friction"].share < 0.2
