@@ -112,8 +112,8 @@ def regions_table(landers: Answers) -> str:
     return table(("lander", "share of the landers", "area [m2]", "part of all ground"), rows)
 
 
-def variants_table(path: Path) -> str:
-    """What choices are worth."""
+def variants_part(compared: list[dict[str, Any]]) -> list[str]:
+    """What choices are worth, heading and all; nothing where no variant was followed."""
     rows = [
         [
             one["lander"].capitalize(), VARIANT_WORDS[one["variant"]],
@@ -121,10 +121,10 @@ def variants_table(path: Path) -> str:
             f"{plain(one['median_time_s'] / 60.0)} and {plain(one['median_time_before_s'] / 60.0)}",
             f"{plain(one['time_ratio'])} ({plain(one['lower'])}-{plain(one['upper'])})",
         ]
-        for one in json.loads(path.read_text(encoding="utf-8"))["compared"]
+        for one in compared
     ]  # fmt: skip
     head = ("lander", "variant", "at rest: with it and without", "median time to rest [min]", "ratio (90 % interval)")
-    return table(head, rows)
+    return [broken(METHOD["variants"]), table(head, rows), broken(VARIANTS_SAY)] if rows else []
 
 
 def faces_table(landers: Answers) -> str:
@@ -233,7 +233,7 @@ def page(document: dict[str, Any], cost: str) -> str:
         broken(METHOD["faces"]), faces_table(landers),
         broken(METHOD["decides"]), decides_table(landers),
         broken(METHOD["branches"]), branches_table(landers),
-        broken(METHOD["variants"]), variants_table(HERE / "variants.json"), broken(VARIANTS_SAY),
+        *variants_part(json.loads((HERE / "variants.json").read_text(encoding="utf-8"))["compared"]),
         broken(METHOD["priors"]), (HERE / "priors.md").read_text(encoding="utf-8").strip(),
         broken(METHOD["falsified"].format(unlikely=100 * UNLIKELY)), falsified_table(landers),
         by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE.format(cost=cost)), digests_table(document["sha256"]),
