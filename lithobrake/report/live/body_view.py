@@ -45,10 +45,17 @@ def body_views(data: SampledPage) -> list[LiveSection]:
     words = "Facets: impacts per hectare as in the figure of the body."
     if len(data.paths[0]):
         arrays |= _lines(*data.paths)
-        words += f" Lines: the ways of the first {len(data.paths[1])} flights, seen from the turning body."
+        words += f" Lines: the paths of the first {len(data.paths[1])} flights, relative to the rotating body."
     legend = {FATE_WORDS.get(FlightStatus(one), one): FATE_COLOURS[one] for one in dict.fromkeys(data.paths[1])}
     return [
-        section("body-3d", "Where the lander comes down, to turn", _with_marker(words, facts), arrays, facts, legend)
+        section(
+            "body-3d",
+            "Where the lander comes down, in three dimensions",
+            _with_marker(words, facts),
+            arrays,
+            facts,
+            legend,
+        )
     ]
 
 
@@ -68,12 +75,16 @@ def end_views(data: JourneyPage) -> list[LiveSection]:
     if len(ways):
         words += " Lines: the flights of the first journeys, seen from the turning body."
     legend = {JourneyEnd(one).label: END_COLOURS[one] for one in dict.fromkeys([*end.tolist(), *ended])}
-    return [section("body-3d", "Where the landers rest, to turn", _with_marker(words, facts), arrays, facts, legend)]
+    return [
+        section(
+            "body-3d", "Where the landers rest, in three dimensions", _with_marker(words, facts), arrays, facts, legend
+        )
+    ]
 
 
 def _with_marker(words: str, facts: Mapping[str, Any]) -> str:
     """The words of a view, and what moves in it."""
-    return f"{words} The marker on the way of a lander is not to scale." if facts["ways"] else words
+    return f"{words} The marker on the path of a lander is not to scale." if facts["ways"] else words
 
 
 def _radius(data: PageData) -> float:

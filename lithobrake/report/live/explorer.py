@@ -33,14 +33,14 @@ def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
     flown = _flown(data.flights)
     count = len(flown["status"])
     flown_words = (
-        f"Each lander that is drawn here takes the end of one of {thousands(count)} flown starts, one of the eight "
-        "nearest to its speed, elevation and azimuth: nothing is flown anew. "
+        f"No flight is computed here: each lander takes the end of one of {thousands(count)} flights, one of the eight "
+        "nearest to its speed, elevation and azimuth. "
         if count
         else "Nothing was flown, so neither shares nor places are shown. "
     )
     words = (
-        f"Move the two ends of an input: the {data.model} is evaluated in this page, at every soil between them as "
-        f"often as the study's law has it there. {_fixed(data, data.explorer)}"
+        f"Move the two ends of an input: this page evaluates the {data.model} for all soils between them, weighted by "
+        f"their input distribution. {_fixed(data, data.explorer)}"
     )
     facts = law_facts(data.explorer, _moved(data, data.explorer), data.samples) | _flight_facts(data, bool(count))
     note = f"{words}{_bands(data, data.explorer)} {flown_words}"
@@ -55,7 +55,7 @@ def explorer_section(
     numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
     html = f"""<section id="explorer">
 <h3>Explorer</h3>
-<p class="note">{escape(note)}Grey lines: the whole law.</p>
+<p class="note">{escape(note)}Grey lines: the whole input distribution.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>
@@ -66,7 +66,7 @@ def explorer_section(
 def _fixed(data: PageData, explorer: ExplorerTables) -> str:
     """What is said of the inputs without sliders."""
     others = [input_words(name) for name in explorer.input_names if name not in _moved(data, explorer)]
-    return f"Not kept by the screening, and over the whole law at all times: {listing(others)}. " if others else ""
+    return f"Not kept by the screening, always over the whole input distribution: {listing(others)}. " if others else ""
 
 
 def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
@@ -83,7 +83,7 @@ def _bands(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> str:
 
 def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
     """What the bands of an emulator are, in a sentence; over_beds: whether its refits draw beds."""
-    drawn = "beds drawn with replacement" if over_beds else "runs drawn with replacement; no other bed"
+    drawn = "beds sampled with replacement" if over_beds else "runs sampled with replacement; no other bed"
     return f"{_fits('emulator', explorer)} {drawn}."
 
 

@@ -41,10 +41,10 @@ def _what(fitted: Table, beds: int) -> str:
     """What is evaluated, and over which range it is known."""
     ranges = listing([_range(fitted, name) for name in OF_TOUCHDOWN])
     return (
-        "One touchdown of a journey, the first or any later one: move the two ends of an input, and the emulator of "
-        "all touchdowns is evaluated in this page at the values between them. It was fitted to "
+        "One touchdown of a journey, the first or any later one: move the two ends of an input, and this page "
+        "evaluates the emulator of all touchdowns at the values between them. It was fitted to "
         f"{thousands(fitted.row_count)} touchdowns on {beds} {'bed' if beds == 1 else 'beds'}, with {ranges}; the "
-        "sliders reach somewhat farther, as far as it has an answer."
+        "sliders reach somewhat farther, to the end of its training range."
     )
 
 
@@ -57,12 +57,12 @@ def _range(fitted: Table, name: str) -> str:
 def _law(explorer: ExplorerTables) -> str:
     """What the inputs are drawn from, and what no slider moves."""
     even = listing([input_words(name) for name in OF_TOUCHDOWN if name != SPEED])
-    attitude = "Attitudes are drawn over all rotations, or with one side toward the ground; s"
+    attitude = "Attitudes are uniform over all rotations, or have one side toward the ground; s"
     attitude = attitude if explorer.attitude else "S"
     named = {*OF_TOUCHDOWN, *explorer.attitude_inputs}
-    others = "Soil and lander follow the study's law; " if set(explorer.input_names) - named else ""
+    others = "Soil and lander follow their input distributions; " if set(explorer.input_names) - named else ""
     words = (
-        f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, however many touchdowns "
-        f"were there. {attitude}pin and bed are part of the scatter."
+        f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, independently of the "
+        f"number of touchdowns there. {attitude}pin and bed are part of the scatter."
     )
     return f"{words[:1].upper()}{words[1:]}"

@@ -40,7 +40,11 @@ def landing_views(data: PageData) -> list[LiveSection]:
 def _landing(shown: Scene, which: str) -> LiveSection:
     arrays, facts = landing_arrays(shown)
     return section(
-        "landing-3d", "The landing, to turn", f"{which}: {landing_words(shown, arrays, facts)}", arrays, facts
+        "landing-3d",
+        "The landing in three dimensions",
+        f"{which}: {landing_words(shown, arrays, facts)}",
+        arrays,
+        facts,
     )
 
 
@@ -51,9 +55,9 @@ def landing_words(shown: Scene, arrays: Mapping[str, np.ndarray], facts: Mapping
     names = " or ".join(SHADE_WORDS[one["name"]] for one in facts["shades"])
     return (
         f"{len(shown.moving.vertices) - 1} grains{images} and the lander (blue) in {len(shown.moving.time)} pictures, "
-        f"straight between them, over the floor with a grid of {number(facts['grid'], 2)} m. Places are rounded to "
-        f"{number(quantum, 2)} mm, and grains that hardly move to less. Colour of the grains by {names}, over equal "
-        "factors."
+        f"interpolated linearly, on a floor with a grid of {number(facts['grid'], 2)} m. Positions are rounded to "
+        f"{number(quantum, 2)} mm, those of grains that hardly move more finely. Colour of the grains: {names}, on a "
+        "logarithmic scale."
     )
 
 
@@ -169,7 +173,7 @@ def section(
     legend: Mapping[str, str] = MappingProxyType({}),
 ) -> LiveSection:
     """A view with its data; legend: colours by what they stand for."""
-    hint = "Drag to turn; with the picture chosen by a click, the wheel comes nearer; two fingers do both."
+    hint = "Drag to rotate; after a click on the picture the wheel zooms; two fingers do both."
     keys = "".join(f'<span style="--key: {colour}">{escape(one)}</span>' for one, colour in legend.items())
     html = f"""<section id="{name}" class="view3d">
 <h3>{escape(title)}</h3>

@@ -18,7 +18,7 @@ FOOTER = (
     "<footer>Written by lithobrake from the files of the results that it names. SI units; degrees where a label says "
     "so.</footer>"
 )
-HINT = '<p class="note hint">Click or tap a figure to let it fill the window; again, or Esc, to go back.</p>\n'
+HINT = '<p class="note hint">Click or tap a figure to enlarge it; click again or press Esc to return.</p>\n'
 
 
 def page(title: str, facts: str, content: Content, panels: Mapping[str, Panel], kind: str = "Landing study") -> str:

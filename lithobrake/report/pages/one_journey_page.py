@@ -13,7 +13,7 @@ from lithobrake.report.pages.html import own_file
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 
 MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
-HINT = "Drag to turn; with the picture chosen by a click, the wheel comes nearer; two fingers do both."
+HINT = "Drag to rotate; after a click on the picture the wheel zooms; two fingers do both."
 
 
 def one_journey_page(motion: JourneyMotion) -> str:

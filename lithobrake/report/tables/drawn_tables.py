@@ -54,7 +54,7 @@ def tiles(data: DrawnPage) -> list[Tile]:
         value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
         is_found = value[0].isdigit()
         words = "at least of the variance of the rebound speed is explained by soil"
-        words = words if is_found else "a part of the soil in the variance of the rebound speed"
+        words = words if is_found else "effect of the soil on the variance of the rebound speed"
         found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil, data.level)})"))
     band = data.emulator.scores.outputs.get("speed_out")
     if band:

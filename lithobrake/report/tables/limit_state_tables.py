@@ -20,7 +20,7 @@ def limit_state_tables(data: DrawnPage) -> list[PageTable]:
 
 def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
     level = percent(next(iter(states.values())).level)
-    columns = ["limit state", "met where", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
+    columns = ["limit state", "condition", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
     rows = [
         [
             name,
@@ -55,12 +55,12 @@ def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:
         ]
     columns = [
         *("limit state", "input", "distance from its distribution", "critical distance"),
-        *("median where met", "median of its distribution", "significant"),
+        *("median if met", "median of its distribution", "significant"),
     ]
     note = (
         "Distance: the largest difference of the distribution functions of the input among the runs that meet the "
         "limit state and over all landings (Kolmogorov's), in brackets its interval. Significant: above the critical "
-        "distance, which chance alone passes in one of ten studies, all inputs together. Medians in the unit of the "
+        "distance, which chance alone exceeds in one of ten studies, all inputs together. Medians in the unit of the "
         "study file."
     )
     return [PageTable("Inputs of the limit states", columns, rows, note, frozenset(columns[2:6]))] if rows else []

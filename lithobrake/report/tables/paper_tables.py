@@ -257,7 +257,7 @@ def touchdowns_table(data: PageData) -> PageTable:
     ]
     columns = ["quantity", "unit", "smallest", "median", "largest"]
     return PageTable(
-        "What else the touchdowns gave",
+        "Other outputs of the touchdowns",
         columns,
         rows,
         "Over all distinct runs." if rows else "",

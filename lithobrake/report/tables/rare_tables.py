@@ -19,7 +19,7 @@ def rare_tables(rare: RareResults) -> list[PageTable]:
 
 def _probabilities(rare: RareResults) -> PageTable:
     level = percent(next(iter(rare.values())).level)
-    columns = ["limit state", "met where", "probability", f"{level} interval", "landings", "beds", "origins"]
+    columns = ["limit state", "condition", "probability", f"{level} interval", "landings", "beds", "origins"]
     rows = [
         [
             name,
@@ -33,12 +33,12 @@ def _probabilities(rare: RareResults) -> PageTable:
         for name, found in rare.items()
     ]
     note = " ".join(found.statement for found in rare.values())
-    note += " Origins: how many beds of one size the landings that meet it come from."
+    note += " Origins: the effective number of beds from which the landings that meet it come."
     return PageTable("Rare limit states", columns, rows, note, frozenset(columns[2:]))
 
 
 def _levels(rare: RareResults) -> PageTable:
-    columns = ["limit state", "level", "threshold", "share nearer", "probability so far"]
+    columns = ["limit state", "level", "threshold", "fraction nearer the limit", "probability so far"]
     rows = [
         [name if level == 0 else "", str(level + 1), fixed(threshold), percent(share, 1), number(left)]
         for name, found in rare.items()

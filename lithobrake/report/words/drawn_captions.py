@@ -94,10 +94,11 @@ def variance(data: RunsPage) -> str:
 
 def floor_words(record: VarianceParts) -> str:
     """Of which degree the parts are lower bounds, and for which ranges."""
+    doubled = record.soil_doubled
+    explains = f"explain at least {doubled.words()}" if doubled.share > 0.0 else f"be {doubled.words()}"
     return (
         f"Soil, delivery and attitude: by {record.terms}, for the ranges of the study file; their other effects "
-        f"are in everything else. With soil ranges twice as wide the soil would explain at least "
-        f"{record.soil_doubled.words()}."
+        f"are in everything else. With soil ranges twice as wide the soil would {explains}."
     )
 
 
