@@ -26,7 +26,7 @@ function mapCell(aim, latitude, longitude) {
   return (half * MAP_CELLS + row) * MAP_CELLS + column;
 }
 
-// The lines of latitude and longitude on a half, to be stroked; visit: given each of latitude with its western end.
+// The lines of latitude and longitude on a half, to be stroked; visit: given those of latitude with their western ends.
 function tracePlaces(context, middle, at, visit) {
   const steps = Array.from({ length: 121 }, (_, step) => step / 120);
   const trace = (places) => {
@@ -43,7 +43,8 @@ function tracePlaces(context, middle, at, visit) {
   for (let longitude = -180; longitude < 180; longitude += 30) trace(steps.map((part) => [180 * part - 90, longitude]));
   for (let latitude = -60; latitude <= 60; latitude += 30) {
     const west = trace(steps.map((part) => [latitude, middle[1] + 360 * part - 180]));
-    if (west) visit(latitude, west);
+    // Names of 60 degrees would stand on the poles.
+    if (west && Math.abs(latitude) < 60) visit(latitude, west);
   }
 }
 
