@@ -45,7 +45,7 @@ def test_a_ball_that_falls_on_one_at_rest_meets_it(gap: float) -> None:
     low.run_locally(5.0, STEPS)
     rests = low.position[0, 2]
     world = balls_over_ground(rests, rests + 2.0 * RADIUS + gap)
-    world.run_locally(20.0, STEPS)
+    world.run_locally(40.0, STEPS)
     below, above = world.position[:, 2]
     # The one bears both; curvatures add where balls meet, so their stiffness is less by the root of two.
     assert RADIUS - below == pytest.approx(2.0 ** (2.0 / 3.0) * SUNK, rel=0.05)

@@ -64,22 +64,34 @@ def steps_at(speed: float, flight: Flight, rules: Rules) -> float:
 
 
 @kernel
+def speed_with_fall(pair: int, pairs: Pairs, flight: Flight, plans: Plans, speed: float, rules: Rules) -> float:
+    """Return a speed [m/s] at which a collision begins, with what gravity adds within it where that is all there is."""
+    acceleration = relative_weight(flight, pairs.first[pair], pairs.second[pair], rules)
+    return speed + (acceleration * plans.duration[pair]) ** (5.0 / 6.0)
+
+
+@kernel
 def collision_step(pair: int, pairs: Pairs, flight: Flight, plans: Plans, speed: float, rules: Rules) -> float:
     """Return the step [s] of a contact that begins at a speed [m/s]; on what does not fall gravity adds to that."""
-    # What gravity adds within a collision at the speed that it adds.
-    acceleration = relative_weight(flight, pairs.first[pair], pairs.second[pair], rules)
-    speed += (acceleration * plans.duration[pair]) ** (5.0 / 6.0)
+    speed = speed_with_fall(pair, pairs, flight, plans, speed, rules)
     return plans.duration[pair] * speed**-0.2 / steps_at(speed, flight, rules) if speed > 0.0 else np.inf
 
 
 @kernel
-def contact_step(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, rules: Rules) -> float:
-    """Return the step [s] of a contact: a part of the collision with the energy that it has now, and no longer than of
-    one that begins at the speed which it may gain before a plan is made anew.
+def longest_step(pair: int, pairs: Pairs, flight: Flight, plans: Plans, rules: Rules) -> float:
+    """Return the step [s] at which a contact follows whatever it may gain before its bodies are planned anew.
 
-    An overlap that is but rounding has no energy of its own: its step would last while its bodies fall through each
-    other.
+    An overlap that is only rounding has no energy, and by that a step in which its bodies fall through each other.
     """
+    first, second = pairs.first[pair], pairs.second[pair]
+    gain = flight.slack[first] + (flight.slack[second] if second >= 0 else 0.0)
+    speed = speed_with_fall(pair, pairs, flight, plans, gain, rules)
+    return plans.duration[pair] * speed**-0.2 / FEWEST_STEPS if speed > 0.0 else np.inf
+
+
+@kernel
+def contact_step(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, rules: Rules) -> float:
+    """Return the step [s] of a contact: a part of the collision with the energy that it has now."""
     normal, overlap, elastic = row(pairs.normal, pair), pairs.overlap[pair], pairs.elastic_force[pair]
     speed = dot(closing_velocity(pair, bodies, pairs, plans), normal)
     inverse_mass = plans.inverse_mass[pair]
@@ -87,9 +99,7 @@ def contact_step(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans:
     deepest = (2.5 * energy * overlap**1.5 / elastic) ** 0.4
     fastest = (2.0 * energy * inverse_mass) ** 0.5
     step = HERTZ_TIME * deepest / (fastest * steps_at(fastest, flight, rules))
-    first, second = pairs.first[pair], pairs.second[pair]
-    gain = flight.slack[first] + (flight.slack[second] if second >= 0 else 0.0)
-    return min(step, collision_step(pair, pairs, flight, plans, gain, rules), plans.longest[pair])
+    return min(step, longest_step(pair, pairs, flight, plans, rules), plans.longest[pair])
 
 
 @kernel
