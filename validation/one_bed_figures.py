@@ -143,7 +143,7 @@ def draw_grains(studies: list[Entry]) -> None:
     if not found:
         return
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, len(OUTPUTS), figsize=(10.0, 3.6), constrained_layout=True, sharey=True)
+        figure, axes = plt.subplots(1, len(OUTPUTS), figsize=(9.2, 3.6), constrained_layout=True, sharey=True)
         for axis, (output, symbol) in zip(axes, OUTPUTS.items(), strict=True):
             for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
                 parts = [(one["variance_shares"][output] or {}).get(part) for part in PARTS]
@@ -152,14 +152,16 @@ def draw_grains(studies: list[Entry]) -> None:
                         middle = within(part["share"])
                         ends = [max(middle - part["lower"], 0.0), max(part["upper"] - middle, 0.0)]
                         x, bars = place + 0.2 * number - 0.1, [[100.0 * end] for end in ends]
-                        axis.errorbar(x, 100.0 * middle, bars, fmt="o", color=colour, capsize=2, ms=4)
+                        axis.errorbar(x, 100.0 * middle, bars, fmt="os^"[number], color=colour, capsize=2, ms=4)
             axis.axhline(0.0, color=QUIET, lw=0.6, zorder=0)
             axis.set_xticks(range(len(PARTS)), [name.replace(" ", "\n") for name in PARTS.values()])
-            axis.set_title(f"variance of {symbol}")
-        axes[0].set_ylabel("fraction [%], 90 % interval")
-        for one, colour in zip(found, INPUT_COLOURS, strict=False):
-            axes[0].plot([], [], "o", color=colour, ms=4, label=f"grains of {100 * one['diameter_m']:g} cm")
-        axes[0].legend(loc="center left")
+            axis.tick_params(axis="x", labelsize=7.5)
+            axis.set_title(symbol)
+        axes[0].set_ylabel("fraction of the variance [%], 90 % interval")
+        for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
+            label = f"grains of {100 * one['diameter_m']:g} cm"
+            axes[0].plot([], [], "os^"[number], color=colour, ms=4, label=label)
+        figure.legend(loc="outside lower center", ncols=3)
         figure.savefig(PAGES / "one_bed_grains.png", dpi=150)
 
 
