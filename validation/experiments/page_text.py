@@ -19,7 +19,8 @@ The sources were read as abstracts. [Experiments: what their sources say](experi
 lists what was read and what was not; [references](../references.md) has the full citations.
 
 - **Interval.** "+-" in the first table of each section is the half-width of the 95 % confidence
-  interval. It covers only the scatter between the simulations, not the error of the measurement.
+  interval; brackets behind a fraction hold the interval itself. It covers only the scatter between
+  the simulations, not the error of the measurement.
 - **Agreement.** A quantity agrees if the simulated value lies within a fixed tolerance of the
   measured one. The tolerance is 0.05 for exponents of depth, duration and size, 0.03 for the
   exponents of the settling sphere, and 0.05 for the speed ratio of a single grain. It is 25 % for

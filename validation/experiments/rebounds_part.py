@@ -46,7 +46,7 @@ def share_line(quantity: str, measured: str, expected: float, rows: list[Row], c
     """Return a row of the table for a share: it agrees where most of ours do what was seen."""
     count, total = rebounds(rows), len(rows)
     low, high = wilson_interval(count, total)
-    ours = f"{count / total:.2f} (95 %: {low:.2f} to {high:.2f})"
+    ours = f"{count / total:.2f} ({low:.2f} to {high:.2f})"
     return Line(quantity, measured, ours, total, "-", abs(count / total - expected) < 0.5, cause)
 
 
