@@ -7,7 +7,7 @@ figures go to docs/validation.
 """
 
 import json
-import textwrap
+import math
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -18,13 +18,20 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from bulk import CHECKS
+from bulk_words import TEXT
+from page_text import broken, table
 
 from lithobrake.report.figures.style import INK, INPUT_COLOURS, SITE, STYLE, TRAINING
 
 HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 Rows = list[dict[str, Any]]
-WHOLE_WORDS: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
+# Outputs of the check of the bed's size: words and factor of the table. Impacts: speed, and angle from the normal.
+OUTPUTS = {
+    "speed_out": ("rebound speed [cm/s]", 100.0), "elevation_out": ("elevation [deg]", math.degrees(1.0)),
+    "spin_out": ("spin rate [rad/s]", 1.0),
+}  # fmt: skip
+WAYS = {"steep": "0.4 m/s, 0 deg", "slanted": "0.4 m/s, 15 deg", "slow": "0.2 m/s, 30 deg"}
 
 
 def grouped(rows: Rows, by: str, what: str) -> dict[Any, np.ndarray]:
@@ -35,14 +42,24 @@ def grouped(rows: Rows, by: str, what: str) -> dict[Any, np.ndarray]:
     return {key: np.array(values) for key, values in table.items()}
 
 
-def lines(rows: Rows, by: str, columns: list[str]) -> list[str]:
-    """A table of means and scatter."""
-    head = [f"| {by} | runs | " + " | ".join(columns) + " |", "|" + "---|" * (2 + len(columns))]
-    for key, first in grouped(rows, by, columns[0]).items():
-        cells = [grouped(rows, by, column)[key] for column in columns]
-        scatter = [f"{c.mean():.4g} +- {c.std(ddof=1):.2g}" if len(c) > 1 else f"{c.mean():.4g}" for c in cells]
-        head.append(f"| {key} | {len(first)} | " + " | ".join(scatter) + " |")
-    return head
+def lines(name: str, rows: Rows) -> str:
+    """Return a table of means and scatter, with published values where there are any."""
+    by, columns = SHOWN[name]
+    if name == "froude":
+        rows = [row | {by: f"{row[by]:g}, {row['gravity']:g}"} for row in sorted(rows, key=lambda row: row[by])]
+    first = grouped(rows, by, columns[0])
+    cells = [[str(key), str(len(values))] for key, values in first.items()]
+    heads = [HEADS[by], "simulations"]
+    for column in columns:
+        heads.append(HEADS[column])
+        for place, values in enumerate(grouped(rows, by, column).values()):
+            scatter = f" +- {values.std(ddof=1):.2g}" if len(values) > 1 else ""
+            cells[place].append(f"{values.mean():.4g}{scatter}")
+        if expected := EXPECTED.get((name, column)):
+            heads.append("published")
+            for place, value in enumerate(expected):
+                cells[place].append(f"{value:g}")
+    return table(heads, cells)
 
 
 def draw_froude(rows: Rows) -> None:
@@ -104,18 +121,20 @@ def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
     figure.savefig(PAGES / f"bulk_{name}.png")
 
 
+# Of each check: column that tells its rows apart, columns of the table, and the one to compare with published values.
 SHOWN = {
-    "compression": ("friction", ["solid_fraction", "coordination_without_rattlers"],
-                    "Spheres pressed from six sides; expected 0.639 and 0.593, 6 and 4.5 (Agnolin, Roux 2007)."),
-    "friction": ("friction", ["solid_fraction", "coordination"], "Poured beds of 150 hulls."),
-    "repose": ("kind", ["angle_deg", "height_left", "stayed"],
-               "Slope left when one end opens; about 25 deg rounded, 40 angular (Kleinhans 2011). Of the height filled,"
-               " less than all is left: the slope reaches the back."),
-    "packing": ("shape", ["solid_fraction", "coordination"],
-                "The Platonic solids, poured at 2 m/s, friction 0.5. Plastic dice: 0.51, 0.54, 0.52, 0.51, 0.50 settled"
-                " in a flow, 0.64, 0.67, 0.64, 0.63, 0.59 shaken, +-0.01 (Baker, Kudrolli 2010)."),
-    "froude": ("froude", ["penetration_over_diameter", "duration_scaled"],
-               "A sphere dropped into beds at three gravities; equal Froude numbers should give equal values."),
+    "repose": ("kind", ["angle_deg", "height_left", "stayed"]),
+    "compression": ("friction", ["solid_fraction", "coordination_without_rattlers"]),
+    "friction": ("friction", ["solid_fraction", "coordination"]),
+    "packing": ("shape", ["solid_fraction", "coordination"]),
+    "froude": ("froude", ["penetration_over_diameter", "duration_scaled"]),
+}
+HEADS = {
+    "kind": "grains", "friction": "friction", "shape": "shape", "froude": "Froude number, gravity [m/s2]",
+    "angle_deg": "angle of repose [deg]", "height_left": "height left / height filled", "stayed": "grains left",
+    "solid_fraction": "solid fraction", "coordination": "coordination number",
+    "coordination_without_rattlers": "coordination number without rattlers",
+    "penetration_over_diameter": "penetration / D", "duration_scaled": "duration [sqrt(D/g)]",
 }  # fmt: skip
 
 
@@ -128,51 +147,62 @@ ALTS = {
 }
 
 
-def main() -> None:
-    """Write the page and the figure."""
-    page = [
-        "# Bulk checks",
-        "",
-        "Written by `python validation/bulk_figures.py`. Means and standard deviations.",
-        "",
-    ]
-    for name in CHECKS:
-        by, columns, text = SHOWN[name]
-        path = HERE / f"bulk_{name}.json"
-        page += [f"## {name}", "", text, ""]
-        if not path.exists():
-            page += ["Not run yet.", ""]
-            continue
-        found = json.loads(path.read_text())
-        page += [*lines(found["rows"], by, columns), "", *([found["note"], ""] if "note" in found else [])]
-        page += [f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time.", ""]
-        with plt.rc_context(STYLE):
-            draw_froude(found["rows"]) if name == "froude" else draw(name, found["rows"], by, columns)
-        page += [f"![{ALTS[name]}](bulk_{name}.png)", ""]
-    path = HERE / "bed_size.json"
-    page += ["## Size of the bed", "", *(bed_size(json.loads(path.read_text())) if path.exists() else ["Not run yet."])]
-    # Tables and pictures stay on their lines.
-    page = [line if line.startswith(("|", "!", "`")) else textwrap.fill(line, 100, **WHOLE_WORDS) for line in page]
-    (PAGES / "bulk.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+def section(name: str) -> str:
+    """Return the table and origin of a check, drawn where it has run."""
+    path, (by, columns) = HERE / f"bulk_{name}.json", SHOWN[name]
+    if not path.exists():
+        return "Not run."
+    found = json.loads(path.read_text())
+    with plt.rc_context(STYLE):
+        draw_froude(found["rows"]) if name == "froude" else draw(name, found["rows"], by, columns)
+    made = f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time."
+    return "\n\n".join([lines(name, found["rows"]), f"![{ALTS[name]}](bulk_{name}.png)", made])
 
 
-def bed_size(found: dict[str, Any]) -> list[str]:
-    """Means on a bed and on one twice as wide and deep."""
-    text = [
-        "Means of several beds of each size, +- the scatter between beds.",
-        "",
-        "| landing | output | plain beds | double beds | difference in standard errors |",
-        "|---|---|---|---|---|",
-    ]
+def gravities() -> str:
+    """Return how far the means at one Froude number are apart between gravities, against their scatter."""
+    rows: Rows = json.loads((HERE / "bulk_froude.json").read_text())["rows"]
+    apart = []
+    for column in SHOWN["froude"][1]:
+        scores = []
+        for number in sorted({row["froude"] for row in rows}):
+            groups = list(grouped([row for row in rows if row["froude"] == number], "gravity", column).values())
+            several = [values for values in groups if len(values) > 1]
+            scatter = np.sqrt(np.mean([values.var(ddof=1) for values in several]))
+            means = [values.mean() for values in several]
+            scores.append((max(means) - min(means)) / scatter)
+        apart.append(f"{min(scores):.1f} to {max(scores):.1f} ({HEADS[column].split(' [')[0]})")
+    return " and ".join(apart)
+
+
+def bed_size(found: dict[str, Any]) -> dict[str, str]:
+    """Return the table of means on a bed and on one twice as wide and deep, the rule, and the largest difference."""
+    heads = ["impact", "output", "plain beds (number)", "double beds (number)", "difference [standard errors]"]
+    cells, apart, parts = [], [], []
     for way, entry in found["landings"].items():
-        for output in ("speed_out", "elevation_out", "spin_out"):
+        for output, (words, factor) in OUTPUTS.items():
             value = entry[output]
-            cells = [f"{value[size]:.4g} +- {value['scatter'][size]:.2g} ({value['beds'][size]})"
+            means = [f"{factor * value[size]:.4g} +- {factor * value['scatter'][size]:.2g} ({value['beds'][size]})"
                      for size in ("plain", "double")]  # fmt: skip
-            text.append(f"| {way} | {output} | {' | '.join(cells)} | {value['difference_in_standard_errors']:.2g} |")
-    rule = ", ".join(f"{way} {w:.3g} and {d:.3g} m" for way, (w, d) in found["smallest_width_and_depth_m"].items())
-    return [*text, "", f"Smallest width and depth by the rule: {rule}. {found['command']}, {found['date']}, "
-            f"{found['machine']}, {found['cpu_s']} s of CPU time since it was last started."]  # fmt: skip
+            cells.append([WAYS[way], words, *means, f"{value['difference_in_standard_errors']:.2g}"])
+            apart.append(value["difference_in_standard_errors"])
+            parts.append((abs(value["double"] / value["plain"] - 1.0), f"{words.split(' [')[0]}, {WAYS[way]}"))
+    rule = {f"{w:.3g} m wide and {d:.3g} m deep" for w, d in found["smallest_width_and_depth_m"].values()}
+    made = f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time"
+    return {
+        "beds": table(heads, cells), "rule": " or ".join(sorted(rule)), "made": made, "count": str(len(apart)),
+        "largest": f"{100.0 * max(parts)[0]:.0f} %", "which": max(parts)[1],
+        "most": f"{max(apart, key=abs):.1f}", "below": str(sum(one < 0.0 for one in apart)),
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Write the page and the figures."""
+    page = TEXT.format(
+        **{name: section(name) for name in CHECKS}, gravities=gravities(),
+        **bed_size(json.loads((HERE / "bed_size.json").read_text())),
+    )  # fmt: skip
+    (PAGES / "bulk.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -115,7 +115,8 @@ class StudyTables(StudyFiles):
         """Every landing of the journeys: number, state in, state out, bed, soil and cost (docs/journeys.md)."""
         columns = tuple(JOURNEY_TOUCHDOWN)
         rows = self._journey_rows(TOUCHDOWNS, columns)
-        columns += tuple(SOIL) if "soil" in self.study else ()
+        # Regions of the body have soils of their own in some studies alone.
+        columns += tuple(SOIL) if rows and set(SOIL) <= set(rows[0]) else ()
         joined = joined_touchdowns(rows, self._rows(TOUCHDOWN_RUNS, _RUN), self.ledger)
         known = RUN | TOUCHDOWN | JOURNEY_TOUCHDOWN | SOIL | TOUCHDOWN_COST
         return self._table("touchdown", joined, columns, known)

@@ -38,7 +38,7 @@ def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate,
                     color=ink)  # fmt: skip
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
-    middle.set(xlabel="depth over impact speed [ms]", ylabel="stopping time [ms]")
+    middle.set(xlabel="depth / impact speed [ms]", ylabel="stopping time [ms]")
     middle.legend(fontsize=8)
     draw_exponents(last, beds)
     figure.savefig(to, dpi=110)
@@ -49,12 +49,12 @@ def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
     """Depth, from either surface, against the experiment's law with a prefactor."""
     law = prefactor * scale(rows)
     reach = np.array([0.8 * law.min(), 1.2 * law.max()]) * 100
-    axis.plot(reach, reach, color=MEASURED, label="law of the experiment")
-    axis.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="+-25 %")
+    axis.plot(reach, reach, color=MEASURED, label="published law")
+    axis.fill_between(reach, 0.75 * reach, 1.25 * reach, color=MEASURED, alpha=0.2, lw=0, label="±25 %")
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
         across = prefactor * scale(own) * 100
-        axis.plot(across, below_mean_surface(own) * 100, "o", color=ink, label=f"ours, {density:g} kg/m$^3$")
+        axis.plot(across, below_mean_surface(own) * 100, "o", color=ink, label=f"simulated, {density:g} kg/m$^3$")
         axis.plot(across, below_first_touch(own) * 100, "o", color=ink, mfc="none")
     axis.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
     axis.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
@@ -64,7 +64,7 @@ def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
 
 def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
     """Exponent of density that a light and a heavy ball give in each bed, from either surface."""
-    axis.axvspan(0.45, 0.55, color=MEASURED, alpha=0.25, lw=0, label="measured, +-0.05")
+    axis.axvspan(0.45, 0.55, color=MEASURED, alpha=0.25, lw=0, label="measured, ±0.05")
     at = np.arange(len(beds))[::-1]
     for depth_of, ink, face, text in (
         (below_mean_surface, INK[0], INK[0], "from the mean surface"),
@@ -84,17 +84,20 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
     reach = np.array([0.5 * share.min(), 2.0 * share.max()])
     depth = column(rows, "depth") / diameter
     left.plot(reach, np.full(2, np.exp(np.log(depth).mean())), color=MEASURED, label="independent of g, measured")
-    left.plot(share, depth, "o", color=INK[0], alpha=0.7, label="ours")
-    left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity over Earth's", ylabel="depth over diameter")
+    left.plot(share, depth, "o", color=INK[0], alpha=0.7, label="simulated")
+    left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity / Earth's", ylabel="depth / diameter")
     left.axvspan(0.4, 1.2, color="0.9", zorder=0, label="gravities of the experiment")
     left.legend(fontsize=8)
-    for name, ink, text in (("stopping_time", INK[1], "until it stops"), ("time_to_90", INK[2], "to 0.9 of the depth")):
+    for name, ink, text in (
+        ("stopping_time", INK[1], "until it stops"),
+        ("time_to_90", INK[2], "to 90 % of the depth"),
+    ):
         times = column(rows, name)
-        right.plot(share, times, "o", color=ink, alpha=0.7, label=f"ours, {text}")
+        right.plot(share, times, "o", color=ink, alpha=0.7, label=f"simulated, {text}")
         middle = np.exp((np.log(times) + 0.5 * np.log(share)).mean())
         right.plot(reach, middle * reach**-0.5, color=MEASURED)
     right.plot([], [], color=MEASURED, label="$g^{-1/2}$, measured")
-    right.set(xscale="log", yscale="log", xlabel="gravity over Earth's", ylabel="time [s]")
+    right.set(xscale="log", yscale="log", xlabel="gravity / Earth's", ylabel="time [s]")
     right.legend(fontsize=8)
     figure.savefig(to, dpi=110)
     plt.close(figure)
@@ -104,20 +107,20 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     """Speeds at which the grain leaves, how many others rise, and the mean speeds on each kind of bed."""
     figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
     base = kinds["basalt"]
-    left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="ours")
-    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="mean measured: about 0.20 (bar 0.15 to 0.25)")
-    left.axvline(np.mean(speeds(base)), color=INK[1], label="our mean of all")
-    left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="of those that leave")
-    left.set(xlabel="speed out over speed in", ylabel="impacts")
+    left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="simulated")
+    left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="measured mean, about 0.20 ± 0.05")
+    left.axvline(np.mean(speeds(base)), color=INK[1], label="mean of all grains")
+    left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="mean of those that leave")
+    left.set(xlabel="rebound speed / impact speed", ylabel="impacts")
     left.set_ylim(0.0, 1.4 * left.get_ylim()[1])
     left.legend(fontsize=8)
     counts = np.arange(0, 1 + int(column(base, "risen_0.1").max()))
     for rise, ink in (("0.1", INK[0]), ("0.5", INK[1]), ("1", INK[2])):
         risen = column(base, f"risen_{rise}")
         right.plot(counts, [(risen >= least).mean() for least in counts], color=ink, drawstyle="steps-post",
-                   label=f"rise > {rise} grain")  # fmt: skip
-    right.axvline(10, color=MEASURED, label="fewer than 10 typically, measured")
-    right.set(xlabel="grains ejected, at least", ylabel="share of impacts", ylim=(-0.05, 1.5))
+                   label=f"rise > {rise} diameters")  # fmt: skip
+    right.axvline(10, color=MEASURED, label="measured: typically fewer than 10")
+    right.set(xlabel="grains ejected, at least", ylabel="fraction of impacts", ylim=(-0.05, 1.5))
     right.legend(fontsize=8, loc="upper right")
     last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
     for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):
@@ -126,7 +129,7 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
             [mean.value for mean in means], [shift - k for k in range(len(kinds))], xerr=[mean.half for mean in means],
             fmt="o", color=ink, capsize=3, label=text,
         )  # fmt: skip
-    last.set(xlabel="mean speed out over speed in", xlim=(0.0, None), ylim=(-len(kinds) - 0.3, 0.5))
+    last.set(xlabel="mean of rebound speed / impact speed", xlim=(0.0, None), ylim=(-len(kinds) - 0.3, 0.5))
     last.set_yticks([-k for k in range(len(kinds))], [name.replace("_", " ") for name in kinds])
     last.legend(fontsize=8, loc="lower left")
     figure.savefig(to, dpi=110)

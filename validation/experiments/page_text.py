@@ -19,7 +19,8 @@ The sources were read as abstracts. [Experiments: what their sources say](experi
 lists what was read and what was not; [references](../references.md) has the full citations.
 
 - **Interval.** "+-" in the first table of each section is the half-width of the 95 % confidence
-  interval. It covers only the scatter between the simulations, not the error of the measurement.
+  interval; brackets behind a fraction hold the interval itself. It covers only the scatter between
+  the simulations, not the error of the measurement.
 - **Agreement.** A quantity agrees if the simulated value lies within a fixed tolerance of the
   measured one. The tolerance is 0.05 for exponents of depth, duration and size, 0.03 for the
   exponents of the settling sphere, and 0.05 for the speed ratio of a single grain. It is 25 % for
@@ -53,7 +54,7 @@ deeper").
 Depth is that of the ball's lowest point. It is measured from two surfaces: the mean height of the
 topmost points of the beads ("mean surface"), and the point of first touch.
 
-![drops](experiments/ball_into_beads.png)
+![Depths and stopping times of dropped balls, and exponents of density by bed](experiments/ball_into_beads.png)
 
 {drops}
 
@@ -77,7 +78,7 @@ beads of 2.1 mm and 1000 kg/m3, periodic with a period of three sphere diameters
 5e5 Pa under every gravity, friction 0.3, restitution 0.9. Each bed is poured and settles under its
 own gravity.
 
-![settling](experiments/settling_in_other_gravities.png)
+![Depth and time of settling under several gravities](experiments/settling_in_other_gravities.png)
 
 {settled}
 
@@ -105,7 +106,7 @@ above its place in the bed. The impacting grain "stays" if it still touches the 
 falls back. The source states that the grain "still rebounds". It does not state whether its mean
 includes grains that stay, so both means are compared.
 
-![grains](experiments/grain_on_its_own_kind.png)
+![Speed ratios of the grain, and numbers of grains ejected](experiments/grain_on_its_own_kind.png)
 
 {impacts}
 
@@ -136,7 +137,7 @@ pull-off force of a contact divided by the square of the grain diameter. There i
 in 6 s would move nothing by more than a millimetre, and no gas. A bed "stops" the plate if less
 than a tenth of its speed is left after 6 s.
 
-![plate](experiments/plate_into_loose_grains.png)
+![Speed of the plate by bulk density and by grains, and force by speed](experiments/plate_into_loose_grains.png)
 
 {plate}
 
@@ -159,7 +160,7 @@ speed to 3 sqrt(g d). Young's modulus is 2e4 times density, gravity and size. By
 beds differ only in the ratio of the pull-off force to the weight of a grain, so one curve holds for
 every gravity.
 
-![packing](experiments/packing_and_cohesion.png)
+![Solid fraction by pull-off force](experiments/packing_and_cohesion.png)
 
 {packing}
 
@@ -186,7 +187,7 @@ pull-off force of a contact is 300 Pa times the square of a bead's diameter; it 
 Earth's gravity, which was then reduced. Depth is measured from the first touch. Exponents come from
 a fit of a product of powers.
 
-![balls](experiments/ball_under_gravities.png)
+![Depth and duration by Froude number and by speed](experiments/ball_under_gravities.png)
 
 {ball}
 
@@ -217,7 +218,7 @@ cohesion differ only in the Froude number, so one row of the table holds for eve
 speed listed. A ball rebounds if it rises by 0.5 mm above its deepest point. Quantities in the table
 above use the 4 mm grains without cohesion unless they name others.
 
-![who rebounds](experiments/who_rebounds.png)
+![Fraction that rebounds and speed ratio by Froude number](experiments/who_rebounds.png)
 
 {rebound}
 

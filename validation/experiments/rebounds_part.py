@@ -46,7 +46,7 @@ def share_line(quantity: str, measured: str, expected: float, rows: list[Row], c
     """Return a row of the table for a share: it agrees where most of ours do what was seen."""
     count, total = rebounds(rows), len(rows)
     low, high = wilson_interval(count, total)
-    ours = f"{count / total:.2f} (95 %: {low:.2f} to {high:.2f})"
+    ours = f"{count / total:.2f} ({low:.2f} to {high:.2f})"
     return Line(quantity, measured, ours, total, "-", abs(count / total - expected) < 0.5, cause)
 
 
@@ -136,9 +136,11 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
     axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
     axes[1].text(0.9, 0.3, "rises by 0.5 mm\nabove this line", fontsize=7, color=MEASURED)
     axes[1].axhline(0.05, color=MEASURED, lw=2)
-    axes[1].text(100.0, 0.053, "COLLIDE-1, order of", fontsize=7, color=MEASURED)
-    axes[0].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="share that rebounds", ylim=(-0.25, 1.25))
-    axes[1].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="speed out over speed in", ylim=(-0.01, 0.4))
+    axes[1].text(100.0, 0.053, "COLLIDE-1: about 0.05", fontsize=7, color=MEASURED)
+    axes[0].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="fraction that rebounds", ylim=(-0.25, 1.25))
+    axes[1].set(
+        xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4)
+    )
     axes[1].legend(*axes[0].get_legend_handles_labels(), fontsize=7, loc="upper right")
     figure.savefig(to, dpi=110)
     plt.close(figure)

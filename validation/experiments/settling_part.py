@@ -31,7 +31,7 @@ def settling_part() -> tuple[Lines, str]:
         unit = math.sqrt(DIAMETER / (EARTH * share))
         depth, stop, most = (column(own, name) for name in ("depth", "stopping_time", "time_to_90"))
         cells.append((
-            f"{modulus:g}", f"{share:g}", str(len(own)),
+            f"{modulus:.0e}".replace("e+0", "e"), f"{share:g}", str(len(own)),
             f"{depth.mean() / DIAMETER:.3f} +- {depth.std() / DIAMETER:.3f}",
             f"{stop.mean() / unit:.3f} +- {stop.std() / unit:.3f}", f"{most.mean() / unit:.3f}",
             f"{column(own, 'bulk_density').mean() / 1000.0:.4f}",

@@ -110,7 +110,7 @@ def pair_table() -> list[str]:
         theirs = f"{float(row['mercury']):.7g}" if row["mercury"] else ""
         lines.append(
             f"| {WORDS[row['quantity']]} | {row['step_s']:g} | {row['closed_form']:.7g} | {theirs} | "
-            f"{row['lithobrake']:.7g} | {off:.1e} |"
+            f"{row['lithobrake']:.7g} | {f'{off:.1e}' if off else '0'} |"
         )
     return lines
 
