@@ -18,7 +18,7 @@ def comparison(before: Document, after: Document) -> list[str]:
     """Lines: each hash, then each share, median and region, before and after, and whether it lies within its interval.
 
     Within: the number after lies in the interval that the forecast before stated. A number of the same landers is the
-    same; one of other landers of the same law lies outside now and then, of either forecast's intervals of 90 %.
+    same; one of as many other landers lies outside one time in four, as both forecasts scatter.
     """
     lines = [
         f"{name}: {'the same' if one == two else f'{one[:12]} before, {two[:12]} after'}"
