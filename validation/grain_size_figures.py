@@ -235,10 +235,9 @@ def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
             f"- **{grain.capitalize()}s**: {shown}. The total effect of the soil over that of the impact point is "
             f"{listed}."
         )
-    attitude = next(p["speed_out"].attitude for g, p in reversed(of_steep(found).items()) if g.startswith("hull"))
-    return "\n".join(
-        [*sentences, f"- **Attitude**: on the finest hulls its total effect is {attitude} of the variance."]
-    )
+    name, finest = next((g, p) for g, p in reversed(of_steep(found).items()) if g.startswith("hull"))
+    effect = f"at {GROUNDS[name].ratio:g} on hulls its total effect is {finest['speed_out'].attitude} of the variance."
+    return "\n".join([*sentences, f"- **Attitude**: {effect}"])
 
 
 def page(rows: list[Row], beds: list[Row], origin: Row) -> str:

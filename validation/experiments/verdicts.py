@@ -62,8 +62,8 @@ def beads() -> str:
         bed_table(every),
         f"Measured from the mean surface, these changes move the exponent by more than {STEP:g}: "
         f"{'; '.join(large) or 'none'}. The others move it by less: {'; '.join(small) or 'none'}. The exponent is "
-        f"within the tolerance {held}. For the bed compared (3 mm, periodic, loose, deeper), the last column of the "
-        "first table names the changes that bring it within the tolerance; no other change tried here does.",
+        f"within the tolerance {held}. The last column of the first table names the changes to the bed compared (3 mm, "
+        "periodic, loose, deeper), or to the same bed of 5 mm beads, that bring the exponent within the tolerance.",
         f"On the loose bed of 3 mm the mean prefactor of the two balls is {mean_prefactor(beds[FINE]):.2f}, on the "
         f"dense one {mean_prefactor(beds[OURS]):.2f}. The stopping time agrees in the mean only: single drops take "
         f"from {min(stops):.1f} to {max(stops):.1f} d/v.",
