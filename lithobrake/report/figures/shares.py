@@ -1,12 +1,16 @@
 """Shares of outcomes as bars, with their intervals."""
 
 from dataclasses import dataclass
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from lithobrake.report.figures.style import INK, TRAINING
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
+
+# Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
+LONGEST = 56
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,6 @@ def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
     axes.set_yticks(place, [share.name for share in shares])
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
-    axes.set_xlabel(words)
+    axes.set_xlabel(fill(words, LONGEST))
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)
