@@ -54,7 +54,7 @@ deeper").
 Depth is that of the ball's lowest point. It is measured from two surfaces: the mean height of the
 topmost points of the beads ("mean surface"), and the point of first touch.
 
-![Depths and stopping times of dropped balls, and exponents of density by bed](experiments/ball_into_beads.png)
+![Depths, stopping times and exponents of density](experiments/ball_into_beads.png)
 
 {drops}
 
@@ -78,7 +78,7 @@ beads of 2.1 mm and 1000 kg/m3, periodic with a period of three sphere diameters
 5e5 Pa under every gravity, friction 0.3, restitution 0.9. Each bed is poured and settles under its
 own gravity.
 
-![Depth and time of settling under several gravities](experiments/settling_in_other_gravities.png)
+![Depth and time of settling by gravity](experiments/settling_in_other_gravities.png)
 
 {settled}
 
@@ -106,7 +106,7 @@ above its place in the bed. The impacting grain "stays" if it still touches the 
 falls back. The source states that the grain "still rebounds". It does not state whether its mean
 includes grains that stay, so both means are compared.
 
-![Speed ratios of the grain, and numbers of grains ejected](experiments/grain_on_its_own_kind.png)
+![Speed ratios and grains ejected](experiments/grain_on_its_own_kind.png)
 
 {impacts}
 
@@ -137,7 +137,7 @@ pull-off force of a contact divided by the square of the grain diameter. There i
 in 6 s would move nothing by more than a millimetre, and no gas. A bed "stops" the plate if less
 than a tenth of its speed is left after 6 s.
 
-![Speed of the plate by bulk density and by grains, and force by speed](experiments/plate_into_loose_grains.png)
+![Speed of the plate and force on it](experiments/plate_into_loose_grains.png)
 
 {plate}
 
