@@ -1,7 +1,21 @@
 """How far the codes are apart in the benchmark's impact: in the bed, and after the ball turns."""
 
 import numpy as np
-from heights import ASKED, BOTTOM, CRITERION, PLACES, UNDAMPED, Curve, height, mm, named, paragraph, rebound
+from heights import (
+    ASKED,
+    BOTTOM,
+    CRITERION,
+    IMPACTS,
+    PLACES,
+    ROUNDING,
+    UNDAMPED,
+    Curve,
+    height,
+    mm,
+    named,
+    paragraph,
+    rebound,
+)
 from impact import MEETS
 from impact_bed import BALL_RADIUS, FLOOR, in_free_fall
 
@@ -32,7 +46,19 @@ def answer(found: dict[str, Curve]) -> str:
             " After the turn, a shift of the impact point by a billionth of a metre alone changes the height by "
             f"{shift[0]} mm at {1000.0 * ASKED[2]:g} ms and by {shift[1]} mm at {1000.0 * ASKED[3]:g} ms."
         )
+    inside = [within_impacts(found, time) for time in ASKED]
+    words += (
+        f" At {sum(inside)} of the {len(ASKED)} times MercuryDPM lies within the range of the impacts here, in the middle "
+        "and to the sides."
+    )
     return "\n" + paragraph(words)
+
+
+def within_impacts(found: dict[str, Curve], time: float) -> bool:
+    """Return whether MercuryDPM's height at a time [s] lies between those of the impacts here."""
+    theirs = height(found["mercury"], time)
+    ours = [z for name in IMPACTS if name in found and (z := height(found[name], time)) is not None]
+    return theirs is not None and len(ours) > 1 and min(ours) - ROUNDING <= theirs <= max(ours) + ROUNDING
 
 
 def moved(found: dict[str, Curve], name: str, time: float) -> float | None:
@@ -87,6 +113,17 @@ def span(values: list[float]) -> str:
     return f"{min(values):.2f} to {max(values):.2f}"
 
 
+def beside_words(lost: dict[str, float]) -> str:
+    """Return what impacts to a side lose here, by which one can tell how much the impact point does."""
+    beside = [lost[name] for name in PLACES if name in lost]
+    if len(beside) < 2:
+        return ""
+    return (
+        f"At {len(beside)} other impact points, with that dashpot, {span(beside)} m/s are lost here: the impact point "
+        "changes the loss as much as the law does."
+    )
+
+
 def after_the_turn(found: dict[str, Curve]) -> list[str]:
     """Return why the codes differ after the ball turns, as parts of the page."""
     lost = {name: one for name, curve in found.items() if (one := lost_speed(curve)) is not None}
@@ -112,7 +149,6 @@ def after_the_turn(found: dict[str, Curve]) -> list[str]:
             + ("The tangential law thus separates the runs of all codes" if apart
                else "The tangential law does not separate the runs")
             + f", as far as {len(middle)} runs can show it. "
-            + "".join(f"At another impact point ({named(name)}) {lost[name]:.2f} m/s are lost here. "
-                      for name in PLACES if name in lost)
+            + beside_words(lost)
         )]  # fmt: skip
     return parts

@@ -18,6 +18,7 @@ ASKED, ADDED = (0.01, 0.02, 0.05, 0.1), (0.022, 0.025, 0.0275, 0.029, 0.03, 0.03
 BOTTOM = 0.02925  # s: just before the ball meets the layer on the floor
 # m/s2, by which an acceleration may differ from that of gravity in free flight; it is looked at over so many rows.
 FREE, LAST = 0.1, 4
+ROUNDING = 1e-6  # m, of heights in free fall, which are alike
 PLACES = ("east", "north", "west", "south")  # impacts to a side
 IMPACTS = ("published", *PLACES, "nudged")
 UNDAMPED = ("mercury", "lammps_no_dashpot")  # runs without a dashpot across the normal

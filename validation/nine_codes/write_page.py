@@ -14,7 +14,7 @@ import matplotlib
 matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from code_differences import after_the_turn, answer, between_codes
+from code_differences import after_the_turn, answer, between_codes, within_impacts
 from heights import (
     ADDED,
     ASKED,
@@ -57,7 +57,7 @@ def at_a_time(found: dict[str, Curve], time: float) -> str:
     if len(places) > 1:
         spread = f"{mm(min(places))} to {mm(max(places))} ({len(places)})"
         if theirs is not None:
-            inside = "yes" if min(places) - 1e-6 <= theirs <= max(places) + 1e-6 else "**no**"
+            inside = "yes" if within_impacts(found, time) else "**no**"
     cells = (cell(found["published"], time), cell(found["mercury"], time), mm(difference), verdict, spread, inside)
     return f"| {1000.0 * time:g} | " + " | ".join(cells) + " |"
 
