@@ -48,8 +48,8 @@ def answer(found: dict[str, Curve]) -> str:
         )
     inside = [within_impacts(found, time) for time in ASKED]
     words += (
-        f" At {sum(inside)} of the {len(ASKED)} times MercuryDPM lies within the range of the impacts here, in the middle "
-        "and to the sides."
+        f" At {sum(inside)} of the {len(ASKED)} times MercuryDPM lies within the range of the impacts here, in the "
+        "middle and to the sides."
     )
     return "\n" + paragraph(words)
 
