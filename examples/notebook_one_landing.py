@@ -14,21 +14,22 @@ contact = ContactModel(steps_per_contact=25.0)
 # %% [markdown]
 # ## The bed
 #
-# Twenty-four grains are few: enough to see each step within seconds, too few to trust a number
+# Forty-eight grains are few: enough to see each step within seconds, too few to trust a number
 # (`docs/one_bed_is_not_enough.md`).
 
 # %%
 bed = pour_bed(
     BedRecipe(
-        grain_count=24,
+        grain_count=48,
         sizes=GrainSizes(distribution="uniform", lower=0.09, upper=0.11),  # m
         cloud_point_count=14,
-        width=(0.36, 0.36),  # m
+        width=(0.5, 0.5),  # m
         material=rock,
         gravity=gravity,
         pour_gravity=0.5,  # m/s2
         seed=3,
         contact=contact,
+        sides="periodic",  # the bed repeats, so that the box cannot leave it sideways
     )
 )
 print(f"{bed.solid_fraction:.2f} of the bed is solid; each grain touches {bed.coordination_number:.1f} others")

@@ -61,7 +61,7 @@ def page_table() -> str:
     """What was made, as a table in Markdown: a line a number of places and ratio of axes."""
     made = {(row["places"], row["axes"], row["share"]): row for row in read_rows(TABLE, {"places": int})}
     lines = [
-        "| places | axes of the cloud | area, 50 % | held | area, 95 % | held |",
+        "| places | axes of the cloud | area, 50 % | inside | area, 95 % | inside |",
         "|---|---|---|---|---|---|",
     ]
     for count, axes in product(COUNTS, AXES):

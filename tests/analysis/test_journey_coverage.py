@@ -44,4 +44,5 @@ def test_the_ends_of_synthetic_journeys_add_up_and_beds_matter() -> None:
 
 def test_the_page_has_the_table_that_was_made() -> None:
     page = Path(__file__).parents[2] / "docs" / "validation" / "interval_coverage.md"
-    assert page_table(kept_rows()) in page.read_text(encoding="utf-8")
+    lines = page.read_text(encoding="utf-8").splitlines()
+    assert [line for line in page_table(kept_rows()).splitlines() if line not in lines] == []

@@ -1,5 +1,6 @@
 """How far the journeys of a study are, from its ledger while they are followed, or from journeys.csv after."""
 
+import tomllib
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,7 +12,6 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.folder.study_folder import AGAIN
 from lithobrake.results.intact import STUDY_FILE
 from lithobrake.results.journey_tables import JOURNEYS, TOUCHDOWNS
-from lithobrake.study import StudyError, load_tables
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 
 NUMBER, TOUCHDOWN = "journey", "touchdown"
@@ -116,8 +116,8 @@ def _goes_on(before: Record, record: Record) -> bool:
 def _has_soils(path: Path) -> bool:
     """Whether the study of a folder gives regions a soil of their own; not where its copy of the study is no study."""
     try:
-        return "soil" in load_tables(path / STUDY_FILE)
-    except StudyError:
+        return "soil" in tomllib.loads((path / STUDY_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         # What is wrong with the copy stands in the state of the folder.
         return False
 
