@@ -16,11 +16,11 @@ from .bouncing_lander import journey_tables
 
 
 class JobOf:
-    """What is asked of a job: its design and its site."""
+    """What is asked of a job: its study, its design and its site."""
 
     def __init__(self, results: StudyResults) -> None:
-        study = check_tables(journey_tables(), results.folder)
-        self.design, self.site = DrawnDesign(study), Site(study)
+        self.study = check_tables(journey_tables(), results.folder)
+        self.design, self.site = DrawnDesign(self.study), Site(self.study)
 
 
 def test_the_parts_of_each_end_add_up(journeys: StudyResults) -> None:
