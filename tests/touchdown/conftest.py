@@ -11,7 +11,7 @@ ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction
 def small_recipe(**changes):
     values = {
         "grain_count": 24, "sizes": GrainSizes(distribution="uniform", lower=0.09, upper=0.11), "cloud_point_count": 14,
-        "width": (0.36, 0.36), "material": ROCK, "gravity": (0.0, 0.0, -5e-4), "pour_gravity": 0.5, "seed": 3,
+        "width": (0.36, 0.36), "material": ROCK, "gravity": (0.0, 0.0, -5e-4), "pour_gravity": 0.5, "seed": 6,
         "contact": ContactModel(steps_per_contact=25.0),
     }  # fmt: skip
     return BedRecipe(**{**values, **changes})

@@ -69,8 +69,9 @@ def test_a_bed_with_boulders_is_read_as_it_was_written(ground: Bed, tmp_path: Pa
 
 def test_the_grains_are_those_of_the_bed_without_boulders(recipe: Any) -> None:
     """Boulders have random numbers of their own."""
-    plain = pour_bed(recipe(sides="periodic", width=WIDTH, grain_count=12))
-    among = pour_bed(recipe(sides="periodic", width=WIDTH, grain_count=12, boulders=boulders(0.3, sizes=one_size(0.4))))
+    bed = {"sides": "periodic", "width": WIDTH, "grain_count": 12, "seed": 3}
+    plain = pour_bed(recipe(**bed))
+    among = pour_bed(recipe(**bed, boulders=boulders(0.3, sizes=one_size(0.4))))
     assert among.boulder_count >= 1
     assert (among.diameter[among.boulder_count :] == plain.diameter).all()
 

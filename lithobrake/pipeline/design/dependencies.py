@@ -9,7 +9,6 @@ import numpy as np
 from lithobrake import __version__
 from lithobrake.campaign import Command, run_key
 from lithobrake.files.hashing import content_hash, hashed_seed
-from lithobrake.pipeline.design.soils import soil_dependencies
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
@@ -114,8 +113,17 @@ def design_dependencies(study: Study) -> dict[str, Any]:
         "drawn": _drawn_dependencies(study),
         "fixed": fixed,
         "inputs": laws,
-        **soil_dependencies(study),
+        **_soil_dependencies(study),
     }
+
+
+def _soil_dependencies(study: Study) -> dict[str, Any]:
+    """What the soils of regions depend on, as JSON values; empty where there are none. A file counts by its content."""
+    found = {name: soil.model_dump(exclude_none=True) for name, soil in study.soil.items()}
+    for name, soil in study.soil.items():
+        if soil.facets is not None:
+            found[name]["facets"] = content_hash(Path(soil.facets))
+    return {"soil": found} if found else {}
 
 
 def _drawn_dependencies(study: Study) -> dict[str, Any]:

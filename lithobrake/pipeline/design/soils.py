@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
@@ -191,12 +191,3 @@ def _region(key: str) -> str:
 def _grain_key(key: str) -> str:
     """The key in [grain] of what a number of a region stands for."""
     return key.split(".", 2)[2]
-
-
-def soil_dependencies(study: Study) -> dict[str, Any]:
-    """What the soils of regions depend on, as JSON values; empty where there are none. A file counts by its content."""
-    found = {name: soil.model_dump(exclude_none=True) for name, soil in study.soil.items()}
-    for name, soil in study.soil.items():
-        if soil.facets is not None:
-            found[name]["facets"] = content_hash(Path(soil.facets))
-    return {"soil": found} if found else {}

@@ -247,14 +247,14 @@ def test_site_and_grain_sizes_are_no_inputs_of_a_run(drawn: DrawnPage) -> None:
     study = drawn.study | {
         "site": drawn.study["site"] | {"heading_deg": law}, "bed": drawn.study["bed"] | {"diameter": law},
     }  # fmt: skip
-    inputs = table_of(replace(drawn, study=study), "Inputs that")
+    inputs = table_of(replace(drawn, study=study), "Sampled inputs")
     assert [row[1] for row in inputs.rows][-3:] == ["impact.region", "impact.azimuth_deg", "impact.orientation"]
     assert {row[1].partition(".")[0] for row in inputs.rows} == {"grain", "impact"}
 
 
 def test_what_the_emulator_found_stands_beside_the_inputs(drawn: DrawnPage) -> None:
     found = changed(drawn, emulator={"found_inputs": ["grain.friction"]})
-    told = {row[1]: row[-1] for row in table_of(found, "Inputs that").rows if row[-1]}
+    told = {row[1]: row[-1] for row in table_of(found, "Sampled inputs").rows if row[-1]}
     assert told.pop("grain.friction") == "yes"
     assert set(told.values()) == {"no"}
 
