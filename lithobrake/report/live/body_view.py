@@ -73,7 +73,7 @@ def end_views(data: JourneyPage) -> list[LiveSection]:
     arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
     words = f"Pins: where {on_ground.sum()} landers ended on the ground."
     if len(ways):
-        words += " Lines: the flights of the first journeys, seen from the turning body."
+        words += " Lines: the paths of the first journeys, relative to the rotating body."
     legend = {JourneyEnd(one).label: END_COLOURS[one] for one in dict.fromkeys([*end.tolist(), *ended])}
     return [
         section(

@@ -50,6 +50,8 @@ function tracePlaces(context, middle, at, visit) {
 
 // Where landers come down: the share of all draws in the cells of both halves, and the aim point.
 function drawMap(canvas, map, aim) {
+  // A canvas that is not shown has no width.
+  if (canvas.clientWidth <= 32) return;
   const size = Math.min((canvas.clientWidth - 16) / 2, 340), { context, width, colour } = pen(canvas, size + 26);
   const most = Math.max(...map), radius = size / 2 - 1, pixel = size / MAP_CELLS;
   context.textAlign = "center";

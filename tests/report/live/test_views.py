@@ -85,7 +85,7 @@ def test_the_page_says_how_far_places_are_rounded(paper: PaperPage) -> None:
     assert "12 grains and the lander (blue) in 8 pictures" in landing.html
     assert "Positions are rounded to" in landing.html
     assert 'id="body-3d-data"' in body.html
-    assert f"the first {len(paper.paths[1])} flights, seen from the turning body" in body.html
+    assert f"the first {len(paper.paths[1])} flights, relative to the rotating body" in body.html
     keys = dict(re.findall(r'<span style="--key: ([^"]+)">([^<]+)</span>', body.html))
     assert keys == {FATE_COLOURS["impact"]: "impact", FATE_COLOURS["flying"]: "still flying"}
 
