@@ -76,7 +76,7 @@ def run(
     return StudyResults(folder)
 
 
-def _say_solver(command: str, shown: Progress) -> None:
+def _say_solver(command: str | None, shown: Progress) -> None:
     """Say which program or server of the user's the runs ask, if any."""
     if command:
         what = "model of a server, which every run that is still to be made asks"
