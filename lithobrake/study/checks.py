@@ -184,8 +184,9 @@ def _width_problems(study: Study, radius: float) -> Iterator[str]:
     beside = widths_in_grains(study)[1] if study.bed.sides == "periodic" else 0.0
     images = 2 * radius + beside * largest_diameter(study)
     if images > least:
-        grains = f" and {beside:.3g} of the grains', {TWO_IMAGES}" if beside > 0.0 else ", with its parts"
-        least, why = images, f"the lander's largest diameter{grains}"
+        reach = f"twice the {radius:.3g} m that the lander, with its parts, reaches from its centre of mass"
+        grains = f", and {beside:.3g} of the grains' largest diameters, {TWO_IMAGES}" if beside > 0.0 else ""
+        least, why = images, f"{reach}{grains}"
     if width < least:
         yield (
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "

@@ -131,7 +131,7 @@ REFUSED = [
     ("grain.friction", table("uniform", lower=0.3), ["uniform takes exactly the numbers lower, upper"]),
     ("grain.youngs_modulus", 1e7, ["grain.youngs_modulus is not a known key", "did you mean young_modulus?"]),
     ("grian", {}, ["grian is not a known key", "did you mean grain?"]),
-    ("surface", None, ["surface is missing"]),
+    ("surface", None, ["surface is missing, and so is [journey]"]),
     ("site", 3, ["site is 3", "write [site]"]),
     ("impact.incidence_deg", 95.0, ["below 90 [deg]"]),
     ("impact.azimuth_deg", "randm", ['or "random"']),
