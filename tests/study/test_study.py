@@ -333,7 +333,7 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
             {"bed.width": [0.56, 0.55], "bed.diameter": table("constant", value=0.09)},
             [
                 "bed.width is 0.55 m at its narrowest; allowed: at least 0.555 m",
-                "3.2 of the grains', as with bed",
+                "3.2 of the grains' largest diameters, as with bed",
             ],
         ),
         (
