@@ -2,9 +2,10 @@
 
 python examples/slide.py runs/hera
 
-Writes slide.png, 1920 x 1080 pixels, beside the study's folder. Change the words on the slide here.
+Writes runs/hera_slide.png, 1920 x 1080 pixels, beside the study's folder. Change the words on the slide here.
 """
 
+import re
 import sys
 from pathlib import Path
 from textwrap import fill
@@ -20,14 +21,15 @@ def main(folder: Path) -> Path:
     picture = next(folder.rglob("figure_*_ends.png"))
     figure = plt.figure(figsize=(16.0, 9.0), dpi=120)
     figure.text(0.04, 0.90, study.study["title"], fontsize=30, weight="bold")
-    sentences = study.summary["results"]["answer"][:3]
+    # No line ends between a number and its unit.
+    sentences = [re.sub(r"(?<=\d) (?=[%a-z])", "\u00a0", one) for one in study.summary["results"]["answer"][:3]]
     figure.text(0.04, 0.84, "\n\n".join(fill(one, 42) for one in sentences), fontsize=17, va="top", linespacing=1.4)
     assumed = "Holds over the input ranges of the study file, and for ground that was not simulated."
     figure.text(0.04, 0.05, f"{assumed} Made with lithobrake.", fontsize=12, color="0.4")
     axes = figure.add_axes((0.42, 0.09, 0.56, 0.87))
     axes.imshow(plt.imread(picture), interpolation="lanczos")
     axes.axis("off")
-    path = folder.parent / "slide.png"
+    path = folder.with_name(f"{folder.resolve().name}_slide.png")
     figure.savefig(path)
     plt.close(figure)
     return path

@@ -18,6 +18,8 @@ from lithobrake.vocabulary.plain_text import plain
 
 # A stage is soon seen to be at work, and a night of it does not fill the file: first line, then the others [s].
 FIRST, EVERY = 5.0, 30.0
+# With less than this done the time left is no estimate [-].
+LEAST_FRACTION = 0.01
 
 
 class _TimeLeft(TimeRemainingColumn):
@@ -124,7 +126,8 @@ class _Work:
     def now(self) -> str:
         """How far it is, how fast it goes and how long it will take."""
         fraction = (self.done - self.first_done) / (self.total - self.first_done or 1.0)
-        left = f"{duration(self.seconds * (1.0 / fraction - 1.0))} left" if 0.0 < fraction < 1.0 else ""
+        known = LEAST_FRACTION <= fraction < 1.0
+        left = f"{duration(self.seconds * (1.0 / fraction - 1.0))} left" if known else ""
         return self._line(counted(self.done, self.total), f"{duration(self.seconds)} so far", self._rate, left)
 
     def end(self) -> str:

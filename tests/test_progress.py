@@ -95,6 +95,8 @@ def test_a_log_file_tells_done_rate_and_time_left_of_work_that_gives_numbers_alo
     shown = logged((0.2, 1, "pouring", ""), (0.4, 1, "pouring", ""), until="left")
     assert re.search(r"^  pouring: 40 %, \d+ s so far, \d+ s left$", shown, re.MULTILINE)
     assert re.search(r"^  pouring: took \d+ s$", shown, re.MULTILINE)
+    shown = logged((0.0, 1, "landing", ""), (0.001, 1, "landing", ""), until="so far")
+    assert " left" not in shown
 
 
 def test_a_log_file_shows_life_where_the_work_tells_nothing() -> None:

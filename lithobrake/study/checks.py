@@ -178,14 +178,17 @@ def _shape_problems(study: Study) -> Iterator[str]:
 def _width_problems(study: Study, radius: float) -> Iterator[str]:
     """A bed too narrow for a lander that reaches a radius [m] from its centre of mass."""
     lander, width = study.lander, min(study.bed.width)
-    unit = f', or name the unit of lander.file (lander.unit is "{lander.unit}")' if lander.file else ""
+    mesh = f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
+    unit = mesh if lander.file else ", or mend the lengths of the lander, which are in m"
     main = 2 * main_radius(lander)
     least, why = BED_WIDTH_PER_LANDER * main, f"twice the largest diameter of the lander ({main:.3g} m)"
     beside = widths_in_grains(study)[1] if study.bed.sides == "periodic" else 0.0
     images = 2 * radius + beside * largest_diameter(study)
     if images > least:
-        grains = f" and {beside:.3g} of the grains', {TWO_IMAGES}" if beside > 0.0 else ", with its parts"
-        least, why = images, f"the lander's largest diameter{grains}"
+        parts = ", with its parts," if lander.part else ""
+        reach = f"twice the {radius:.3g} m that the lander{parts} reaches from its centre of mass"
+        grains = f", and {beside:.3g} of the grains' largest diameters, {TWO_IMAGES}" if beside > 0.0 else ""
+        least, why = images, f"{reach}{grains}"
     if width < least:
         yield (
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m, {why}; widen the bed and add "

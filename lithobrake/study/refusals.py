@@ -40,6 +40,8 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         return f"{key} is not a known key{closest(place[-1], known)}" + (
             f"; allowed: {', '.join(known)}" if known else ""
         )
+    if kind == "missing" and key == "surface":
+        return "surface is missing, and so is [journey], which needs no surface; add one of the two tables"
     if kind == "missing":
         return f"{key} is missing; add {'the table' if key in known_keys else 'the key'} (`lithobrake new` shows all)"
     if kind in {"literal_error", "union_tag_invalid"}:

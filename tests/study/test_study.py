@@ -131,7 +131,7 @@ REFUSED = [
     ("grain.friction", table("uniform", lower=0.3), ["uniform takes exactly the numbers lower, upper"]),
     ("grain.youngs_modulus", 1e7, ["grain.youngs_modulus is not a known key", "did you mean young_modulus?"]),
     ("grian", {}, ["grian is not a known key", "did you mean grain?"]),
-    ("surface", None, ["surface is missing"]),
+    ("surface", None, ["surface is missing, and so is [journey]"]),
     ("site", 3, ["site is 3", "write [site]"]),
     ("impact.incidence_deg", 95.0, ["below 90 [deg]"]),
     ("impact.azimuth_deg", "randm", ['or "random"']),
@@ -333,7 +333,7 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
             {"bed.width": [0.56, 0.55], "bed.diameter": table("constant", value=0.09)},
             [
                 "bed.width is 0.55 m at its narrowest; allowed: at least 0.555 m",
-                "3.2 of the grains', as with bed",
+                "3.2 of the grains' largest diameters, as with bed",
             ],
         ),
         (

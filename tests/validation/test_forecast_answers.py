@@ -1,5 +1,6 @@
 """Answers of the forecast for made-up landers, against closed forms."""
 
+import argparse
 import math
 import sys
 from pathlib import Path
@@ -112,6 +113,22 @@ def test_rank_correlations_are_those_of_a_normal_law() -> None:
     assert found["upper"] - found["lower"] == pytest.approx(2.0 * 1.645 * (1.0 - r**2) / math.sqrt(count), rel=0.25)
     none = rank_correlation(landers(speed=x, time_s=y), "speed", "time_s")
     assert none["lower"] < 0.0 < none["upper"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"latitude_deg": 10.0}, "give both"),
+        ({"latitude_deg": -95.0, "longitude_deg": 10.0}, "allowed: -90 to 90"),
+        ({"contacts": math.nan}, "--contacts is nan"),
+    ],
+)
+def test_an_observation_that_cannot_be_is_refused(changes: dict[str, float], words: str) -> None:
+    from score import observed_bins
+
+    names = ("time_min", "contacts", "first_speed_ratio", "latitude_deg", "longitude_deg", "face")
+    with pytest.raises(SystemExit, match=words):
+        observed_bins(argparse.Namespace(**(dict.fromkeys(names) | {"end": "at_rest"} | changes)))
 
 
 def test_what_is_scored_costs_the_bits_of_its_share(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,8 @@
 For each thing that was observed: -log2 of the probability that a forecast gave to the bin in which it lies; smaller is
 better. Beside the forecast stand that of hard ground and, as one who knows nothing, equal probabilities of all bins.
 The bins are those of forecast.json; what is not known is left out. Scores of one lander add up as if its bins were
-independent, which they are not: compare forecasts, do not test them.
+independent, which they are not: compare forecasts, do not test them. Write a side or a number that begins with a minus
+behind an equals sign: --face=-z --latitude-deg=-12.
 """
 
 import argparse
@@ -21,14 +22,21 @@ HERE = Path(__file__).parent
 
 def observed_bins(options: argparse.Namespace) -> dict[str, int]:
     """The bin of each thing that was observed."""
+    if (options.latitude_deg is None) != (options.longitude_deg is None):
+        raise SystemExit("--latitude-deg and --longitude-deg are one place; give both, or neither")
     found = {"end": ENDS.index(options.end)}
     for name, edges in BINS.items():
         value = getattr(options, name)
         if value is not None:
-            if value < edges[0]:
+            if not edges[0] <= value < math.inf:
                 raise SystemExit(f"--{name.replace('_', '-')} is {value:g}; allowed: at least {edges[0]:g}")
             found[name] = int(np.searchsorted(edges, value, side="right") - 1)
-    if options.latitude_deg is not None and options.longitude_deg is not None:
+    if options.latitude_deg is not None:
+        if not abs(options.latitude_deg) <= 90.0 or not abs(options.longitude_deg) <= 360.0:
+            raise SystemExit(
+                f"--latitude-deg is {options.latitude_deg:g} and --longitude-deg {options.longitude_deg:g}; allowed: "
+                "-90 to 90, and -360 to 360, eastward"
+            )
         place = np.array([options.latitude_deg]), np.array([options.longitude_deg])
         found["cell"] = int(cells(*place)[0])
     if options.face is not None:

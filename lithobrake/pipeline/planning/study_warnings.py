@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # A share of touchdowns that may be cut off without a word [-].
 CUT_OFF = 0.05
+# A smaller share of delivered landers that reach the ground is hardly meant [-].
+FEW_REACH = 0.5
 # A uniform distribution over more than this, largest over smallest value, hardly ever draws what is small.
 WIDE = 100.0
 # Fewer runs a term than this, and a least-squares fit follows single runs.
@@ -36,6 +38,7 @@ def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -
         [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
     )
     return [
+        *_missed(design),
         *ground,
         *touchdown,
         *_wide(study),
@@ -44,6 +47,19 @@ def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -
         *_few_beds(study),
         *_one_place(design),
     ]
+
+
+def _missed(design: DrawnDesign) -> Iterator[str]:
+    """Landers that are delivered as states, of which many never reach the ground."""
+    if design.descents is None:
+        return
+    down = design.descents.touches_down
+    if down.mean() < FEW_REACH:
+        yield (
+            f"Only {int(down.sum())} of {len(down)} landers reach the ground, and no other has a touchdown: times, "
+            "places and sides at rest will stand on these alone; change the states or [delivery.release], or raise "
+            "journey.duration where they still fly."
+        )
 
 
 def _bed(soil: ExpectedSoil) -> Iterator[str]:

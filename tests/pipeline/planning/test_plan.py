@@ -9,6 +9,7 @@ import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,7 @@ from lithobrake.pipeline.planning.planned_beds import planned_boulders, planned_
 from lithobrake.pipeline.planning.planned_ground import planned_ground
 from lithobrake.pipeline.planning.planned_runs import PlannedRuns
 from lithobrake.pipeline.planning.planner import plan_of
-from lithobrake.pipeline.planning.study_warnings import expected_loss, study_warnings
+from lithobrake.pipeline.planning.study_warnings import _missed, expected_loss, study_warnings
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
@@ -604,3 +605,13 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     expected = expected_bytes(DrawnDesign(study), Site(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4
+
+
+@pytest.mark.parametrize(
+    ("down", "words"), [([True, False, False], ["Only 1 of 3 landers"]), ([True, True, False], [])]
+)
+def test_a_delivery_that_mostly_misses_the_ground_is_a_warning(down: list[bool], words: list[str]) -> None:
+    design = SimpleNamespace(descents=SimpleNamespace(touches_down=np.array(down)))
+    found = list(_missed(design))
+    assert len(found) == len(words)
+    assert all(word in one for one, word in zip(found, words, strict=True))
