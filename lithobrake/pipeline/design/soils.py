@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
 from lithobrake.pipeline.design.felt_acceleration import felt
 from lithobrake.pipeline.site import Site
-from lithobrake.study import Study, StudyError
+from lithobrake.study import StudyError
 from lithobrake.study.quantity import Scalar, uncertain
 from lithobrake.study.soil_section import facet_numbers
 from lithobrake.vocabulary.quantities import ELSEWHERE
