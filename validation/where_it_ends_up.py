@@ -48,6 +48,11 @@ def numbers(name: str, study: StudyResults) -> dict[str, Any]:
     }
 
 
+def plain(value: float) -> str:
+    """A number in two digits, without an exponent."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def row(found: dict[str, Any]) -> str:
     """A row of the table."""
 
@@ -55,7 +60,7 @@ def row(found: dict[str, Any]) -> str:
         return f"{100 * one['share']:.0f} ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
 
     def value(one: dict[str, Any], size: float) -> str:
-        return "-" if one["value"] is None else f"{one['value'] / size:.2g}"
+        return "-" if one["value"] is None else plain(one["value"] / size)
 
     region = found["regions"][-1] if found["regions"] else None
     cells = [
@@ -67,7 +72,7 @@ def row(found: dict[str, Any]) -> str:
         value(found["time_s"]["median"], 60.0),
         value(found["contacts"]["median"], 1.0),
         value(found["distance_m"]["median"], 1.0),
-        f"{region['area_m2']:.2g}" if region else "-",
+        plain(region["area_m2"]) if region else "-",
     ]
     return f"| {' | '.join(cells)} |"
 
