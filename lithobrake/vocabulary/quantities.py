@@ -43,10 +43,10 @@ BED = "of the bed: origin in the middle of the floor, x and y along its sides, z
 HULL = "of each hull: origin at its centroid, turning with it"
 
 VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
-# How the lander turns and stands when it leaves, beside what is fitted; a program of the user's own may leave them out.
 # Attitude and spin of a lander as a touchdown begins, in the frame of the bed.
 ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
+# How the lander turns and stands when it leaves, beside what is fitted; a program of the user's own may leave them out.
 SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
 ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
 OVER_RIM = "over_rim"

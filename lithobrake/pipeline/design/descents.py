@@ -153,8 +153,10 @@ def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) 
     """Axes and incidences of the first touchdowns of the landers that are down; axes of the others: the body's."""
     axes, incidence = np.tile(np.eye(3), (len(flights), 1, 1)), np.array(flights.incidence)
     up = flights.body.shape.normals[flights.facet[down]]
-    uniforms = np.array([first_uniforms(study, first + one) for one in np.flatnonzero(down).tolist()]).reshape(-1, 2)
-    axes[down], incidence[down] = met_ground(study, flights.velocity[down], up, incidence[down], uniforms)
+    journeys = (first + np.flatnonzero(down)).tolist()
+    axes[down], incidence[down] = met_ground(
+        study, flights.velocity[down], up, incidence[down], lambda: first_uniforms(study, journeys)
+    )
     return axes, incidence
 
 

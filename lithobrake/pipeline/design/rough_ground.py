@@ -1,7 +1,7 @@
 """First touchdowns on ground that is rough: the frame of the ground that a lander meets, and its touchdown in there."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -22,19 +22,19 @@ def roughness(study: Study) -> float:
 
 
 def met_ground(
-    study: Study, velocity: np.ndarray, up: np.ndarray, incidence: np.ndarray, uniforms: np.ndarray
+    study: Study, velocity: np.ndarray, up: np.ndarray, incidence: np.ndarray, uniforms: Callable[[], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Axes of touchdowns in rows, [count, 3, 3], and incidences [rad], [count], on the ground that landers meet.
 
     velocity [m/s] and up, the normals of the facets, both [count, 3]; incidence: against these [rad], [count];
-    uniforms [count, 2]: numbers between 0 and 1 that draw the gradient of rough ground.
+    uniforms: gives numbers between 0 and 1, [count, 2], that draw the gradient; asked where the ground is rough alone.
     """
     from lithobrake.smallbody import incidence_on, met_normals
     from lithobrake.smallbody.hopping import impact_frame
 
     if not study.site.roughness_deg:
         return impact_frame(velocity, up), incidence
-    normal = met_normals(velocity, up, roughness(study), uniforms)
+    normal = met_normals(velocity, up, roughness(study), uniforms())
     return impact_frame(velocity, normal), incidence_on(velocity, normal)
 
 
@@ -47,13 +47,14 @@ def first_axes(study: Study, axes: np.ndarray, rows: Sequence[Row]) -> np.ndarra
         return axes
     angle = np.radians([row.get(MEAN_INCIDENCE, row[INCIDENCE]) for row in rows])
     incoming = np.sin(angle)[:, None] * axes[:, 0] - np.cos(angle)[:, None] * axes[:, 2]
-    uniforms = np.array([first_uniforms(study, int(row["journey"])) for row in rows])
-    return met_ground(study, incoming, axes[:, 2], angle, uniforms)[0]
+    journeys = [int(row["journey"]) for row in rows]
+    return met_ground(study, incoming, axes[:, 2], angle, lambda: first_uniforms(study, journeys))[0]
 
 
-def first_uniforms(study: Study, journey: int) -> np.ndarray:
-    """What draws the ground of the first touchdown of a journey, two numbers between 0 and 1."""
-    return np.random.default_rng(hashed_seed(study.seed, "roughness", journey)).random(2)
+def first_uniforms(study: Study, journeys: Sequence[int]) -> np.ndarray:
+    """What draws the ground of the first touchdowns of journeys, two numbers between 0 and 1 for each, [count, 2]."""
+    drawn = [np.random.default_rng(hashed_seed(study.seed, "roughness", journey)).random(2) for journey in journeys]
+    return np.array(drawn).reshape(-1, 2)
 
 
 def on_rough_ground(study: Study, rows: Sequence[Row], axes: np.ndarray, met: np.ndarray) -> list[Row]:

@@ -112,6 +112,9 @@ class Soils:
 
     def refuse(self, name: str) -> None:
         """Raise StudyError, with the name of the study file, for regions in which this body has no ground."""
+        if not self.site.study.soil:
+            # The body, which a study of one soil may not need, is not made for this.
+            return
         wrong, facet_count = [], len(self._shape.faces)
         for region, soil in self.site.study.soil.items():
             last = max(self._facets[region]) if soil.facets is not None else -1
@@ -120,7 +123,7 @@ class Soils:
                     f"{name}: soil.{region}.facets has {last}; allowed: 0 to {facet_count - 1}, the facets of the "
                     "body's shape; take the numbers of its faces in their order, from 0"
                 )
-        shares = {} if wrong or not self.site.study.soil else self.area_shares()
+        shares = {} if wrong else self.area_shares()
         wrong += [
             f"{name}: soil.{region} holds no ground of this body within its bounds and outside of the regions before "
             "it; widen its bounds, move it up, or leave it out"

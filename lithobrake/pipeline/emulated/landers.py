@@ -177,8 +177,11 @@ class EmulatedLanders:
         self, down: np.ndarray, velocity: np.ndarray, up: np.ndarray, incidence: np.ndarray, number: int
     ) -> None:
         """Lay the frames of the next impacts: velocities [m/s] and normals of the facets, [count, 3]."""
-        seed = hashed_seed(self.job.study.seed, self.title, "roughness", number)
-        uniforms = np.random.default_rng(seed).random((len(self.end), 2))[down]
+
+        def uniforms() -> np.ndarray:
+            seed = hashed_seed(self.job.study.seed, self.title, "roughness", number)
+            return np.random.default_rng(seed).random((len(self.end), 2))[down]
+
         self.axes[down], met = met_ground(self.job.study, velocity, up, incidence, uniforms)
         self.incidence[down] = np.minimum(np.degrees(met), FLATTEST_DEG)
 

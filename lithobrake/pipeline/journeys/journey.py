@@ -166,8 +166,8 @@ class Journey:
 
     def _meet_ground(self, flight: "Flights", gradient: list[float]) -> float:
         """Lay the frame of the next touchdown, by two uniform numbers; gives the incidence in it [rad]."""
-        up, uniforms = self.model.body.shape.normals[flight.facet], np.array([gradient])
-        axes, incidence = met_ground(self.model.design.study, flight.velocity, up, flight.incidence, uniforms)
+        study, up = self.model.design.study, self.model.body.shape.normals[flight.facet]
+        axes, incidence = met_ground(study, flight.velocity, up, flight.incidence, lambda: np.array([gradient]))
         self.axes = axes[0]
         return float(incidence[0])
 
