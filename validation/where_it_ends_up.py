@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from hard_ground import HardGround
+from page_text import two_digits
 
 import lithobrake
 from lithobrake.report.figures.style import figure_style
@@ -48,11 +49,6 @@ def numbers(name: str, study: StudyResults) -> dict[str, Any]:
     }
 
 
-def plain(value: float) -> str:
-    """A number in two digits, without an exponent."""
-    return f"{float(f'{value:.2g}'):g}"
-
-
 def row(found: dict[str, Any]) -> str:
     """A row of the table."""
 
@@ -60,7 +56,7 @@ def row(found: dict[str, Any]) -> str:
         return f"{100 * one['share']:.0f} ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
 
     def value(one: dict[str, Any], size: float) -> str:
-        return "-" if one["value"] is None else plain(one["value"] / size)
+        return "-" if one["value"] is None else two_digits(one["value"] / size)
 
     region = found["regions"][-1] if found["regions"] else None
     cells = [
@@ -72,7 +68,7 @@ def row(found: dict[str, Any]) -> str:
         value(found["time_s"]["median"], 60.0),
         value(found["contacts"]["median"], 1.0),
         value(found["distance_m"]["median"], 1.0),
-        plain(region["area_m2"]) if region else "-",
+        two_digits(region["area_m2"]) if region else "-",
     ]
     return f"| {' | '.join(cells)} |"
 

@@ -12,12 +12,10 @@ from lithobrake.study.delivered_states import read_states
 from lithobrake.study.reader import check_tables
 from lithobrake.study.study import Study
 
+from ..small_ground import SMALL_GROUND
+
 TABLES: dict[str, Any] = {
-    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
-    "grain": {
-        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
-        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
-    },
+    **SMALL_GROUND,
     "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "journey": {"count": 2},
     "site": {"body": "dimorphos"},

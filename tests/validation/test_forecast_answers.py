@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def scripts():
-    """The scripts of the forecast import each other by name, as they do from the command line."""
-    before = list(sys.path)
-    sys.path[:0] = [str(ROOT / "validation" / "forecast_hera"), str(ROOT / "validation"), str(ROOT / "benchmarks")]
-    yield
-    sys.path[:] = before
+pytestmark = pytest.mark.usefixtures("forecast_scripts")
 
 
 def landers(weight: np.ndarray | None = None, bed: np.ndarray | None = None, **columns: np.ndarray):

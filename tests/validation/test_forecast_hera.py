@@ -1,7 +1,6 @@
 """The forecast for Hera's CubeSats: its descents, its chances, and how it is scored."""
 
 import math
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,13 +13,7 @@ from lithobrake.study import read_study
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module", autouse=True)
-def scripts():
-    """The scripts of the forecast import each other by name, as they do from the command line."""
-    before = list(sys.path)
-    sys.path[:0] = [str(ROOT / "validation" / "forecast_hera"), str(ROOT / "validation"), str(ROOT / "benchmarks")]
-    yield
-    sys.path[:] = before
+pytestmark = pytest.mark.usefixtures("forecast_scripts")
 
 
 def rows(counts: dict[str, dict[str, int]], lander: str = "juventas") -> list[dict]:

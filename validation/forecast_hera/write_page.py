@@ -8,7 +8,6 @@ The last step of forecast.py.
 import json
 import math
 import sys
-from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,7 @@ from answers import FORECAST, HERE
 from figures import draw_map, draw_shares
 from harness import command_line, read_rows
 from landers import KINDS, RUNS, TABLE
-from page_text import broken
+from page_text import broken, table
 from page_words import ABOUT, LEFT_OUT, METHOD, REPRODUCE, SCORING, VARIANTS_SAY
 from samples import BINS, ENDS, FACES, GROUNDS
 
@@ -71,12 +70,6 @@ def plain(value: float, digits: int = 2) -> str:
         return "0"
     places = digits - 1 - math.floor(math.log10(abs(value)))
     return f"{round(value, places):.{max(places, 0)}f}"
-
-
-def table(head: Sequence[str], rows: list[list[str]]) -> str:
-    """A table of the page."""
-    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *(f"| {' | '.join(row)} |" for row in rows)]
-    return "\n".join(lines)
 
 
 def ends_table(landers: Answers) -> str:

@@ -25,15 +25,12 @@ from lithobrake.study.source import StudySource
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus
 
+from ...small_ground import SMALL_GROUND
 from ...smallbody.meshes import sphere_mesh
 
 TABLES: dict[str, Any] = {
     "seed": 5,
-    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
-    "grain": {
-        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
-        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
-    },
+    **SMALL_GROUND,
     "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "delivery": {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"},
     "journey": {"count": 8, "duration": 40000.0},

@@ -17,16 +17,13 @@ from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, Launch, hop
 from lithobrake.study.source import StudySource
 
+from ...small_ground import SMALL_GROUND
 from .without_emulator import run_without_emulator
 
 JOURNEYS = 24
 TABLES: dict[str, Any] = {
     "seed": 3,
-    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
-    "grain": {
-        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
-        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
-    },
+    **SMALL_GROUND,
     "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "delivery": {
         "latitude_deg": 30.0, "longitude_deg": 200.0,

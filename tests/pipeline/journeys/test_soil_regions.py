@@ -29,6 +29,7 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
+from ...small_ground import SMALL_GROUND
 from ...smallbody.meshes import sphere_mesh
 
 RADIUS, DENSITY, FREQUENCY = 80.0, 2000.0, 8
@@ -43,11 +44,7 @@ STRIP = {
 }
 TABLES: dict[str, Any] = {
     "seed": 3,
-    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09}},
-    "grain": {
-        "density": 2500.0, "young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5,
-        "friction": {"distribution": "uniform", "lower": 0.8, "upper": 0.9},
-    },
+    **SMALL_GROUND,
     "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
     "delivery": {
         "latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
