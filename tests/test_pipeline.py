@@ -244,21 +244,21 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
 @pytest.mark.parametrize(
     ("bed", "impact", "where"),
     [
-        ({}, {}, "On this bed, at this place"),
-        ({"bed_count": 6}, {}, "At this place"),
+        ({}, {}, "On this bed, at this impact point"),
+        ({"bed_count": 6}, {}, "At this impact point"),
         ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
         ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
         (
             {"bed_count": 6},
             {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
-            "On these 6 beds, at places and in attitudes drawn anew",
+            "On these 6 beds, at random impact points and attitudes",
         ),
     ],
 )
 def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:
     found = scope(changed(bed=bed, impact=impact))
     assert found.where == where
-    expected = "no interval" if "drawn anew" in where else "this study cannot say how different"
+    expected = "no interval" if "random" in where else "this study cannot show by how much"
     assert expected in found.why
 
 
@@ -347,7 +347,7 @@ def test_the_acceleration_of_the_site_is_offered_to_the_touchdown() -> None:
     equator = changed(**site, site={"latitude_deg": 0.0, "longitude_deg": 0.0})
     assert equator.surface.gravity == pytest.approx(-Site(equator).acceleration[2])
     assert equator.surface.gravity < 0.0
-    assert "push outwards" in Site(equator).warning
+    assert "push outward" in Site(equator).warning
     pole = changed(**site, site={"latitude_deg": 80.0})
     assert 1.8e-4 < pole.surface.gravity < 2.6e-4
     assert Site(pole).warning is None

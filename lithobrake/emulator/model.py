@@ -74,7 +74,7 @@ class Emulator(Parts):
         return (
             f"<p>{escape(self.statement)}</p>"
             + html_table(f"Outcomes of {len(ended)} runs", ("outcome", "runs"), outcomes)
-            + html_table("Outputs, on groups left out", ("output", "CRPS skill", "in the 90 % band"), scores)
+            + html_table("Outputs, on held-out groups", ("output", "CRPS skill", "in the 90 % band"), scores)
         )
 
     @property
@@ -87,15 +87,15 @@ class Emulator(Parts):
         count, number = len(self.runs.y), len(np.unique(self.runs.group))
         if not self.follows_inputs:
             return (
-                f"Knowing the inputs would hardly narrow the forecast: on {groups} left out no law of them did better, "
-                f"by more than a standard error, than drawing one of the {count} runs with outputs ({number} "
-                f"{groups}), so draws are runs alone."
+                f"The inputs do not improve the prediction: on held-out {groups} no regression on them scores better, by "
+                f"more than a standard error, than resampling the {count} runs with outputs ({number} {groups}), so "
+                "samples are resampled runs."
             )
         share = self.scores.gain / self.scores.energy_of_rows
         return (
-            f"On {groups} left out the inputs make the energy score {100 * share:.1f} % better "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f}) "
-            f"than drawing one of the {count} runs with outputs ({number} {groups})."
+            f"On held-out {groups} the inputs improve the energy score by {100 * share:.1f} % "
+            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f} %) "
+            f"over resampling the {count} runs with outputs ({number} {groups})."
         )
 
     def outcome_probability(self, x: ArrayLike) -> Array:

@@ -95,8 +95,8 @@ class Site:
             return None
         x, _, z = (math.degrees(angle) for angle in rotation.largest_angles)
         return (
-            f"The body turns as [site.rotation] starts it: its long axis goes up to {x:.0f} deg and its pole up to "
-            f"{z:.0f} deg away from where they keep pace with the orbit; landers arrive over {start.days:g} days."
+            f"The body rotates from the state in [site.rotation]: its long axis deviates by up to {x:.0f} deg and its "
+            f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {start.days:g} days."
         )
 
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -171,15 +171,15 @@ class Site:
         if outward < -NEARLY_NONE * pull:
             return None
         where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
-        end = "a lander that impacts again within the time of flight does not remain there."
+        end = "a lander that falls back there within the flight time will not remain."
         if outward > NEARLY_NONE * pull:
-            return f"{where} push outwards by {outward:.2g} m/s2: what lies there is thrown off, so {end}"
-        words = "push outwards" if outward > 0.0 else "hold"
+            return f"{where} push outward by {outward:.2g} m/s2 and eject what lies there: {end}"
+        words = "outward" if outward > 0.0 else "inward"
         # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
         hour = 0.5 * abs(outward) * 3600.0**2
         return (
-            f"{where} nearly cancel: they {words} by only {abs(outward):.2g} m/s2, {hour:.2g} m in the first hour from "
-            f"rest. The least uncertainty of mass, spin or shape turns that round, so {end}"
+            f"{where} nearly cancel: only {abs(outward):.2g} m/s2 {words} remain, {hour:.2g} m in the first hour from "
+            f"rest. A small error of mass, spin or shape can reverse this, and then {end}"
         )
 
     @cached_property
@@ -195,9 +195,9 @@ class Site:
         reached = f"{lower:.3g}" if lower == upper else f"{lower:.3g} to {upper:.3g}"
         settle = "" if at_site > 0.0 else " and bed.settle_gravity an inward value"
         return (
-            f"surface.gravity is {reached} m/s2 inwards, and at the site gravity and rotation together are "
-            f"{abs(at_site):.3g} m/s2 {'inwards' if at_site > 0.0 else 'outwards'}: touchdowns and flights are made "
-            'under different accelerations; write surface.gravity = "site"'
+            f"surface.gravity is {reached} m/s2 inward, but gravity and rotation at the site add up to "
+            f"{abs(at_site):.3g} m/s2 {'inward' if at_site > 0.0 else 'outward'}, so touchdown and flight use "
+            'inconsistent accelerations; set surface.gravity = "site"'
             f"{settle}, or choose the site that the touchdown is meant for"
         )
 
@@ -256,7 +256,7 @@ def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
     gravity = -float(Site(study).acceleration[2])
     problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
     if not math.isfinite(gravity):
-        problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; mend site.mass or its mesh"]
+        problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; correct site.mass or its mesh"]
     if problems:
         raise StudyError(problems)
     return study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": gravity})})

@@ -116,7 +116,7 @@ def test_a_gain_within_its_standard_error_is_no_law() -> None:
         models.append(emulator.fit(INPUTS, x, y, groups=np.arange(60) // 5))
     luck, law = models
     assert (luck.follows_inputs, luck.scores.gain, luck.scores.gain_error) == (False, 0.0, 0.0)
-    assert "Knowing the inputs would hardly narrow the forecast" in luck.statement_on("beds")
+    assert "The inputs do not improve the prediction" in luck.statement_on("beds")
     assert law.follows_inputs
     assert law.scores.gain > law.scores.gain_error > 0.0
     assert "4.5 % better (standard error 4.0)" in law.statement

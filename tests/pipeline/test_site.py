@@ -57,13 +57,13 @@ def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
         return Site(changed(surface={"gravity": gravity}, site={"latitude_deg": latitude})).gravity_warning
 
     # 1.4e-5 m/s2 outwards at the equator, 2.2e-4 m/s2 inwards near the pole.
-    assert "5e-05 m/s2 inwards" in str(warned(5e-5, 0.0))
-    assert "1.39e-05 m/s2 outwards" in str(warned(5e-5, 0.0))
+    assert "5e-05 m/s2 inward" in str(warned(5e-5, 0.0))
+    assert "1.39e-05 m/s2 outward," in str(warned(5e-5, 0.0))
     assert "bed.settle_gravity" in str(warned(5e-5, 0.0))
-    assert "inwards: touchdowns" in str(warned(5e-5, 80.0))
+    assert "inward, so touchdown" in str(warned(5e-5, 80.0))
     assert warned(1e-4, 80.0) is None
     assert warned(6e-4, 80.0) is None
-    assert "0.0008 m/s2 inwards" in str(warned(8e-4, 80.0))
+    assert "0.0008 m/s2 inward" in str(warned(8e-4, 80.0))
     assert warned({"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}, 80.0) is None
     site = changed(surface={"gravity": "site"}, bed={"settle_gravity": 2e-5}, site={"latitude_deg": 0.0})
     assert Site(site).gravity_warning is None

@@ -163,13 +163,13 @@ def aim_statement(table: AimResults) -> str:
     count = sum(aim.soil.allowed for aim in aims)
     best, hard = table.best_on_soil, table.best_on_hard
     if best is None:
-        return f"Of {len(aims)} delivery options {count} are allowed{within}, and at none of these a lander is at rest."
+        return f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
     said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
     part = aims[best.aim].soil
     # The largest of many shares is too high by its selection, so the sentence has the share without it.
     share = with_interval(best.own or part.settled, level=table.level)
     most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
-    first = f"{most} are at rest at {_words(table, best.aim)}: {share}"
+    first = f"{most} come to rest with {_words(table, best.aim)}: {share}"
     if part.distance_p95 is not None and part.time_p95 is not None:
         far, late = part.distance_p95.value, part.time_p95.value / HOUR
         first += f", {percent(FAR)} of these within {far:.3g} m and {late:.3g} h"
@@ -178,8 +178,8 @@ def aim_statement(table: AimResults) -> str:
     said.append(first)
     on_hard = None if hard is None else aims[hard.aim].hard
     if hard is not None and on_hard is not None:
-        where = "this one, too" if best.aim == hard.aim else _words(table, hard.aim)
-        said.append(f"Hard ground is best at {where}: {with_interval(on_hard.settled)}")
+        where = "the same option" if best.aim == hard.aim else _words(table, hard.aim)
+        said.append(f"On hard ground the best is {where}: {with_interval(on_hard.settled)}")
     return ". ".join(said) + "."
 
 
@@ -198,7 +198,7 @@ def _rivals(table: AimResults, best: int) -> str:
     """How many other options would be better if all landers of unknown outcome were at rest there."""
     least = table.aims[best].soil.settled.share
     count = sum(one.soil.settled.share + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
-    return f", and if all of these were at rest, as many as {count} other options could be better" if count > 0 else ""
+    return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
 
 
 def _words(table: AimResults, place: int) -> str:

@@ -107,12 +107,12 @@ def followed_words(study: Study, ground: str, count: int) -> str:
     """Which journeys the numbers of a ground describe, and what of the study they depend on."""
     if ground == "hard":
         return (
-            f"{count} journeys on the hard ground of [rest], from the impacts of the study file; no soil, bed or "
-            "emulator takes part in them"
+            f"{count} journeys on the hard ground of [rest], from the impacts of the study file, without soil, bed or "
+            "emulator"
         )
     model = "expansion" if study.design.method == "paper" else "emulator"
     on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
-    return f"{count} journeys of samples of the {model}{on}"
+    return f"{count} journeys of {model} samples{on}"
 
 
 def _with_sampling_intervals(found: GroundResults) -> GroundResults:

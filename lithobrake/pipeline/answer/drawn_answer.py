@@ -19,7 +19,7 @@ PARTS = {
     "soil": "soil",
     "arrival": "speed, angle and spin of the impact",
     "attitude": "attitude",
-    "bed": "the bed",
+    "bed": "bed",
     "place": "everything else",
     "chaos": "chaos",
 }
@@ -58,17 +58,17 @@ def limit_statement(name: str, found: LimitStateResult) -> str:
     """The probability of a limit state in a sentence: its interval, where it comes from, and correlated inputs."""
     begin = f"{name} ({found.condition}): {rare_percent(found.probability)} of the landings"
     if found.lower is None or found.upper is None:
-        return f"{begin}, from {found.runs.from_}, without an interval: {found.why}"
+        return f"{begin}, from {found.runs.from_}; no interval: {found.why}"
     said = f"{begin} ({percent(found.level)} interval {rare_percent(found.lower)} to {rare_percent(found.upper)})"
     if found.source == "emulator":
-        said += f", by the emulator: {found.failing_runs:.3g} landings that meet it are too few for an estimate"
+        said += f", from the emulator, since {found.failing_runs:.3g} landings that meet it are too few for an estimate"
         if found.probability < found.tail_limit:
-            said += f", and so few beds rule out no tail below {rare_percent(found.tail_limit)}"
+            said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
     made = [key for key, one in found.inputs.items() if one.found]
     made.sort(key=lambda key: -found.inputs[key].distance)
-    none = "No input is significant" if found.inputs else "Its inputs are not known"
+    none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
 
 
@@ -86,7 +86,7 @@ def _share(study: Study, results: DrawnResults) -> list[str]:
         "beds, impact points and attitudes" if study.impact.orientation == "random" else "beds and impact points"
     )
     return [
-        f"{said}, over the input distributions of the study file, on {attitudes} that were not in the study; from "
+        f"{said}, over the input distributions of the study file and for {attitudes} outside the study; from "
         f"{returns.from_}."
     ]
 
@@ -96,10 +96,10 @@ def _at_rest(study: Study, results: DrawnResults) -> str:
     grounds = results.rest.grounds
     ground = next((ground for ground in GROUNDS if ground in grounds), None)
     if ground is None:
-        return "" if results.site.holds else "None of the landings stays at the site; "
+        return "" if results.site.holds else "None of the landings remains at the site; "
     outcomes = grounds[ground].outcomes
     settled, unknown = outcomes[JourneyStatus.SETTLED], outcomes[JourneyStatus.OUTSIDE].share
-    lost = f" (of {percent(unknown)} the outcome is unknown)" if unknown > 0.0 else ""
+    lost = f" ({percent(unknown)} have an unknown outcome)" if unknown > 0.0 else ""
     return (
         f"{with_interval(settled, level=LEVEL)} of the landings come to rest {GROUNDS[ground]} within "
         f"{_hours(study.rest.duration)}{lost}; "
@@ -114,8 +114,8 @@ def _missing(runs: RunResults, returns: ReturnFraction) -> list[str]:
     low, high = (percent(bound, interval_digits(*returns.if_missing)) for bound in returns.if_missing)
     covers = "" if returns.lower is None else "; the interval covers both"
     return [
-        f"{lost.count} of {runs.count} landings have no outcome ({missing_words(lost.outcomes)}): {low} impact again "
-        f"if none, {high} if all of these do{covers}."
+        f"{lost.count} of {runs.count} landings have no outcome ({missing_words(lost.outcomes)}): the return fraction "
+        f"is {low} if none of these return and {high} if all do{covers}."
     ]
 
 
@@ -153,8 +153,8 @@ def _speed(speed: OutputEstimate | None) -> list[str]:
         ends = f"{CENTIMETRES * middle.lower:.3g} to {CENTIMETRES * middle.upper:.3g} cm/s"
         interval = f", {percent(LEVEL)} interval {ends}"
     return [
-        f"Rebound speed of {speed.of}: median {CENTIMETRES * middle.value:.3g} cm/s{interval}; 5 to 95 % of them: "
-        f"{CENTIMETRES * low.value:.3g} to {CENTIMETRES * high.value:.3g} cm/s."
+        f"Rebound speed of {speed.of}: median {CENTIMETRES * middle.value:.3g} cm/s{interval}; 5th to 95th "
+        f"percentile {CENTIMETRES * low.value:.3g} to {CENTIMETRES * high.value:.3g} cm/s."
     ]
 
 
@@ -167,7 +167,7 @@ def _scatter(record: VarianceParts | None) -> list[str]:
         for name, one in record.parts.items()
     ]
     return [
-        "The variance of the rebound speed, over the input distributions of the study file, comes from: "
+        "Parts of the variance of the rebound speed over the input distributions of the study file: "
         f"{', '.join(listed)} ({percent(LEVEL)} intervals)."
     ]
 

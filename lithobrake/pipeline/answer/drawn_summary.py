@@ -119,6 +119,6 @@ def _disagreement(returns: ReturnFraction) -> str | None:
         return None
     low, high = (f"{100 * end:.1f}" for end in (returns.lower, returns.upper))
     return (
-        f"The emulator gives a share of {percent(returns.emulator, 1)}, outside the interval of the runs ({low} to "
-        f"{high} %): do not trust what rests on it (flights, ellipses, rest), and make more runs"
+        f"The emulator gives a return fraction of {percent(returns.emulator, 1)}, outside the interval of the runs "
+        f"({low} to {high} %): do not rely on results of the emulator (flights, landing regions, rest); make more runs"
     )

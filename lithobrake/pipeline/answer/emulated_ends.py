@@ -147,9 +147,9 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
 def _statement(ends: Shares, agrees: bool | None, unknown: float) -> str:
     """Whether emulator and landings agree, in a sentence."""
     at_rest = ends[JourneyEnd.AT_REST]
-    said = f"By the emulator of all touchdowns {with_interval(at_rest)} come to rest"
-    more = f", {percent(unknown)} have an unknown end" if unknown >= 0.005 else ""
+    said = f"The emulator of all touchdowns gives {with_interval(at_rest)} at rest"
+    more = f" and {percent(unknown)} with an unknown outcome" if unknown >= 0.005 else ""
     if agrees is None:
         return f"{said}{more}."
     verdict = "agree" if agrees else "do not agree"
-    return f"{said}{more}: emulator and landings {verdict} on the ends within their {percent(LEVEL)} intervals."
+    return f"{said}{more}: emulator and landings {verdict} within their {percent(LEVEL)} intervals."

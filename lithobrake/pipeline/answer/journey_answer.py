@@ -22,8 +22,8 @@ def journey_answer(study: Study, results: DrawnResults) -> list[str]:
     hours = f"{study.journey.duration / HOUR:.3g} h"
     level = None if at_rest.lower is None else LEVEL
     said = [
-        f"{with_interval(at_rest, level=level)} of the landers come to rest within {hours}{_others(ends)}; from "
-        f"{results.journeys} journeys with {results.touchdowns} simulated landings on {results.runs.beds} beds."
+        f"{with_interval(at_rest, level=level)} of the landers come to rest within {hours} ({results.journeys} "
+        f"journeys, {results.touchdowns} simulated landings, {results.runs.beds} beds).{_others(ends)}"
     ]
     if at_rest.why is not None:
         said.append(at_rest.why)
@@ -34,7 +34,7 @@ def _others(ends: Mapping[str, EndShare]) -> str:
     """The shares of the other ends that occurred."""
     words = {end.value: end.label for end in JourneyEnd if end != JourneyEnd.AT_REST}
     listed = [f"{with_interval(one)} {words[name]}" for name, one in ends.items() if name in words and one.count]
-    return "; " + ", ".join(listed) if listed else ", and none ends otherwise"
+    return f" Other ends: {', '.join(listed)}." if listed else ""
 
 
 def _rest(rest: JourneyRest) -> list[str]:
@@ -42,16 +42,17 @@ def _rest(rest: JourneyRest) -> list[str]:
     if rest.time_s.median.value is None:
         return []
     said = [
-        f"At rest: {_hours(rest.time_s.median)} after the first touchdown in the median, 95 % within "
-        f"{_hours(rest.time_s.q95)}; after {_count(rest.contacts.median)} contacts "
-        f"(95 %: {_count(rest.contacts.q95)}); "
-        f"{_metres(rest.distance_m.median)} from the aim point (95 %: {_metres(rest.distance_m.q95)})."
+        f"Time from the first touchdown to rest: median {_hours(rest.time_s.median)}, 95 % within "
+        f"{_hours(rest.time_s.q95)}. Contacts: median {_count(rest.contacts.median)}, 95 % at most "
+        f"{_count(rest.contacts.q95)}. Distance from the aim point: median {_metres(rest.distance_m.median)}, 95 % "
+        f"within {_metres(rest.distance_m.q95)}."
     ]
     if rest.regions:
         half, most = rest.regions[0], rest.regions[-1]
         said.append(
-            f"The smallest region with {percent(half.share)} of them has {_rounded(half.area_m2)} m2, that with "
-            f"{percent(most.share)} {_rounded(most.area_m2)} m2 and is {_rounded(most.largest_extent_m)} m across."
+            f"The smallest region that holds {percent(half.share)} of them covers {_rounded(half.area_m2)} m2; the one "
+            f"that holds {percent(most.share)} covers {_rounded(most.area_m2)} m2 and is "
+            f"{_rounded(most.largest_extent_m)} m across."
         )
     if rest.faces:
         listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
@@ -63,7 +64,7 @@ def _soils(soils: Mapping[str, SoilResults]) -> list[str]:
     """How many touchdowns there are on the soil of each region, and how many of them end at rest."""
     listed = [
         f"{name} ({percent(one.area_share)} of the surface) {one.touchdowns} touchdowns"
-        + (f", of which {with_interval(one.rests)} come to rest" if one.rests else "")
+        + (f", {with_interval(one.rests)} of which come to rest" if one.rests else "")
         for name, one in soils.items()
     ]
     return [f"By soil: {'; '.join(listed)}."] if listed else []

@@ -60,14 +60,14 @@ def _one(
     for output in state.outputs:
         if not np.isfinite(runs.output(output)).any():
             raise ValueError(
-                f"limit_states.{name} asks for {output}, which no run has; let the program that makes the touchdowns "
-                "give it, or leave the limit state out"
+                f"limit_states.{name} uses {output}, which no run has; have the program that simulates the touchdowns "
+                "return it, or leave the limit state out"
             )
     failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).inputs
     if not np.isfinite(failing).any():
         raise ValueError(
-            f"limit_states.{name} is {state.text!r}, of which no run is known to meet it or not (runs.sqlite has how "
-            "each ended); ask for something else, or mend what the runs say"
+            f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "
+            "ended); choose another condition, or correct the outcomes"
         )
     x = runs.columns(list(inputs))
     found = failure_probability(

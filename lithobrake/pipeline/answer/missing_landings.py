@@ -22,10 +22,10 @@ REMEDIES = {
     TouchdownOutcome.LEFT_SIDEWAYS: "a wider bed (bed.width, with bed.grain_count) or a steeper impact "
     "(impact.incidence_deg)",
     TouchdownOutcome.TIME_LIMIT: "a longer landing.time_limit",
-    FAILED: "what the reasons of the failed runs name (runs.sqlite)",
+    FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
 }
 # A program of the user's own has neither bed nor time limit in the study file.
-OF_A_PROGRAM = "outcomes clear or captured from the program that makes the touchdowns"
+OF_A_PROGRAM = "outcomes clear or captured from the program that simulates the touchdowns"
 
 
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
@@ -49,7 +49,7 @@ def missing_warning(study: Study, outcomes: Mapping[str, int]) -> str | None:
     return (
         f"{found.count} of {total} landings ({percent(found.share)}) have no outcome "
         f"({missing_words(found.outcomes)}): medians, quantiles, variance shares and the emulator describe only the "
-        f"other {total - found.count}; to avoid this, give {', '.join(remedies)}"
+        f"other {total - found.count}; to avoid this: {', '.join(remedies)}"
     )
 
 

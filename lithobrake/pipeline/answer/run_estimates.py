@@ -40,8 +40,8 @@ def estimate(job: Job) -> None:
     returns = flights.returns
     if not np.isfinite(returns).any():
         raise ValueError(
-            f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite has how each ended), so "
-            "nothing can be said of the landers; mend what the runs say, or widen the bed"
+            f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite lists how each ended), "
+            "so there is no result; correct the outcomes of the runs, or widen the bed"
         )
     bed, why = runs.inputs["bed"].astype(int), why_no_interval(study)
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import Study
 
+# What a study on one bed, at one impact point or in one attitude leaves open.
+OTHERS = "Another bed, impact point or attitude would change this number; this study cannot show by how much"
+
 
 @dataclass(frozen=True)
 class Scope:
@@ -20,22 +23,20 @@ def scope(study: Study) -> Scope:
     if not study.has_soil:
         return Scope(
             "With the touchdowns of this study's own program",
-            "Other touchdowns give another figure; this study cannot say how different.",
+            "Another contact model would change this number; this study cannot show by how much.",
             "of the study's own program",
         )
     count = study.bed_count
     fixed = ["on this bed"] if count == 1 else []
-    fixed += ["at this place"] if DrawnDesign(study).one_place else []
+    fixed += ["at this impact point"] if DrawnDesign(study).one_place else []
     beds = "on 1 bed" if count == 1 else f"on {count} beds"
     if fixed or study.impact.orientation != "random":
         where = ", ".join(fixed or ["in this attitude"]).capitalize()
-        return Scope(
-            where, "Another bed, place or attitude gives another figure; this study cannot say how different.", beds
-        )
+        return Scope(where, f"{OTHERS}.", beds)
     return Scope(
-        f"On these {count} beds, at places and in attitudes drawn anew",
-        "The figure has no interval: how far other beds, places and attitudes and the error of the expansion would "
-        "move it is not worked out.",
+        f"On these {count} beds, at random impact points and attitudes",
+        "This number has no interval: the effect of other beds, impact points and attitudes and the error of the "
+        "expansion are not quantified.",
         beds,
     )
 
@@ -49,8 +50,7 @@ def why_no_interval(study: Study) -> str | None:
     if study.bed_count == 1:
         where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
     if one_place:
-        where, remedies = [*where, "at one place"], [*remedies, "impact.region to where it may come down"]
+        where, remedies = [*where, "at one impact point"], [*remedies, "impact.region to the area where it may land"]
     return (
-        f"All runs came down {' and '.join(where)}. Another bed, place or attitude gives another figure; this study "
-        f"cannot say how different: set {' and '.join(remedies)}."
+        f"All runs landed {' and '.join(where)}. {OTHERS}. To get an interval, set {' and '.join(remedies)}."
     )

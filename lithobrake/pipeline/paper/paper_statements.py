@@ -32,8 +32,8 @@ def answer(study: Study, results: PaperResults) -> list[str]:
         lost = [f"{percent(outcomes[outcome].share, 1)} {outcome.label}" for outcome in MISSING]
         low, high = (percent(bound, 1) for bound in results.returns.if_missing)
         sentences.append(
-            f"{percent(outcomes['missing'].share, 1)} of the samples have no outcome ({', '.join(lost)}): {low} impact "
-            f"again if none, {high} if all of these do."
+            f"{percent(outcomes['missing'].share, 1)} of the samples have no outcome ({', '.join(lost)}): the return "
+            f"fraction is {low} if none of these return and {high} if all do."
         )
     return [*sentences, *([site.warning] if site.warning else [])]
 
@@ -63,24 +63,25 @@ def _speed(study: Study, speed: Mapping[str, float] | None) -> list[str]:
     if not speed:
         return []
     low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in (0.05, 0.5, 0.95))
-    of = "with the scatter from run to run" if study.monte_carlo.scatter else "of the expansion, without scatter"
+    of = "with run-to-run scatter" if study.monte_carlo.scatter else "by the expansion alone, without scatter"
     return [
-        f"Rebound speed of those that leave, {of}: {middle:.3g} cm/s (median; 5 to 95 %: {low:.3g} to {high:.3g} cm/s)."
+        f"Rebound speed of the samples that leave the surface, {of}: median {middle:.3g} cm/s; 5th to 95th percentile "
+        f"{low:.3g} to {high:.3g} cm/s."
     ]
 
 
 def _main_input(main: MainInput) -> str:
     """The dominant input of the rebound speed, with its interval, of what it is a share, and what rivals it."""
     if main.total <= 0.0:
-        return "No input was found to explain the rebound speed."
+        return "No input explains the rebound speed significantly."
     low, high = main.interval
     noise = main.noise_share
-    role = f"cannot be told from {', '.join(main.equals)} by its" if main.equals else "is the dominant input by its"
+    rivals = f", not distinguishable from {', '.join(main.equals)}" if main.equals else ""
     rest = "" if noise is None else f"; {percent(noise)} of the variance of the runs is scatter that no input explains"
     return (
-        f"For the rebound speed {main.name} {role} total Sobol index, {main.total:.2f} (95 % interval {low:.2f} to "
-        f"{high:.2f}) of the variance that the refined expansion of degree {main.degree} explains over its inputs; the "
-        f"interval contains no truncation error{rest}."
+        f"Largest total Sobol index of the rebound speed: {main.name}, {main.total:.2f} (95 % interval {low:.2f} to "
+        f"{high:.2f}, without truncation error){rivals}, as a share of the variance that the refined expansion of "
+        f"degree {main.degree} explains{rest}."
     )
 
 
@@ -99,6 +100,6 @@ def _explained(score: OutputErrors) -> str:
     words = (
         f"explains {percent(score.q2)} of the variance of the rebound speed"
         if score.q2 > 0.0
-        else "is worse than the mean of the runs: it explains nothing of the rebound speed"
+        else "predicts the rebound speed no better than the mean of the runs"
     )
     return f"On fresh runs with all inputs varying the expansion {words} ({q2}; {error})."

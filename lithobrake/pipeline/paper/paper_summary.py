@@ -132,7 +132,7 @@ def return_fraction(study: Study, table: SampleShares, run_count: int) -> Return
         lower=None,
         upper=None,
         level=LEVEL,
-        from_=f"{table.sample_count} samples of an expansion of {run_count} landings {scope(study).landings}",
+        from_=f"{table.sample_count} samples of an expansion fitted to {run_count} landings {scope(study).landings}",
         next_bed=None,
         if_missing=(share, share + missing),
         missing=missing,

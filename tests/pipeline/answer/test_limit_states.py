@@ -100,5 +100,5 @@ def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
 
 def test_an_output_that_no_run_has_is_refused(tmp_path: Path) -> None:
     tables = synthetic_tables(design={"run_count": 30}, limit_states={"hard": "peak_acceleration > 50"})
-    with pytest.raises(ValueError, match=r"limit_states\.hard asks for peak_acceleration, which no run has"):
+    with pytest.raises(ValueError, match=r"limit_states\.hard uses peak_acceleration, which no run has"):
         lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)

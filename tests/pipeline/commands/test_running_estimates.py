@@ -65,7 +65,7 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed is not None
     assert one_bed.speed_out is None
-    assert "20 %, without an interval: all runs came down on one bed" in one_bed.lines()[1]
+    assert "20 %, without an interval: all runs landed on one bed" in one_bed.lines()[1]
 
 
 def test_too_few_runs_say_nothing() -> None:

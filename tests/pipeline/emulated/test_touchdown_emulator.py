@@ -75,7 +75,7 @@ def test_landers_by_the_emulator_end_as_those_by_landings_do(found: EmulatedJour
         assert one.lower is not None
         assert one.upper is not None
         assert one.lower <= one.share <= one.upper, name
-    assert "emulator and landings agree on the ends" in results.results.answer[-2]
+    assert "emulator and landings agree within" in results.results.answer[-2]
 
 
 def test_landings_are_made_where_there_is_no_answer(found: EmulatedJourneys, results: StudyResults) -> None:
