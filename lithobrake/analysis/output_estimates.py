@@ -149,7 +149,7 @@ def _known(y: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
     values, beds = answered_runs(y, bed)
     if len(np.unique(beds)) < 2:
         raise ValueError(
-            f"{len(beds)} runs with the output came down on {len(np.unique(beds))} bed; other beds give other values, "
-            "and these runs cannot say how different: set bed.bed_count to 12 or more"
+            f"{len(beds)} runs with the output landed on {len(np.unique(beds))} bed; other beds would change this "
+            "number, and these runs cannot show by how much: set bed.bed_count to 12 or more"
         )
     return values, beds

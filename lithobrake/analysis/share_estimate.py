@@ -24,7 +24,7 @@ from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
 
 ONE_BED = (
-    "all runs came down on one bed; another bed gives another share, and these runs cannot say how different: set "
+    "all runs landed on one bed; another bed would change this number, and these runs cannot show by how much: set "
     "bed.bed_count to 12 or more"
 )
 # Fewer landings that resemble those without an outcome say less of them than all landings do.

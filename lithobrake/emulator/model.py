@@ -87,8 +87,8 @@ class Emulator(Parts):
         count, number = len(self.runs.y), len(np.unique(self.runs.group))
         if not self.follows_inputs:
             return (
-                f"The inputs do not improve the prediction: on held-out {groups} no regression on them scores better, by "
-                f"more than a standard error, than resampling the {count} runs with outputs ({number} {groups}), so "
+                f"The inputs do not improve the prediction: on held-out {groups} no regression on them scores better, "
+                f"by more than a standard error, than resampling the {count} runs with outputs ({number} {groups}), so "
                 "samples are resampled runs."
             )
         share = self.scores.gain / self.scores.energy_of_rows

@@ -256,7 +256,9 @@ def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
     gravity = -float(Site(study).acceleration[2])
     problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
     if not math.isfinite(gravity):
-        problems = [f"{name}: surface.gravity: the acceleration at the site is not finite; correct site.mass or its mesh"]
+        problems = [
+            f"{name}: surface.gravity: the acceleration at the site is not finite; correct site.mass or its mesh"
+        ]
     if problems:
         raise StudyError(problems)
     return study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": gravity})})

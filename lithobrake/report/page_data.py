@@ -124,9 +124,9 @@ class RunsPage(PageData):
         if "run" not in attributes:
             return "In the first run"
         which = (
-            "of the median speed of those that leave"
+            "the one with the median rebound speed"
             if attributes["status"] == TouchdownOutcome.CLEAR
-            else "as none leaves"
+            else "since none leaves the surface"
         )
         return f"In run {str(attributes['run'])[:8]}, {which}"
 
@@ -165,7 +165,7 @@ class JourneyPage(RunsPage):
     def shown_landing(self) -> str:
         """The first touchdown that its file names."""
         words = super().shown_landing
-        return f"{words}, a first touchdown" if words else ""
+        return f"{words} (first touchdown)" if words else ""
 
 
 def page_results(found: StudyResults) -> PaperPage | DrawnPage | JourneyPage:
@@ -182,7 +182,7 @@ def page_results(found: StudyResults) -> PaperPage | DrawnPage | JourneyPage:
     if journeys:
         return JourneyPage(results=results, **_of_any_study(found), runs=runs, **journeys)
     if results.emulator is None:
-        raise DamagedFileError(f"{found.folder / 'summary.json'} says nothing of an emulator; {found.remedy}")
+        raise DamagedFileError(f"{found.folder / 'summary.json'} has no results of an emulator; {found.remedy}")
     return DrawnPage(results=results, **_of_any_study(found), **_of_samples(found), runs=runs, rare=found.rare)
 
 

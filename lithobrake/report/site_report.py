@@ -137,7 +137,7 @@ def _table(site_map: SiteMap, cells: "tuple[SiteCell, ...] | list[SiteCell]", ti
 def _row(site: SiteCell, names: tuple[str, ...]) -> list[str]:
     ends = site.ends
     if ends is None:
-        of_landers = [f"not answered ({site.beyond})", "", "", "", ""]
+        of_landers = [f"no result ({site.beyond})", "", "", "", ""]
     else:
         shares = [_share(one) for one in (ends.at_rest, ends.partner, ends.escaped)]
         of_landers = [*shares, _estimate(ends.time_s, HOUR), _estimate(ends.distance_m, 1.0)]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from lithobrake.results.moving_bodies import MovingBodies
 
 HEADS = (
-    "touch-     after     speed in  incidence  speed out  on the bed  to the next",
+    "touch-     after      impact   incidence   rebound   on the bed  to the next",
     " down    delivery     [m/s]      [deg]      [m/s]        [s]         [m]",
 )
 _FAILED = "failed"

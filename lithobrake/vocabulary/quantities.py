@@ -58,15 +58,15 @@ TO_REST = ("displacement_x", "displacement_y", "duration", "contacts")
 PERIODS_TRAVELLED = "periods_travelled"
 
 TOUCHDOWN = {
-    "speed_out": Quantity("m/s", "speed after the touchdown", LOCAL, "outgoing speed"),
+    "speed_out": Quantity("m/s", "speed after the touchdown", LOCAL, "rebound speed"),
     "elevation_out": Quantity(
-        "rad", "angle of the velocity after the touchdown above the mean surface", LOCAL, "elevation"
+        "rad", "angle of the velocity after the touchdown above the mean surface", LOCAL, "rebound elevation"
     ),
     "azimuth_out": Quantity("rad", "angle of the horizontal velocity after the touchdown from x toward y", LOCAL),
-    "spin_out": Quantity("rad/s", "size of the angular velocity after the touchdown", title="spin"),
-    "velocity_out_x": Quantity("m/s", "velocity after the touchdown along x", LOCAL, "velocity along x"),
-    "velocity_out_y": Quantity("m/s", "velocity after the touchdown along y", LOCAL, "velocity across y"),
-    "velocity_out_z": Quantity("m/s", "velocity after the touchdown along z", LOCAL, "velocity up z"),
+    "spin_out": Quantity("rad/s", "size of the angular velocity after the touchdown", title="rebound spin rate"),
+    "velocity_out_x": Quantity("m/s", "velocity after the touchdown along x", LOCAL, "rebound velocity along x"),
+    "velocity_out_y": Quantity("m/s", "velocity after the touchdown along y", LOCAL, "rebound velocity along y"),
+    "velocity_out_z": Quantity("m/s", "velocity after the touchdown along z", LOCAL, "rebound velocity along z"),
     **{name: Quantity("rad/s", f"angular velocity after the touchdown along {name[-1]}", LOCAL) for name in SPIN_OUT},
     **{
         name: Quantity("", f"{name[-1]} of the unit quaternion that turns the lander as given into place", LOCAL)

@@ -67,7 +67,7 @@ def test_an_interval_of_a_tail_on_ten_beds_holds_the_truth(rho: float) -> None:
 
 
 def test_one_bed_and_impossible_probabilities_are_refused() -> None:
-    with pytest.raises(ValueError, match="came down on 1 bed"):
+    with pytest.raises(ValueError, match="landed on 1 bed"):
         mean_estimate(np.arange(5.0), np.zeros(5))
     with pytest.raises(ValueError, match="between 0 and 1"):
         quantile_estimates(np.arange(5.0), np.arange(5), (0.0,))

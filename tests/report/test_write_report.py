@@ -61,7 +61,7 @@ def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     first = results.screening.sobol_first["speed_out"]
     assert f"({100 * max(first.values()):.0f} %, " in captions.sobol(paper)
     assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in captions.errors(paper)
-    assert "pull 1.4 × 10⁻⁵ m/s2 outward" in captions.whole_map(paper)
+    assert "amount to 1.4 × 10⁻⁵ m/s2 outward" in captions.outcomes(paper)
     large = results.regions[-1]
     assert large.share == 0.95
     assert f"95 % of them has {area(large.area_m2)} and is {number(large.largest_extent_m, 2)} m across" in (
@@ -117,7 +117,7 @@ def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: Pape
     assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
     for value in (site.escape_speed_m_s, site.bulk_density_kg_m3):
         assert number(value) in words
-        assert number(value) in captions.whole_map(paper)
+        assert number(value) in captions.outcomes(paper)
 
 
 def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, paper_page: str) -> None:

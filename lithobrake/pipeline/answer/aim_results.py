@@ -163,7 +163,9 @@ def aim_statement(table: AimResults) -> str:
     count = sum(aim.soil.allowed for aim in aims)
     best, hard = table.best_on_soil, table.best_on_hard
     if best is None:
-        return f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
+        return (
+            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
+        )
     said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
     part = aims[best.aim].soil
     # The largest of many shares is too high by its selection, so the sentence has the share without it.

@@ -51,6 +51,4 @@ def why_no_interval(study: Study) -> str | None:
         where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
     if one_place:
         where, remedies = [*where, "at one impact point"], [*remedies, "impact.region to the area where it may land"]
-    return (
-        f"All runs landed {' and '.join(where)}. {OTHERS}. To get an interval, set {' and '.join(remedies)}."
-    )
+    return f"All runs landed {' and '.join(where)}. {OTHERS}. To get an interval, set {' and '.join(remedies)}."

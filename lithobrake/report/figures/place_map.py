@@ -33,7 +33,7 @@ from lithobrake.vocabulary.percentages import percent
 Array = NDArray[np.float64]
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
 WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17
-# Of the figure of the whole body: its height [inch].
+# Of the halves of the body beside the outcomes: their height [inch].
 DISCS = 2.75
 
 
@@ -87,6 +87,12 @@ class PlaceMap:
             lines += [np.array([one.latitude, one.longitude]) for one in self.places]
         return panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
 
+    @property
+    def leaves_out(self) -> bool:
+        """Whether places lie outside of the map about the aim point; never where that is of the whole body."""
+        panel = self.panel()
+        return panel is not None and any(_outside(one, self.ground, panel) for one in self.places)
+
 
 def local_figure(shown: PlaceMap) -> Figure:
     """Draw the map about the aim point in metres; both halves of the body where places lie too far apart."""
@@ -112,9 +118,17 @@ def local_figure(shown: PlaceMap) -> Figure:
     return figure
 
 
-def whole_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
-    """Draw the places on both halves of the body, and the share of each outcome; whole: what the shares are of."""
+def outcomes_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
+    """Draw the share of each outcome, and both halves of the body where the map about the aim point leaves places out.
+
+    whole: what the shares are of.
+    """
     rows = 0.2 * len(shares)
+    if not shown.leaves_out:
+        height = rows + 0.75
+        figure = Figure(figsize=(9.2, height))
+        draw_shares(figure.add_axes((0.2, 0.6 / height, 0.6, rows / height)), shares, whole)
+        return figure
     height = max(DISCS, rows + 0.8)
     figure = Figure(figsize=(9.2, height))
     norm = _norm(shown, (shown.ground, shown.ground.opposite), None)
@@ -134,7 +148,8 @@ def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> N
         draw_edges(axes, one.found, ground, one.colour)
     draw_soils(axes, shown.soils, ground)
     for places in shown.places:
-        outside += _draw_places(axes, places, ground, panel, norm)
+        _draw_places(axes, places, ground, panel, norm)
+        outside += _outside(places, ground, panel)
     mark_site(axes, 0.0, 0.0)
     frame_local(axes, ground, panel)
     if outside:
@@ -156,16 +171,24 @@ def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: MapPanel | None)
     ])  # fmt: skip
 
 
-def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: MapPanel | None, norm: LogNorm) -> int:
-    """Draw places as dots, or many of them as counts in cells; returns how many lie outside of the panel."""
+def _outside(places: Places, ground: GroundMap, panel: MapPanel) -> int:
+    """How many places lie outside of a panel."""
+    return len(places.latitude) - int(panel.holds(*_seen(places, ground)).sum())
+
+
+def _seen(places: Places, ground: GroundMap) -> tuple[Array, Array]:
+    """Metres east and north of those on the half of the body around the middle of the map."""
     seen = ground.facing(places.latitude, places.longitude) >= 0.0
-    east, north = ground.places(places.latitude[seen], places.longitude[seen])
+    return ground.places(places.latitude[seen], places.longitude[seen])
+
+
+def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: MapPanel | None, norm: LogNorm) -> None:
+    """Draw places as dots, or many of them as counts in cells."""
     if places.are_many:
         draw_cells(axes, ground, (places.latitude, places.longitude), panel, norm, places.colour)
     else:
         size = 16.0 if panel else 9.0
-        axes.scatter(east, north, s=size, color=places.colour, linewidths=0.4, edgecolors="white", zorder=5)
-    return int(len(seen) - panel.holds(east, north).sum()) if panel else 0
+        axes.scatter(*_seen(places, ground), s=size, color=places.colour, linewidths=0.4, edgecolors="white", zorder=5)
 
 
 def _halves(figure: Figure, shown: PlaceMap, norm: LogNorm, place: tuple[float, float, float, float]) -> None:

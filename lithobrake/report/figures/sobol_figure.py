@@ -54,7 +54,7 @@ def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float
     if spread == 0.0:
         axes.set(aspect="equal", xlim=(-1.05, 1.05), ylim=(-1.05, 1.05))
         axes.axis("off")
-        axes.text(0, 0, "no input found\nthat decides it", ha="center", va="center", color=QUIET)
+        axes.text(0, 0, "no significant\ninput", ha="center", va="center", color=QUIET)
         return
     shares = np.append(np.clip(first, 0.0, None), max(0.0, 1.0 - float(np.sum(first))))
     wedges, *_ = axes.pie(

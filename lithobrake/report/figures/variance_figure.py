@@ -77,7 +77,7 @@ def draw_parts(axes: Axes, shares: Mapping[str, VarianceParts | None], words: Ma
     colours = input_colours(_soil_inputs([record for record in shares.values() if record]))
     for row, record in enumerate(shares.values()):
         if record is None:
-            axes.text(0.02, row, "these runs cannot tell", va="center", color=QUIET)
+            axes.text(0.02, row, "not separable from these runs", va="center", color=QUIET)
         else:
             _bar(axes, row, pieces(record, colours))
     axes.set_yticks(range(len(shares)), [words.get(name) or _row(name) for name in shares])

@@ -12,6 +12,7 @@ from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import action, input_words, listing, thousands
 from lithobrake.report.words.drawn_warnings import has_interval
 from lithobrake.report.words.labels import output
+from lithobrake.report.words.numbers import raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
@@ -33,13 +34,13 @@ def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
     flown = _flown(data.flights)
     count = len(flown["status"])
     flown_words = (
-        f"No flight is computed here: each lander takes the end of one of {thousands(count)} flights, one of the eight "
-        "nearest to its speed, elevation and azimuth. "
+        f"No flight is computed here: each lander takes the outcome of one of {thousands(count)} flights, one of the "
+        "eight nearest to its rebound speed, elevation and azimuth. "
         if count
-        else "Nothing was flown, so neither shares nor places are shown. "
+        else "No flights were computed, so neither shares nor places are shown. "
     )
     words = (
-        f"Move the two ends of an input: this page evaluates the {data.model} for all soils between them, weighted by "
+        f"Move the two ends of an input range: this page evaluates the {data.model} for all soils in it, weighted by "
         f"their input distribution. {_fixed(data, data.explorer)}"
     )
     facts = law_facts(data.explorer, _moved(data, data.explorer), data.samples) | _flight_facts(data, bool(count))
@@ -55,7 +56,7 @@ def explorer_section(
     numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
     html = f"""<section id="explorer">
 <h3>Explorer</h3>
-<p class="note">{escape(note)}Grey lines: the whole input distribution.</p>
+<p class="note">{escape(raised_units(note))}Grey lines: the whole input distribution.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>
@@ -66,7 +67,7 @@ def explorer_section(
 def _fixed(data: PageData, explorer: ExplorerTables) -> str:
     """What is said of the inputs without sliders."""
     others = [input_words(name) for name in explorer.input_names if name not in _moved(data, explorer)]
-    return f"Not kept by the screening, always over the whole input distribution: {listing(others)}. " if others else ""
+    return f"Removed by the screening and always over their whole distribution: {listing(others)}. " if others else ""
 
 
 def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
@@ -88,7 +89,7 @@ def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
 
 
 def _fits(model: str, explorer: ExplorerTables) -> str:
-    return f"Bands: the middle nine tenths of {explorer.tables['location'].shape[0]} fits of the {model} to"
+    return f"Bands: the middle 90 % of {explorer.tables['location'].shape[0]} fits of the {model} to"
 
 
 def law_facts(explorer: ExplorerTables, moved: Sequence[str], of_inputs: Table) -> dict[str, Any]:
@@ -99,11 +100,13 @@ def law_facts(explorer: ExplorerTables, moved: Sequence[str], of_inputs: Table) 
     return {
         "inputNames": list(explorer.input_names),
         "moved": [explorer.input_names.index(name) for name in moved],
-        "inputs": [{"words": input_words(name), "unit": units.get(name, "")} for name in explorer.input_names],
+        "inputs": [
+            {"words": input_words(name), "unit": raised_units(units.get(name, ""))} for name in explorer.input_names
+        ],
         "outputs": [
             {
-                "words": one.row,
-                "unit": one.unit,
+                "words": one.words,
+                "unit": raised_units(one.unit),
                 "factor": one.factor,
                 # All elevations are shown: landers that leave straight up are few, and count.
                 "most": 0.5 * np.pi if name == "elevation_out" else None,

@@ -41,10 +41,10 @@ def _what(fitted: Table, beds: int) -> str:
     """What is evaluated, and over which range it is known."""
     ranges = listing([_range(fitted, name) for name in OF_TOUCHDOWN])
     return (
-        "One touchdown of a journey, the first or any later one: move the two ends of an input, and this page "
-        "evaluates the emulator of all touchdowns at the values between them. It was fitted to "
+        "Any touchdown of a journey: move the two ends of an input range, and this page evaluates the emulator of all "
+        "touchdowns over it. The emulator was fitted to "
         f"{thousands(fitted.row_count)} touchdowns on {beds} {'bed' if beds == 1 else 'beds'}, with {ranges}; the "
-        "sliders reach somewhat farther, to the end of its training range."
+        "sliders extend to the end of its training range."
     )
 
 

@@ -7,6 +7,7 @@ from html import escape
 from importlib.resources import files
 
 from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Tile
+from lithobrake.report.words.numbers import raised_units
 from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 
 # More rows or lines than this do not fit on a screen of a phone.
@@ -85,14 +86,14 @@ def _first_screen(kind: str, title: str, facts: str, content: Content, figures: 
 <div><ul class="tiles">
 {tiles}</ul>
 {_warnings(content.warnings)}</div>
-{beside}<div class="facts"><p>{escape(facts)}</p>
+{beside}<div class="facts"><p>{_unbroken(facts)}</p>
 {HINT if figures else ""}</div></div>
 </header>"""
 
 
 def _warnings(warnings: Sequence[str]) -> str:
     """What to beware of: one in full, several behind their number."""
-    text = "".join(f'<p class="warning">{escape(warning)}</p>\n' for warning in warnings)
+    text = "".join(f'<p class="warning">{_unbroken(warning)}</p>\n' for warning in warnings)
     if len(warnings) < 2:
         return text
     return f'<details class="warnings"><summary>{len(warnings)} warnings</summary>{text}</details>\n'
@@ -127,8 +128,8 @@ def _live(sections: Sequence[LiveSection]) -> str:
 
 
 def _unbroken(words: str) -> str:
-    """Words of the page in which no line breaks before a sign of per cent."""
-    return escape(words).replace(" %", "&nbsp;%")
+    """Words of the page: units with raised powers, and no line that breaks before a sign of per cent."""
+    return escape(raised_units(words)).replace(" %", "&nbsp;%")
 
 
 def _tile(tile: Tile) -> str:
@@ -151,14 +152,16 @@ def _panel(number: int | None, panel: Panel) -> str:
 
 def _table(table: PageTable) -> str:
     kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
-    head = "".join(f"<th{kind}>{escape(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
+    head = "".join(
+        f"<th{kind}>{escape(raised_units(name))}</th>" for name, kind in zip(table.columns, kinds, strict=True)
+    )
     body = "".join(
         "<tr>"
         + "".join(f"<td{kind}>{_cell(cell, table.links)}</td>" for cell, kind in zip(row, kinds, strict=True))
         + "</tr>\n"
         for row in table.rows
     )
-    note = f'<p class="note">{escape(table.note)}</p>' if table.note else ""
+    note = f'<p class="note">{_unbroken(table.note)}</p>' if table.note else ""
     # With a tab stop, so that a box that scrolls sideways can be moved from the keyboard.
     box = f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>'
     return _folding(table.title, len(table.rows), "rows", note + box)
@@ -174,7 +177,7 @@ def _is_long(table: PageTable) -> bool:
 
 
 def _cell(cell: str, links: Mapping[str, str]) -> str:
-    words = escape(cell)
+    words = escape(raised_units(cell))
     return f'<a href="{escape(links[cell], quote=True)}">{words}</a>' if cell in links else words
 
 

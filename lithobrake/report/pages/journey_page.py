@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.report.content import Content, PageSection, Plot
 from lithobrake.report.figures.aim_figure import aim_figure
 from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
-from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, places_by_end, whole_figure
+from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, outcomes_figure, places_by_end
 from lithobrake.report.figures.shares import Share
 from lithobrake.report.figures.variance_figure import variance_figure
 from lithobrake.report.live.body_view import end_views
@@ -38,18 +38,25 @@ OF_FIRST = {"landing": "A first touchdown", "runs": "Rebounds of the first touch
 
 def journey_content(data: JourneyPage) -> Content:
     """All that the page shows of the study."""
-    first = Plot("ends", "Where the landers rest", words.rest_map(data), lambda: local_figure(place_map(data)))
+    shown = place_map(data)
+    first = Plot("ends", "Where the landers rest", words.rest_map(data), lambda: local_figure(shown))
     found = {plot.name: plot for plot in landing_plots(data)}
     sections = [
-        *(_where(data), _when(data), _why(data, found), _sure(data)),
+        *(_where(data, shown), _when(data), _why(data, found), _sure(data)),
         *(_method(data, found), _appendix(data, found)),
     ]
     return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
 
 
-def _where(data: JourneyPage) -> PageSection:
+def _where(data: JourneyPage, shown: PlaceMap) -> PageSection:
+    sentence = words.outcomes(data, has_map=shown.leaves_out)
     plots = [
-        Plot("whole", "All ends on the whole body", words.whole_map(data), lambda: _draw_whole(data)),
+        Plot(
+            "outcomes",
+            "How the journeys end",
+            sentence,
+            lambda: outcomes_figure(shown, end_shares(data), "all journeys"),
+        ),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
     ]
     return PageSection("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
@@ -118,10 +125,6 @@ def place_map(data: JourneyPage) -> PlaceMap:
         radius=float(np.linalg.norm(site.place_m)),
         soils={name: one.outlines for name, one in data.results.soils.items()},
     )
-
-
-def _draw_whole(data: JourneyPage) -> "Figure":
-    return whole_figure(place_map(data), end_shares(data), "all journeys")
 
 
 def _draw_ends(data: JourneyPage) -> "Figure":

@@ -53,7 +53,7 @@ def one_journey_page(motion: JourneyMotion) -> str:
 def _table(track: JourneyTrack) -> str:
     """The touchdowns, a row each."""
     heads = (
-        "touchdown", "after delivery", "speed in [m/s]", "incidence [deg]", "speed out [m/s]", "on the bed [s]",
+        "touchdown", "after delivery", "impact speed [m/s]", "incidence [deg]", "rebound speed [m/s]", "on the bed [s]",
         "to the next [m]",
     )  # fmt: skip
     head = "".join(f'<th class="number">{name}</th>' for name in heads)

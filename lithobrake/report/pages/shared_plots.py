@@ -9,7 +9,7 @@ from lithobrake.report.figures.bed_figure import bed_figure
 from lithobrake.report.figures.body_figure import body_figure
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import landing_figure
-from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, whole_figure
+from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, outcomes_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.scatter_figure import scatter_figure
 from lithobrake.report.figures.shares import Share
@@ -54,7 +54,7 @@ def first_map(data: SampledPage) -> Plot:
 def where(data: SampledPage) -> PageSection:
     """Where landers come down and where they rest."""
     plots = [
-        Plot("whole", "All outcomes on the whole body", captions.whole_map(data), lambda: draw_whole(data)),
+        Plot("outcomes", "Outcomes of the landings", captions.outcomes(data), lambda: draw_outcomes(data)),
         Plot("body", "Impacts on the body", captions.body(data), lambda: draw_body(data)),
         Plot("rest", "Where it rests", captions.rest(data), lambda: draw_rest(data)),
     ]
@@ -83,8 +83,8 @@ def draw_impacts(data: SampledPage) -> "Figure":
     return local_figure(impacts(data))
 
 
-def draw_whole(data: SampledPage) -> "Figure":
-    return whole_figure(impacts(data), impact_shares(data), whole_words(data))
+def draw_outcomes(data: SampledPage) -> "Figure":
+    return outcomes_figure(impacts(data), impact_shares(data), whole_words(data))
 
 
 def impact_shares(data: SampledPage) -> list[Share]:

@@ -30,15 +30,15 @@ SUMS = ("returns", "missing")
 LOST = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE, "failed")
 JOURNEY_WORDS: dict[str, str] = {
     JourneyStatus.SETTLED: "at rest",
-    JourneyStatus.LOFTED: "captured where the spin lifts it off again",
+    JourneyStatus.LOFTED: "captured, then lifted off by rotation",
     JourneyStatus.OUTSIDE: "unknown outcome: impact outside the training range of the {model}, or unphysical rebound",
-    "outside_too_slow": "(of these: slower than any run)",
-    JourneyStatus.SLIDING: "still sliding along the ground after {hours}",
+    "outside_too_slow": "(of these: impact slower than in any run)",
+    JourneyStatus.SLIDING: "still sliding after {hours}",
     JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
     JourneyStatus.FLYING: "not at rest after {hours}",
     JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
     JourneyStatus.PARTNER: "on the partner",
-    "slid": "(of all: slid along the ground for a while)",
+    "slid": "(of all: slid along the ground at some time)",
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
@@ -96,14 +96,13 @@ def _outcomes_of_landings(data: DrawnPage) -> PageTable:
     ]
     flown = 0 if shares.emulator is None else shares.emulator.flight_count
     note = (
-        f"Of all landings, by {thousands(shares.flight_count)} flights of the runs themselves; the first "
-        f"{len(whole)} rows add up to 100 %. In the last column {thousands(flown)} flown "
-        f"samples of the {data.model}."
+        f"Of all landings, from {thousands(shares.flight_count)} flights of the runs; the first {len(whole)} rows add "
+        f"up to 100 %. Last column: {thousands(flown)} propagated samples of the {data.model}."
     )
     if shares.outcomes["missing"].count:
         note += (
-            " Landings with unknown outcome count like those that left in flight across the edge of the bed; every "
-            "interval covers all their possible outcomes."
+            " Landings with unknown outcome are treated like those that left in flight across the edge of the bed; "
+            "every interval covers all their possible outcomes."
         )
     note += f" {shares.why}" if shares.why else ""
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
@@ -127,12 +126,12 @@ def _outcomes_of_samples(data: SampledPage) -> PageTable:
     for key, words in outcome_words(data).items():
         row = [words.format(hours=limit), str(shares.outcomes[key].count), _share(shares.outcomes[key], data.digits)]
         rows.append(row + ([_share(alone.shares.outcomes[key], data.digits)] if alone else []))
-    note = f"Shares of {shares.sample_count} samples; {shares.flight_count} of them were flown. {shares.why}"
+    note = f"Shares of {shares.sample_count} samples, {shares.flight_count} of them propagated. {shares.why}"
     if any(shares.outcomes[key].upper_limit is not None for key in outcome_words(data)):
-        note += f' "At most": no run ended so, which such a probability allows ({percent(data.level)}).'
+        note += f' "At most": no run had this outcome; upper limit at {percent(data.level)} confidence.'
     if alone:
         note += (
-            " The first shares have the scatter from run to run; without it stand those of the expansion alone, of "
+            " The first shares include the run-to-run scatter; those without scatter are of the expansion alone, from "
             f"{alone.shares.sample_count} samples."
         )
     return PageTable("After the first bounce", columns, rows, note, frozenset(columns[1:]))
@@ -156,8 +155,8 @@ def _flights(data: PageData) -> PageTable:
     note = f"{whose}Gravity is summed over the facets."
     if error:
         note = (
-            f"{whose}Gravity is read from a table, {number(error.median, 2)} of the surface gravity off the sum "
-            f"over the facets in the median, {number(error.p95, 2)} at the 95th percentile of "
+            f"{whose}Gravity is interpolated in a table; relative to surface gravity its error against the sum over "
+            f"the facets is {number(error.median, 2)} in the median and {number(error.p95, 2)} at the 95th percentile of "
             f"{error.point_count} points."
         )
     if checks is not None and checks.jacobi_drift_largest_m2_s2 is not None:
@@ -165,7 +164,7 @@ def _flights(data: PageData) -> PageTable:
             f" The Jacobi constant of {checks.jacobi_flight_count} flights changes by "
             f"{number(checks.jacobi_drift_largest_m2_s2, 2)} m2/s2 at most, without the partner."
         )
-    return PageTable("The flights to the next impact", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Flights to the next impact", columns, rows, note, frozenset(columns[1:]))
 
 
 def _with_ends(entry: ImpactNumber, level: str) -> str:
@@ -201,9 +200,9 @@ def _statuses(data: SampledPage) -> PageTable:
 
 
 def _journeys(data: SampledPage) -> PageTable:
-    columns = ["landers that rest", "ground", "5 %", "median", "95 %"]
+    columns = ["landers at rest", "ground", "5 %", "median", "95 %"]
     words = {"time_s": "time to rest [s]", "rebounds": "rebounds", "path_length": "path [m]"}
-    words |= {"slid_length": "slid along the ground [m]", "slid_time_s": "time of that [s]"}
+    words |= {"slid_length": "sliding distance [m]", "slid_time_s": "sliding time [s]"}
     rows = [
         [words[key], GROUND_WORDS[ground], *(number(table.quantiles[key][level]) for level in QUANTILES)]
         for key in words
@@ -212,10 +211,10 @@ def _journeys(data: SampledPage) -> PageTable:
     ]
     rest = data.study["rest"]
     note = (
-        f"Hard ground: restitution {rest['normal_restitution']:g} along the normal, {rest['tangential_restitution']:g} "
-        f"along the ground, friction {rest['friction']:g}; at rest where a rebound rises less than "
-        f"{rest['rest_height']:g} m. Hard ground like the soil draws the restitution that the soil implies by "
-        "speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. A "
+        f"Hard ground: restitution {rest['normal_restitution']:g} normal, {rest['tangential_restitution']:g} "
+        f"tangential, friction {rest['friction']:g}; at rest where a rebound rises less than "
+        f"{rest['rest_height']:g} m. Hard ground like the soil samples the restitution that the soil implies at "
+        "each speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. A "
         f"captured lander {_sliding(rest)} from facet to facet until it rests or leaves the ground again; this law "
         "was not fitted to landings, and on soil the slide starts from rest, because the runs have no velocity after "
         "capture."
@@ -233,13 +232,13 @@ def _sliding(rest: Mapping[str, Any]) -> str:
 def _regions(data: SampledPage) -> PageTable:
     sets = {"next impacts": data.results.regions}
     sets |= {f"at rest, {GROUND_WORDS[ground]}": table.regions for ground, table in followed(data).items()}
-    columns = ["places", "share inside", "area", "largest extent [m]"]
+    columns = ["points", "share inside", "area", "largest extent [m]"]
     rows = [
         [name, percent(one.share), area(one.area_m2), number(one.largest_extent_m, 2)]
         for name, found in sets.items()
         for one in found
     ]
-    note = "The smallest regions that hold that share, by a density fitted to the places."
+    note = "The smallest regions that hold that share, from a density fitted to the points."
     return PageTable("Landing regions", columns, rows, note if rows else "", frozenset(columns[1:]))
 
 

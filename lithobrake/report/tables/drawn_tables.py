@@ -12,7 +12,7 @@ from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, inp
 from lithobrake.report.tables.rare_tables import rare_tables
 from lithobrake.report.words.captions import action, hours, input_words
 from lithobrake.report.words.chance import BAND
-from lithobrake.report.words.drawn_captions import RETURNS, sign
+from lithobrake.report.words.drawn_captions import RETURNS, output_words
 from lithobrake.report.words.drawn_warnings import (
     as_sentence,
     drawn_things,
@@ -134,7 +134,7 @@ def _outputs(data: RunsPage) -> PageTable:
         shown = output(name)
         cells = [_estimate(table.mean, shown.factor), table_cell(table.standard_deviation * shown.factor)]
         cells += [_estimate(table.quantiles[level], shown.factor) for level in LEVELS]
-        rows.append([shown.row.replace("_", " "), shown.unit, *cells])
+        rows.append([shown.words.replace("_", " "), shown.unit, *cells])
     speed = data.results.spreads.get("speed_out")
     of = "the landings that left" if speed is None else speed.of
     note = (
@@ -151,7 +151,7 @@ def _directions(data: RunsPage) -> PageTable:
     columns = ["output", "mean direction [deg]", "resultant length"]
     rows = [
         [
-            output(name).row.replace("_", " "),
+            output(name).words.replace("_", " "),
             _estimate(table.mean_direction, math.degrees(1.0)),
             _estimate(table.resultant_length, 1.0),
         ]
@@ -190,7 +190,7 @@ def _variance(data: RunsPage) -> PageTable:
         "these parts are lower bounds; other effects are in everything else. Not detected: not distinguishable from 0. "
         "The return fraction is a mean over headings, so the effect of headings is in none of its parts."
     )
-    columns = ["part", *(sign(name) for name in records)]
+    columns = ["part", *map(output_words, records)]
     return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
 
 
@@ -236,8 +236,15 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     effects, chaos, rows = side.soil_total_effect, side.chaos_deviation, []
     for name in dict.fromkeys([*effects, *chaos]):
         shown = output(name)
-        row, unit, factor = (sign(name), "", 1.0) if name == RETURNS else (shown.row, shown.unit, shown.factor)
-        rows.append([row, effects[name].words() if name in effects else "", _estimate(chaos.get(name), factor), unit])
+        unit, factor = ("", 1.0) if name == RETURNS else (shown.unit, shown.factor)
+        rows.append(
+            [
+                output_words(name),
+                effects[name].words() if name in effects else "",
+                _estimate(chaos.get(name), factor),
+                unit,
+            ]
+        )
     columns = ["output", "total effect of the soil", "standard deviation by chaos", "unit"]
     note = (
         f"{side.soil_pairs} runs were repeated on a second soil, {side.twins} with an impact point "
@@ -254,7 +261,7 @@ def _emulator(data: DrawnPage) -> PageTable:
     columns = ["output", "skill", f"within the {percent(BAND)} band"]
     rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
     for name, score in emulator.scores.outputs.items():
-        rows.append([output(name).row, percent(score.crps_skill), percent(score.band_90)])
+        rows.append([output(name).words, percent(score.crps_skill), percent(score.band_90)])
     note = (
         f"{emulator.statement} Skill: relative improvement of the score (CRPS; for all outputs the energy score) "
         f"over resampling the runs, on {left_out(data)}; 0 is no improvement."

@@ -42,7 +42,8 @@ def _end_tile(name: str, one: EndShare, count: int) -> Tile:
     value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
     sure = interval(one, LEVEL)
     words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
-    return Tile(value, "%", words, name)
+    # An end that did not occur has no colour.
+    return Tile(value, "%", words, name if one.count else "")
 
 
 def _quantile_tile(found: RestQuantiles, unit: str, words: str, size: float = 1.0) -> Tile:

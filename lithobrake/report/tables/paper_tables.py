@@ -52,13 +52,13 @@ def tiles(data: PaperPage) -> list[Tile]:
         Tile(
             "none" if score.q2 is None else fixed(score.q2),
             "Q2",
-            f"{_bounds(score.q2_interval)}outgoing speed, fresh runs, all inputs vary: error "
+            f"{_bounds(score.q2_interval)}rebound speed, new runs, all inputs varied: error "
             f"{number(score.rmse, 2)} m/s at a spread of {number(score.std, 2)} m/s",
         ),
     ]
     if speed:
         words = (
-            f"outgoing speed, median (5 to 95 %: {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])})"
+            f"rebound speed, median (5 to 95 %: {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])})"
         )
         found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
     return found
@@ -106,7 +106,7 @@ def provenance(data: PageData) -> list[PageTable]:
             "Execution",
             ["name", "value"],
             rows,
-            "wall_s and cpu_s in seconds; a stage read from the folder keeps its time.",
+            "wall_s and cpu_s in seconds; a stage that was reused keeps its time.",
         )
     ]
 
@@ -156,7 +156,7 @@ def _fits(data: PaperPage) -> PageTable:
         "terms",
         "condition number",
         "expected error",
-        "scatter between equal runs",
+        "scatter between repeated runs",
     ]
     expansions = {"screening": data.results.screening, "refined": data.results.refined}
     scale = _output_scales((name, fit.rmse_estimate) for one in expansions.values() for name, fit in one.fits.items())
@@ -167,7 +167,7 @@ def _fits(data: PaperPage) -> PageTable:
             rows.append(
                 [
                     stage if row == 0 else "",
-                    shown.row,
+                    shown.words,
                     shown.unit,
                     fit.method.replace("_", " "),
                     str(fit.term_count),
@@ -179,9 +179,9 @@ def _fits(data: PaperPage) -> PageTable:
                 ]
             )
     note = (
-        "Expected error: at a new run, by cross-validation, scatter included; no expansion comes below the scatter, "
-        "which is known from points that were run several times, or from the nugget of a Gaussian process; where the "
-        "expected error is below the nugget, the scatter is no larger than that error, which stands in its place."
+        "Expected error: of a new run, by cross-validation, including scatter, below which no expansion can come. "
+        "Scatter: from points that were run several times, or the nugget of a Gaussian process; where the expected "
+        "error is smaller than the nugget, it is given instead."
     )
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
@@ -196,7 +196,7 @@ def _scores(data: PaperPage) -> PageTable:
             rows.append(
                 [
                     STAGE_WORDS.get(stage, stage) if row == 0 else "",
-                    shown.row,
+                    shown.words,
                     shown.unit,
                     _with_interval(_or_none(score.mape), score.mape_interval),
                     _with_interval("undefined" if score.q2 is None else fixed(score.q2, 3), score.q2_interval),
@@ -207,15 +207,15 @@ def _scores(data: PaperPage) -> PageTable:
             )
     note = (
         "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
-        "In brackets: 95 % interval, by drawing the runs anew. Runs that were fitted flatter the expansion."
+        "In brackets: 95 % interval, by resampling the runs. Errors at fitted runs are optimistic."
     )
     return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
 
 
 def _sobol(data: PaperPage) -> PageTable:
     table = data.results.screening
-    words = [output(name).sign for name in PAPER_OUTPUTS]
-    columns = ["input", *(f"{word} first" for word in words), *(f"{word} total" for word in words)]
+    words = [output(name).words for name in PAPER_OUTPUTS]
+    columns = ["input", *(f"{word}, first" for word in words), *(f"{word}, total" for word in words)]
     rows = [
         [
             input_words(key),
@@ -225,9 +225,9 @@ def _sobol(data: PaperPage) -> PageTable:
         for key in table.inputs
     ]
     note = (
-        "Shares of the variance that the screening expansion explains, on the beds and at the places of its runs, "
-        "freed of what scatter adds. First: alone. Total: with all interactions. In brackets: 95 % interval, by "
-        "drawing the residuals of the runs anew."
+        "Shares of the variance that the screening expansion explains, on the beds and at the impact points of its "
+        "runs, corrected for scatter. First: the input alone. Total: with all interactions. In brackets: 95 % "
+        "interval, by resampling the residuals of the runs."
     )
     return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
 
@@ -243,7 +243,7 @@ def _outputs(data: PaperPage) -> PageTable:
     for name, values in numbers.items():
         shown = output(name)
         cells = (table_cell(value * shown.factor, scale[shown.unit]) for value in values)
-        rows.append([shown.row, shown.unit, *cells])
+        rows.append([shown.words, shown.unit, *cells])
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 

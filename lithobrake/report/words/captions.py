@@ -115,8 +115,8 @@ def bed(data: PageData) -> str:
         f"{study['grain_count']} grains, convex hulls with a mean diameter of {number(first.mean_diameter_m)} m, "
         f"fall as a random cloud and settle {ground} into {which} "
         f"{number(first.surface_height_m)} m deep with a solid fraction of {first.solid_fraction:.2f} and "
-        f"{first.coordination_number:.1f} contacts a grain. Grains are poured with the medians of their ranges, and "
-        "take on the soil of a landing at its touchdown. "
+        f"{first.coordination_number:.1f} contacts per grain. Grains are poured with the medians of their ranges "
+        "and take the soil of each landing at its touchdown. "
         f"The bed must be at least {number(first.smallest_width_m)} m wide and "
         f"{number(first.smallest_depth_m)} m deep to avoid {echo} during the first impact; this bed "
         f"{'meets' if first.large_enough else 'does not meet'} that limit."
@@ -129,7 +129,9 @@ def landing(data: PageData) -> str:
         return ""
     attributes, time = data.landing.attributes, data.landing.time
     ended = TouchdownOutcome(str(attributes["status"])).sentence.rstrip(".")
-    images = " Grains are drawn with their images around its path." if attributes.get("sides") == "periodic" else ""
+    images = (
+        " Grains and their periodic images are drawn around its path." if attributes.get("sides") == "periodic" else ""
+    )
     return (
         f"{data.shown_landing}, the lander arrives at "
         f"{number(_float(attributes['speed']))} m/s and "
@@ -168,13 +170,14 @@ def sobol(data: PaperPage) -> str:
     screening = data.results.screening
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
-    scatter = [f"{percent(share)} of {output(name).sign}" for name, share in shares.items() if share is not None]
-    rest = f"; of the variance of the runs {listing(scatter)} is scatter, which no input explains" if scatter else ""
+    scatter = [f"{percent(share)} for the {output(name).words}" for name, share in shares.items() if share is not None]
+    rest = f"; scatter that no input explains is {listing(scatter)} of the variance of the runs" if scatter else ""
     kept = listing([input_words(name) for name in data.results.kept_inputs])
     share = min(data.results.kept_share[name] for name in data.study["design"]["kept_outputs"])
+    varied = listing(leaders)
     return (
-        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together have at least {percent(share)} of "
-        "the explained variance of each output that the selection uses."
+        f"{varied[:1].upper()}{varied[1:]}{rest}; the second step keeps {kept}, which together account for at least "
+        f"{percent(share)} of the explained variance of each output that the selection uses."
     )
 
 
@@ -183,10 +186,10 @@ def _leader(name: str, screening: ExpansionResults) -> str:
     first = screening.sobol_first[name]
     main = max(first, key=lambda key: first[key])
     if first[main] <= 0.0:
-        return f"no input was found that {output(name).sign} varies with"
+        return f"no input explains the {output(name).words} significantly"
     low, high = (percent(end) for end in screening.sobol_first_interval[name][main])
     return (
-        f"{output(name).sign} varies most with the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
+        f"the {output(name).words} depends most on the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
         "of its explained variance)"
     )
 
@@ -195,9 +198,9 @@ def errors(data: PaperPage) -> str:
     """How good the expansion is."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
-        f"On fresh runs in which the kept inputs vary the expansion reaches {kept}, and when all inputs vary {every} "
-        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing); dashed lines are mean errors; a "
-        "small error with a small Q2 only means that the output hardly varies."
+        f"On new runs in which the kept inputs vary the expansion reaches {kept}; when all inputs vary, {every} "
+        "(in brackets 95 % intervals; at a Q2 of 0 or less it explains nothing). Dashed lines: mean errors. A small "
+        "error with a small Q2 only means that the output hardly varies."
     )
 
 
@@ -206,8 +209,8 @@ def _explained(table: Mapping[str, OutputErrors]) -> str:
     parts = []
     for name in PAPER_OUTPUTS:
         q2, mape = table[name].q2, table[name].mape
-        words = "an undefined share" if q2 is None else f"Q2 = {q2_words(table[name])}"
-        parts.append(f"{words} of {output(name).sign} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
+        words = "an undefined Q2" if q2 is None else f"Q2 = {q2_words(table[name])}"
+        parts.append(f"{words} for the {output(name).words} (MAPE {'undefined' if mape is None else f'{mape:.2g} %'})")
     return listing(parts)
 
 
@@ -220,8 +223,8 @@ def scatter(data: PaperPage) -> str:
     speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
     degrees = output("elevation_out").factor
     return (
-        f"Of {thousands(total)} samples of the refined expansion {thousands(leaving)} leave the surface, the middle "
-        f"nine tenths of them at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
+        f"Of {thousands(total)} samples of the refined expansion {thousands(leaving)} leave the surface, 90 % of them "
+        f"at {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])} m/s and "
         f"{degrees * angle['quantile_0.05']:.3g} to {degrees * angle['quantile_0.95']:.3g} deg above the surface; "
         "dots are the runs of all designs."
     )
@@ -234,13 +237,15 @@ def impact_map(data: SampledPage) -> str:
     shared = f"{thousands(len(data.facet))} impacts of {thousands(data.flights.row_count)} flown samples"
     found = [one for one in data.results.regions if one.share > 0.9]
     if not found:
-        return f"{shared} of the {data.model}; they are too few for a region that holds 95 % of them."
+        return f"{shared} of the {data.model}: too few for a region that holds 95 % of them."
     size = f"{area(found[0].area_m2)} and is {number(found[0].largest_extent_m, 2)} m across"
-    return f"{shared} of the {data.model}; the smallest region that holds {percent(found[0].share)} of them has {size}."
+    return (
+        f"{shared} of the {data.model}; the smallest region that holds {percent(found[0].share)} of them covers {size}."
+    )
 
 
-def whole_map(data: SampledPage) -> str:
-    """The map of the whole body."""
+def outcomes(data: SampledPage) -> str:
+    """What becomes of the landings after the first bounce, on which body."""
     shares, site = data.results.shares, data.results.site
     extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
     outward = site.effective_acceleration_outward
@@ -249,8 +254,7 @@ def whole_map(data: SampledPage) -> str:
     return (
         f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])} (body: "
         f"{number(site.mass_kg)} kg, {extents} m, one turn in {site.spin_period_s / 3600:.4g} h; at the site gravity "
-        f"and spin together pull {number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)}). Areas are true, "
-        "on a sphere of the radius at the aim point."
+        f"and rotation together amount to {number(abs(outward), 2)} m/s2 {direction}; {gravity_words(data)})."
     )
 
 
@@ -269,13 +273,13 @@ def rest(data: SampledPage) -> str:
     settled = with_interval(hard.outcomes[JourneyStatus.SETTLED], data.digits)
     words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
     if soil is None:
-        return f"{words}; on the soil it is not known: {table.why_no_soil}."
+        return f"{words}; unknown on the soil: {table.why_no_soil}."
     settled_on_soil, outside = (
         with_interval(soil.outcomes[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
-        f"{words}, {settled_on_soil} on the soil. The outcome of {outside} on the soil is unknown: they were stopped "
-        f"because the impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
+        f"{words}, {settled_on_soil} on the soil. On the soil {outside} have an unknown outcome "
+        f"because an impact was outside the training range of the {data.model} or the sampled rebound was unphysical."
     )
 
 

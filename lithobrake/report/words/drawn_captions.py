@@ -20,10 +20,9 @@ RETURNS = "returns"
 MAIN = 0.5
 
 
-def sign(name: str) -> str:
-    """An output in a sentence."""
-    shown = output(name)
-    return "the return fraction" if name == RETURNS else shown.sign or shown.words
+def output_words(name: str) -> str:
+    """An output, or the return fraction, in words."""
+    return "return fraction" if name == RETURNS else output(name).words
 
 
 def runs(data: RunsPage) -> str:
@@ -46,7 +45,7 @@ def runs(data: RunsPage) -> str:
     said.append(missing_sentence(data))
     record = data.results.variance_shares["speed_out"]
     if record:
-        said.append(f"Right: the same speeds by bed; the bed's share of their variance: {record.bed.words()}.")
+        said.append(f"Right: the same speeds by bed; share of their variance between beds: {record.bed.words()}.")
     return " ".join(filter(None, said))
 
 
@@ -59,8 +58,8 @@ def _quantiles(data: RunsPage) -> str:
             low, middle, high = (levels[level].value * shown.factor for level in ("0.05", "0.5", "0.95"))
             ends = _ends(data, levels["0.5"], shown.factor)
             found.append(
-                f"the median of {shown.sign} is {number(middle)} {shown.unit}{ends}, "
-                f"and 90 % of the landings lie between {number(low)} and {number(high)} {shown.unit}"
+                f"the median {shown.words} is {number(middle)} {shown.unit}{ends}, "
+                f"with 90 % of the landings between {number(low)} and {number(high)} {shown.unit}"
             )
     words = "; ".join(found)
     return f"{words[:1].upper()}{words[1:]}"
@@ -80,35 +79,35 @@ def variance(data: RunsPage) -> str:
         return "The sources of the scatter cannot be separated: the runs are on one bed, or too few for their inputs."
     first, *others = records
     said = [
-        f"Of the variance of {sign(first)}, {scatter_words(records[first])} ({percent(data.level)} intervals), over "
-        "the input distributions of the study file."
+        f"Parts of the variance of the {output_words(first)} over the input distributions of the study file: "
+        f"{scatter_words(records[first])} ({percent(data.level)} intervals)."
     ]
     if others:
-        soils = [f"{records[name].soil.words()} of {sign(name)}" for name in others]
+        soils = [f"{records[name].soil.words()} of the {output_words(name)}" for name in others]
         said.append(f"Soil, at least: {listing(soils)}.")
     said.append(floor_words(records[first]))
     if all(record.chaos is None for record in records.values()):
-        said.append("Without auxiliary runs, chaos is not a separate part: it is included in everything else.")
+        said.append("Without auxiliary runs chaos is not separated from everything else.")
     return " ".join(said)
 
 
 def floor_words(record: VarianceParts) -> str:
     """Of which degree the parts are lower bounds, and for which ranges."""
     doubled = record.soil_doubled
-    explains = f"explain at least {doubled.words()}" if doubled.share > 0.0 else f"be {doubled.words()}"
+    explains = f"at least {doubled.words()}" if doubled.share > 0.0 else doubled.words()
     return (
-        f"Soil, delivery and attitude: by {record.terms}, for the ranges of the study file; their other effects "
-        f"are in everything else. With soil ranges twice as wide the soil would {explains}."
+        f"Soil, delivery and attitude: {record.terms}, for the ranges of the study file; their other effects "
+        f"are in everything else. Soil with ranges twice as wide: {explains}."
     )
 
 
 # Parts that are not detected.
-NAMES = {"soil": "soil", "arrival": "delivery", "attitude": "attitude", "bed": "the bed"}
+NAMES = {"soil": "soil", "arrival": "delivery", "attitude": "attitude", "bed": "bed"}
 
 
 def scatter_words(record: VarianceParts) -> str:
     """What explains the variance of an output, in a part of a sentence with intervals."""
-    words = {"soil": "soil explains at least", "bed": "the bed"}
+    words = {"soil": "soil at least"}
     found = []
     for name, share in record.parts.items():
         more = _main_input(record) if name == "soil" else ""
@@ -122,10 +121,9 @@ def detected_words(record: VarianceParts) -> str:
     """What of an output's variance is detected, likewise, but for everything else."""
     detected = {name: one for name, one in record.parts.items() if one.share > 0.0 and name != "place"}
     if not detected:
-        return "nothing is detected"
-    words = NAMES | {"soil": "soil explains"}
+        return "none is detected"
     whose = [
-        f"{words.get(name, name)}{' at least' if name != 'bed' else ''} {one.words()}" for name, one in detected.items()
+        f"{NAMES.get(name, name)}{' at least' if name != 'bed' else ''} {one.words()}" for name, one in detected.items()
     ]
     return listing(whose)
 
@@ -144,7 +142,7 @@ def calibration(data: DrawnPage) -> str:
     scores = emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}
     bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
-    shares = [f"{percent(share)} of {sign(name)}" for name, share in held.items()]
+    shares = [f"{percent(share)} of {output_words(name)}" for name, share in held.items()]
     said = [
         f"On {left_out(data)} the {percent(BAND)} bands contained {listing(shares)}.",
         "For a calibrated emulator the histogram is flat; the grey band covers 90 % of the sampling fluctuation of "
@@ -155,8 +153,8 @@ def calibration(data: DrawnPage) -> str:
     ]
     lucky = {name: band_luck(sum(score.pit)) for name, score in scores.items()}
     for words, off in (
-        ("too narrow", [sign(name) for name, share in held.items() if share < lucky[name][0]]),
-        ("too wide", [sign(name) for name, share in held.items() if share > lucky[name][1]]),
+        ("too narrow", [output_words(name) for name, share in held.items() if share < lucky[name][0]]),
+        ("too wide", [output_words(name) for name, share in held.items() if share > lucky[name][1]]),
     ):
         if off:
             said.append(f"The bands of {listing(off)} are {words}, by more than chance explains.")

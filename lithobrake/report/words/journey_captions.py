@@ -65,19 +65,21 @@ def rest_map(data: JourneyPage) -> str:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     said += _delivery(data)
     if len(data.results.soils) > 1:
-        said.append("Dotted: edges of the regions that have a soil of their own, to a degree.")
+        said.append("Dotted: boundaries of soil regions, to within a degree.")
     return " ".join(said) or "Each dot is a lander."
 
 
-def whole_map(data: JourneyPage) -> str:
-    """The map of all ends."""
-    total = len(data.journeys["end"])
-    words = f"{with_interval(data.ends[JourneyEnd.AT_REST])} of {total} landers come to rest within {_limit(data)}."
+def outcomes(data: JourneyPage, *, has_map: bool) -> str:
+    """The shares of the ends; has_map: whether the whole body stands beside them."""
     if not has_places(data):
         return ""
+    total = len(data.journeys["end"])
+    words = f"{with_interval(data.ends[JourneyEnd.AT_REST])} of {total} landers come to rest within {_limit(data)}."
+    if not has_map:
+        return words
     return (
-        f"{words} Areas are true, on a sphere of the radius at the aim point. Landers that escaped, came down on the "
-        "partner or failed have no place on it."
+        f"{words} Map: the whole body in equal areas, on a sphere of the radius at the aim point; landers that "
+        "escaped, landed on the partner or failed are not on it."
     )
 
 
@@ -87,7 +89,7 @@ def _delivery(data: JourneyPage) -> list[str]:
     if found is None or not found.regions:
         return []
     large = found.regions[-1]
-    return [f"Blue: the same regions for the first impacts; {percent(large.share)} lie within {area(large.area_m2)}."]
+    return [f"Blue: the same for the first impacts; {percent(large.share)} lie within {area(large.area_m2)}."]
 
 
 def times(data: JourneyPage) -> str:
@@ -97,9 +99,9 @@ def times(data: JourneyPage) -> str:
         return ""
     size, unit = time_unit(data)
     return (
-        f"Half of the landers at rest came to rest within {quantile_words(time.median, size)} {unit} after the first "
-        f"touchdown and {quantile_words(distance.median)} m from the aim point; 95 % within "
-        f"{quantile_words(time.q95, size)} {unit} and {quantile_words(distance.q95)} m. Dots: median and 95th "
+        f"Time from the first touchdown to rest: median {quantile_words(time.median, size)} {unit}, 95 % within "
+        f"{quantile_words(time.q95, size)} {unit}. Distance from the aim point: median "
+        f"{quantile_words(distance.median)} m, 95 % within {quantile_words(distance.q95)} m. Dots: median and 95th "
         f"percentile; bars: their {percent(LEVEL)} intervals over beds and impact points, dotted where a bound is "
         "unknown."
     )
@@ -110,12 +112,12 @@ def counts(data: JourneyPage) -> str:
     total, journeys = data.journeys["touchdowns"].sum(), len(data.journeys["end"])
     contacts = data.at_rest.contacts.median
     said = (
-        f"{journeys} journeys have {total:.0f} touchdowns, {number(total / journeys, 2)} each; each is a simulated "
-        "landing, and may have several contacts with hops between them."
+        f"{journeys} journeys with {total:.0f} touchdowns, {number(total / journeys, 2)} each. A touchdown is one "
+        "simulated landing and may have several contacts with hops between them."
     )
     if contacts.value is None:
         return said
-    return f"{said} Of those at rest the median is {quantile_words(contacts)} contacts."
+    return f"{said} Landers at rest: median {quantile_words(contacts)} contacts."
 
 
 def attitude(data: JourneyPage) -> str:
@@ -125,9 +127,9 @@ def attitude(data: JourneyPage) -> str:
         return ""
     name, most = max(data.at_rest.faces.items(), key=lambda one: one[1].share)
     return (
-        f"The side {name} is down most often, for {with_interval(most)} of the landers at rest. Its axis is "
-        f"{quantile_words(tilt.median)} deg off the plumb line in the median, {quantile_words(tilt.q95)} deg at the "
-        f"95th percentile. Brackets and bars: {percent(LEVEL)} intervals."
+        f"The side {name} is down most often, for {with_interval(most)} of the landers at rest. Tilt of its "
+        f"axis from the plumb line: median {quantile_words(tilt.median)} deg, 95th percentile "
+        f"{quantile_words(tilt.q95)} deg. Brackets and bars: {percent(LEVEL)} intervals."
     )
 
 
@@ -135,13 +137,13 @@ def end_variance(data: JourneyPage) -> str:
     """The figure of what decides the ends; empty where the journeys cannot tell."""
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
     said = [
-        f"Of the variance of {END_SIGNS[name]} ({one.of}), {detected_words(one)} ({percent(LEVEL)} intervals)."
+        f"Parts of the variance of {END_SIGNS[name]} ({one.of}): {detected_words(one)} ({percent(LEVEL)} intervals)."
         for name, one in known.items()
     ]
     if said:
         said.append(
-            "Delivery: the place and state of the first impact, without its attitude; everything else includes the "
-            "later touchdowns, at new impact points."
+            "Delivery: position and velocity of the first impact, without attitude. Everything else includes all later "
+            "touchdowns."
         )
         said.append(floor_words(next(iter(known.values()))))
     return " ".join(said)
@@ -155,7 +157,7 @@ def first_variance(data: JourneyPage) -> str:
     correlations = (data.study.get("delivery") or {}).get("correlations") or ()
     pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
     if pairs:
-        said += f" Inputs are taken as independent, and {pairs} are correlated: read their parts together."
+        said += f" The parts assume independent inputs, but {pairs} are correlated: read their parts together."
     return said
 
 
@@ -170,8 +172,8 @@ def emulator_words(data: JourneyPage) -> list[str]:
     half, narrow = (percent(one) for one in (control.half_width, control.half_width_with))
     return [
         found.statement,
-        f"As a control variate it narrows the interval of the fraction at rest from +- {half} to +- {narrow}, so a "
-        "fraction may differ from the count.",
+        f"As a control variate it narrows the interval of the fraction at rest from +- {half} to +- {narrow}, so the "
+        "fraction may differ slightly from the count.",
     ]
 
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from lithobrake.results.run_results import VarianceParts
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
-# In a figure, and in a sentence.
+# In a figure.
 SYMBOLS = {
-    "speed_out": ("$V^+$", "V+"),
-    "elevation_out": (r"$\theta^+$", "theta+"),
-    "spin_out": (r"$\omega^+$", "omega+"),
-    "velocity_out_x": ("$V^+_x$", ""),
-    "velocity_out_y": ("$V^+_y$", ""),
-    "velocity_out_z": ("$V^+_z$", ""),
+    "speed_out": "$V^+$",
+    "elevation_out": r"$\theta^+$",
+    "spin_out": r"$\omega^+$",
+    "velocity_out_x": "$V^+_x$",
+    "velocity_out_y": "$V^+_y$",
+    "velocity_out_z": "$V^+_z$",
 }
 # The three outputs of [Landings-PCE], in its order.
 PAPER_OUTPUTS = ("speed_out", "elevation_out", "spin_out")
@@ -67,10 +67,9 @@ INPUT_LABELS = {
 
 @dataclass(frozen=True)
 class Output:
-    """An output as the page shows it: symbol in a figure and in a sentence, words, unit, and the factor from SI."""
+    """An output as the page shows it: symbol in a figure, words, unit, and the factor from SI."""
 
     symbol: str
-    sign: str
     words: str
     unit: str
     factor: float
@@ -80,19 +79,14 @@ class Output:
         """Axis label with the unit."""
         return f"{self.words} {self.symbol} [{self.unit}]".strip()
 
-    @property
-    def row(self) -> str:
-        """Title of a row."""
-        return f"{self.words} {self.sign}".strip()
-
 
 def output(name: str) -> Output:
     """How an output is shown, angles in degrees; one that is not known keeps its own name and SI value."""
     if name not in TOUCHDOWN:
-        return Output("", "", name, "SI", 1.0)
-    known, (symbol, sign) = TOUCHDOWN[name], SYMBOLS.get(name, ("", ""))
+        return Output("", name, "SI", 1.0)
+    known = TOUCHDOWN[name]
     unit, factor = ("deg", 180.0 / math.pi) if known.units == "rad" else (known.units, 1.0)
-    return Output(symbol, sign, known.title or name, unit, factor)
+    return Output(SYMBOLS.get(name, ""), known.title or name, unit, factor)
 
 
 def input_label(name: str, unit: str = "") -> str:

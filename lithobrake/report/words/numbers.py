@@ -1,11 +1,17 @@
 """Numbers of the page in words and cells."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from lithobrake.results.expansions import OutputErrors
 
 # Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
 ROUNDING = 1e-9
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+# Powers of units, "m2" and "m/s2", behind a number, a bracket or a unit.
+POWER = re.compile(
+    r"(?:(?<=\b(?:m|J|N)/)|(?<=\bkg/)|(?<=\brad/)|(?<=\bm2/)|(?<=\[)|(?<=\d[ \N{NO-BREAK SPACE}]))([ms])([23])\b"
+)
 
 
 def flat(tree: Mapping[str, object], prefix: str = "", alike: Sequence[Sequence[str]] = ()) -> list[tuple[str, str]]:
@@ -67,14 +73,18 @@ def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float =
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     if not zeros and "." in mantissa:
         mantissa = mantissa.rstrip("0").removesuffix(".")
-    raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"{mantissa} × 10{raised}"
+    return f"{mantissa} × 10{str(int(exponent)).translate(RAISED)}"
+
+
+def raised_units(words: str) -> str:
+    """Words in which powers of units are raised: m² and m/s² for m2 and m/s2."""
+    return POWER.sub(lambda found: found[1] + found[2].translate(RAISED), words)
 
 
 def area(square_metres: float) -> str:
-    """An area to two digits, "32 000 m2", with spaces at which no line breaks."""
+    """An area to two digits, "32 000 m²", with spaces at which no line breaks."""
     rounded = float(f"{square_metres:.2g}")
-    return (f"{rounded:,.0f},m2" if rounded >= 10.0 else f"{rounded:g},m2").replace(",", "\N{NO-BREAK SPACE}")
+    return (f"{rounded:,.0f},m²" if rounded >= 10.0 else f"{rounded:g},m²").replace(",", "\N{NO-BREAK SPACE}")
 
 
 def table_cell(value: float, scale: float = 0.0) -> str:

@@ -57,7 +57,7 @@ def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:
 def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
     content = journey_content(data)
     names = [plot.name for plot in content.plots]
-    assert names[:6] == ["ends", "whole", "attitude", "times", "counts", "end_variance"]
+    assert names[:6] == ["ends", "outcomes", "attitude", "times", "counts", "end_variance"]
     others = [plot for plot in content.plots[6:] if plot.name != "bed"]
     assert others
     assert all("first touchdown" in plot.sentence for plot in others)

@@ -253,7 +253,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     ("changes", "said"),
     [
         ({"site": {"latitude_deg": 0.0}}, "push outward"),
-        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation at the site"),
+        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation"),
         ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
         ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
         ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),

@@ -94,7 +94,7 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"bed": {"bed_count": 1}}, "All runs came down on one bed."),
+        ({"bed": {"bed_count": 1}}, "All runs landed on one bed."),
         ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs came down at one place."),
     ],
     ids=["one bed", "one place"],

@@ -20,7 +20,7 @@ from lithobrake.report.figures.shares import Share, draw_shares
 from lithobrake.report.figures.sobol_figure import sobol_figure
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import DrawnPage
-from lithobrake.report.pages.shared_plots import draw_rest, draw_whole
+from lithobrake.report.pages.shared_plots import draw_outcomes, draw_rest
 from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results import MovingBodies
 from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
@@ -166,7 +166,7 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
 
 def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
     with figure_style():
-        figures = draw_whole(drawn), draw_rest(drawn)
+        figures = draw_outcomes(drawn), draw_rest(drawn)
     found: dict[str, set[str]] = {}
     assert figures[1] is not None
     for axes in (axes for figure in figures if figure for axes in figure.axes if axes.get_xlabel().startswith("share")):

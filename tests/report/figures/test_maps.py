@@ -13,7 +13,7 @@ from lithobrake.report.figures.density import cell_counts, density_norm, draw_ce
 from lithobrake.report.figures.ground_map import GroundMap, MapPanel, panel_around, step_of
 from lithobrake.report.figures.map_frames import degrees, frame_half, frame_local
 from lithobrake.report.figures.map_marks import mark_site
-from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, whole_figure
+from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, outcomes_figure
 from lithobrake.report.figures.rest_figure import RestMap, rest_figure
 from lithobrake.report.figures.shares import Share
 from lithobrake.report.figures.style import INK, figure_style
@@ -119,11 +119,20 @@ def test_places_all_around_the_body_are_on_both_its_halves() -> None:
     random = np.random.default_rng(3)
     latitude, longitude = random.uniform(-90, 90, 300), random.uniform(-180, 180, 300)
     with figure_style():
-        figures = local_figure(shown(latitude, longitude)), whole_figure(shown(latitude, longitude), [], "all")
-    for figure in figures:
-        dots = [len(one.get_offsets()) for axes in figure.axes[:2] for one in axes.collections]
-        assert sum(dots) == 300
-        assert min(dots) > 100
+        figure = local_figure(shown(latitude, longitude))
+    dots = [len(one.get_offsets()) for axes in figure.axes for one in axes.collections]
+    assert sum(dots) == 300
+    assert min(dots) > 100
+
+
+def test_the_whole_body_is_beside_the_outcomes_only_where_the_first_map_leaves_places_out() -> None:
+    region = RestRegion(0.95, 10.0, 5.0, (ring(10.0, 179.0, 3.0),))
+    for far, discs in ((11.0, 0), (-60.0, 2)):
+        with figure_style():
+            figure = outcomes_figure(
+                shown(np.array([10.0, far]), np.array([179.0, 178.0]), region), [Share("at rest", 1.0)], "all"
+            )
+        assert len(figure.axes) == discs + 1
 
 
 def test_no_place_of_many_is_lost_in_the_cells_of_both_halves() -> None:

@@ -59,7 +59,7 @@ def test_the_product_of_an_archive_stands_beside_the_body(drawn: DrawnPage) -> N
 
 
 def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: Path) -> None:
-    names = ("map", "whole", "body", "rest", "variance", "calibration", "runs", "outputs", "landing", "bed")
+    names = ("map", "outcomes", "body", "rest", "variance", "calibration", "runs", "outputs", "landing", "bed")
     files = {path.name for path in (sequence_folder / "report").glob("*.png")}
     assert files == {f"figure_{number}_{name}.png" for number, name in enumerate(names, start=1)}
     assert len(re.findall(r'<img alt="[^"]+" src="data:image/svg\+xml;base64,', drawn_page)) == len(names)
