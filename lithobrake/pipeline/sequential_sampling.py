@@ -102,7 +102,7 @@ def grow(job: Job, make_runs: Callable[[Job], None]) -> Job:
 def width_sentence(job: Job) -> str:
     """How well the answer is known by the runs of a study, beside what is asked."""
     width, design = _width(job), job.study.design
-    known = "not known to any width yet" if width is None else f"known to +- {100 * width:.2g} points"
+    known = "not known within any bound yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
         f"{answer_words(job.study)} is {known} from {design.run_count} runs on {job.study.bed_count} beds, and "
         f"design.half_width asks for +- {100 * (design.half_width or 0.0):.2g}"

@@ -49,8 +49,8 @@ def _warnings(site_map: SiteMap) -> list[str]:
     lacking = len(site_map.cells) - site_map.answered
     if lacking:
         found += [
-            f"{lacking} of {len(site_map.cells)} sites are not answered: more than one in ten of their landers meets "
-            "an impact unlike those of the study's journeys. A study that is delivered all over the body answers them."
+            f"{lacking} of {len(site_map.cells)} sites have no result: more than 10 % of their landers have an impact "
+            "outside the range of the study's journeys. A study delivered all over the body covers them."
         ]
     if site_map.agreement and site_map.agreement[0].agrees is False:
         found += ["Emulator and landings do not agree on the landers at rest: follow more journeys (journey.count)."]
@@ -82,8 +82,8 @@ def _caption(site_map: SiteMap) -> str:
 
 def _agreement_caption(site_map: SiteMap) -> str:
     return (
-        "The study's own journeys, by simulated landings and by refits of the emulator that have not seen their "
-        "beds: all of them (filled), and those with their first touchdown in each region of an "
+        "The journeys of the study, by simulated landings and by refits of the emulator to other beds: "
+        "all of them (filled), and those with their first touchdown in each region of an "
         f"eighth of the body, with {percent(site_map.level)} intervals."
     )
 

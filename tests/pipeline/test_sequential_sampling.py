@@ -113,7 +113,7 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     # What follows the runs was not asked for.
     assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("estimates", 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
-    assert f"By the {answered} runs that have ended: mean 0." in " ".join(plan_lines(plan))
+    assert f"From the {answered} finished runs: mean 0." in " ".join(plan_lines(plan))
     assert f"{runs.run_count} runs: {runs.run_count} done" in " ".join(study_status(folder).lines())
     assert run(folder, again, run_count=runs.run_count).keys == runs.keys
     assert {path: path.stat().st_mtime_ns for path in folder.glob("designs/*")} == files

@@ -68,7 +68,7 @@ def rare_failure(
         design = grown(DrawnDesign(study), folder)
         landings = Landings(Job(design, Site(study), source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:
-            shown.say("A program with chance of its own, beside its inputs, makes the interval wide.")
+            shown.say("A program that is random beyond its inputs widens the interval.")
         shown.begin(f"landings of {name}", 1, 1)
         try:
             found = landings.simulation(landing_count)
@@ -76,7 +76,7 @@ def rare_failure(
             executor.shutdown(cancel_futures=True)
             raise
         if landings.reused_count:
-            shown.say(f"{landings.reused_count} of {found.evaluation_count} landings were known and are reused")
+            shown.say(f"{landings.reused_count} of {found.evaluation_count} landings are known and reused")
         content = landings.told(found, landing_count)
         folder.write_json(f"rare_{name}.json", content)
     return content

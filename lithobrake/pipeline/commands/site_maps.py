@@ -64,7 +64,7 @@ def map_sites(
     study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
     why = why_no_emulator(folder.read_json(EMULATOR))
     if why is not None:
-        raise ValueError(f"{out} has nothing to follow landers by. {why} Follow more journeys (journey.count).")
+        raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         design = grown(DrawnDesign(study), folder)
         job = Job(design, Site(study), source.tables, folder, executor, shown, model)

@@ -82,11 +82,11 @@ def expected_seconds(
 def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
     """Where the expected times come from, in a sentence."""
     if made["touchdowns"][1] and len(walls_of(ended)) >= RUNS_THAT_TELL:
-        said = f"Touchdowns as the {len(walls_of(ended))} that have ended took, all else estimated"
+        said = f"Touchdowns by the times of the {len(walls_of(ended))} finished ones, all else estimated"
     elif _engine_works(made) and soil is not None:
-        said = "Estimated from the steps that contacts of this stiffness and speed take"
+        said = "Estimated from the number of time steps for contacts of this stiffness and speed"
     elif made["touchdowns"][1]:
-        said = "How long your program takes is not known before it has made some touchdowns; all else is estimated"
+        said = "The time of your program is unknown until some touchdowns are finished; all else is estimated"
     else:
         said = "Estimated"
     pace = _pace(made, soil)
@@ -97,7 +97,7 @@ def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended:
     slower = busy_factor()
     if slower > 1.0:
         said += (
-            f". Other work is on these cores (load {_load():.1f} on {available_cores()}): while it lasts, all takes up "
+            f". Other work is on these cores (load {_load():.1f} on {available_cores()}): while it lasts, everything takes up "
             f"to {slower:.1f} times as long, which the upper ends include"
         )
     return f"{said}."

@@ -68,7 +68,7 @@ class ExpectedHalfWidth:
         ]
         if self.by_fraction:
             told = ", ".join(f"{_points(width)} at {share}" for share, width in self.by_fraction.items())
-            lines.append(f"  By the fraction that comes out: {told}.")
+            lines.append(f"  By the resulting fraction: {told}.")
         return [*lines, f"  {self.assumed}"]
 
 
@@ -128,7 +128,7 @@ def law_before(study: Study) -> "tuple[RunLaw, str]":
     from lithobrake.analysis.half_width import SPREAD_RANGE
     from lithobrake.analysis.half_width_range import AllOrNothing, Shares
 
-    beds = f"the correlation of two on one bed is {expected_correlation(study):g} in the mean, as in studies so far"
+    beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
     if study.journey is not None:
         law = AllOrNothing(1.0, LEAST_AT_REST)
         return (
@@ -136,11 +136,10 @@ def law_before(study: Study) -> "tuple[RunLaw, str]":
             f"Assumed: {100 * LEAST_AT_REST:.0f} to 100 % of the landers come to rest, most likely nearly all; {beds}",
         )
     if study.design.half_width_of is not None:
-        return AllOrNothing(0.0, 1.0), f"Assumed: a landing meets it or not, with any probability; {beds}"
+        return AllOrNothing(0.0, 1.0), f"Assumed: any probability; {beds}"
     low, high = SPREAD_RANGE
     return Shares(RETURN_FRACTION, low, high), (
-        f"Assumed: some landings return and some do not, with a standard deviation of {low:g} to {high:g} of the share "
-        f"of flights that do; {beds}"
+        f"Assumed: standard deviation {low:g} to {high:g} of the return fraction from landing to landing; {beds}"
     )
 
 
@@ -153,11 +152,11 @@ def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
     known, beds = answered_runs(values, bed)
     scatter = scatter_of(values, bed)
     shown = (
-        "all alike"
+        "all equal"
         if scatter is None
-        else (f"standard deviation {scatter[0]:.2g}, correlation of two on one bed {scatter[1]:.2g}")
+        else (f"standard deviation {scatter[0]:.2g}, correlation of two runs on one bed {scatter[1]:.2g}")
     )
-    return LikeRuns(known, beds), f"By the {len(known)} runs that have ended: mean {known.mean():.2g}, {shown}"
+    return LikeRuns(known, beds), f"From the {len(known)} finished runs: mean {known.mean():.2g}, {shown}"
 
 
 def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> float:

@@ -18,7 +18,7 @@ def plan_lines(plan: Plan) -> list[str]:
     """Return the whole plan as lines of text."""
     lines = [f"{plan.study}, in {plan.folder}"]
     if not plan.stages:
-        lines += ["Nothing is left to make: all files are current."]
+        lines += ["Nothing to do: all files are current."]
     else:
         lines += [f"To make: {_made(plan)}."]
         lines += [f"Beds: {_beds(plan)}."] if plan.beds[0].total else []
@@ -47,8 +47,8 @@ def brief_lines(plan: Plan, command: str) -> list[str]:
     said = "No warnings." if count == 0 else f"{count} warning{'s, the first' * (count > 1)}: {plan.warnings[0]}"
     return [
         f"To make: {_made(plan)}.",
-        f"Expected: {_time(plan)}; {bytes_in_words(sum(plan.bytes.values()))} on the disk when finished.",
-        f"{said} All of the plan: {command}",
+        f"Expected: {_time(plan)}; {bytes_in_words(sum(plan.bytes.values()))} on disk when finished.",
+        f"{said} Full plan: {command}",
     ]
 
 
@@ -80,8 +80,8 @@ def _designs(plan: Plan) -> str:
         until = ", until design.half_width is met" if fewest is not most else ""
         drawn, total = _range(fewest.drawn, most.drawn), _range(fewest.total, most.total)
         if plan.made["journeys to rest"][1]:
-            known = f"{len(most.known)} of the first ones are known and reused"
-            return f"{drawn} first ones of journeys{until}, mostly one to four each; {known}"
+            known = f"{len(most.known)} first touchdowns are known and reused"
+            return f"{drawn} journeys{until}, mostly of one to four touchdowns each; {known}"
         return f"{drawn} drawn{until}{side}; {total} in all, of which {len(most.known)} are known and reused"
     kept = (
         f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"

@@ -56,8 +56,8 @@ def _missed(design: DrawnDesign) -> Iterator[str]:
     down = design.descents.touches_down
     if down.mean() < FEW_REACH:
         yield (
-            f"Only {int(down.sum())} of {len(down)} landers reach the ground, and no other has a touchdown: times, "
-            "places and sides at rest will stand on these alone; change the states or [delivery.release], or raise "
+            f"Only {int(down.sum())} of {len(down)} landers reach the ground, and only these have touchdowns: times, "
+            "places and sides at rest will come from them alone; change the states or [delivery.release], or raise "
             "journey.duration where they still fly."
         )
 
@@ -96,7 +96,7 @@ def _rim(design: DrawnDesign, soil: ExpectedSoil) -> Iterator[str]:
         room = 0.5 * width - reach
         if max(-low, high) > room:
             yield (
-                f"The lander reaches {reach:.2g} m to each side, so along {axis} it may come down over the edge of the "
+                f"The lander reaches {reach:.2g} m to each side, so along {axis} it may land across the edge of the "
                 f"bed: keep impact.{'region' if region else 'place'}.{axis} within {room:.2g} m of the middle, or "
                 "widen the bed."
             )
@@ -107,9 +107,9 @@ def _lost(soil: ExpectedSoil) -> Iterator[str]:
     share = expected_loss(soil.landings[1:], min(soil.recipe.width))
     if share > CUT_OFF:
         yield (
-            f"About {100 * share:.0f} % of the landings may leave the bed laterally, by their angle of impact, and "
-            "have no outcome: medians, quantiles, variance shares and the emulator will describe only the others, and "
-            "no fraction will be known more precisely than this; widen the bed (bed.width, with bed.grain_count), or "
+            f"About {100 * share:.0f} % of the landings may leave the bed laterally at these impact angles and have no "
+            "outcome: medians, quantiles, variance shares and the emulator will describe only the others, and every "
+            "fraction will be uncertain by as much; widen the bed (bed.width, with bed.grain_count), or "
             "keep impact.incidence_deg steeper."
         )
 
@@ -135,8 +135,8 @@ def _never_count(study: Study) -> Iterator[str]:
         own, rock = values.get(f"{table}.{name}"), values.get(f"grain.{name}")
         if own is not None and rock is not None and own != rock and _reach(own)[0] >= _reach(rock)[1]:
             yield (
-                f'{table}.{name} has no effect: contact.pair_rule = "smaller" takes grain.{name}, which is less; '
-                'take "mean" or "geometric", or leave it out.'
+                f'{table}.{name} has no effect: contact.pair_rule = "smaller" takes grain.{name}, which is smaller; '
+                'use "mean" or "geometric", or leave it out.'
             )
 
 
@@ -146,8 +146,8 @@ def _wide(study: Study) -> Iterator[str]:
         lower, upper = _reach(value)
         if value.distribution == "uniform" and lower > 0.0 and upper > WIDE * lower:
             yield (
-                f"{name} is uniform from {lower:g} to {upper:g}: nine tenths of its values are above {upper / 10:.2g}; "
-                "write log_uniform where all its decades count alike."
+                f"{name} is uniform from {lower:g} to {upper:g}: 90 % of its values are above {upper / 10:.2g}; "
+                "use log_uniform for equal weight on each decade."
             )
 
 
@@ -162,8 +162,8 @@ def _terms(drawn: DrawnDesign) -> Iterator[str]:
     terms = term_count(count, design.screening_degree)
     if runs < RUNS_A_TERM * terms:
         yield (
-            f"The screening fits {terms} terms to {runs} runs, and those that stay on the ground do not count: a fit "
-            f"with less than {RUNS_A_TERM:g} runs a term follows single runs; lower design.screening_degree, or add "
+            f"The screening fits {terms} terms to {runs} runs, and runs that do not rebound do not count: a fit "
+            f"with less than {RUNS_A_TERM:g} runs per term overfits; lower design.screening_degree, or add "
             "runs."
         )
 
@@ -174,15 +174,15 @@ def _bounces(study: Study) -> Iterator[str]:
     if study.journey is not None:
         return
     if study.rest.count and why:
-        yield f"Bounce after bounce on hard ground only: {why}."
+        yield f"Journeys from bounce to bounce are on hard ground only: {why}."
     elif study.rest.count and study.has_soil:
         low, high = UNKNOWN_JOURNEYS
         walls = study.bed.sides == "walls"
         share = f", in studies so far {100 * low:.0f} to {100 * high:.0f} %" if walls else ""
         lost, remedy = (", or leave the bed laterally", ", and widen the bed") if walls else ("", "")
         yield (
-            f"Many journeys on the soil will have an unknown outcome{share}: they meet an impact slower or flatter "
-            f"than those of the runs{lost}; let impact.speed reach down to where landers are captured{remedy}."
+            f"Many journeys on the soil will have an unknown outcome{share}: their impacts are slower or flatter "
+            f"than those of the runs{lost}; extend impact.speed down to where landers are captured{remedy}."
         )
 
 
@@ -194,14 +194,14 @@ def _few_beds(study: Study) -> Iterator[str]:
 
     if study.bed_count == 1:
         yield (
-            "All runs come down on one bed, and another bed gives another result: no number of this study will have an "
+            "All runs land on one bed, and another bed would change the result: no number of this study will have an "
             f"interval; set bed.bed_count to {FEWEST_BEDS} or more, or leave it out."
         )
         return
     wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS - 1) - 1.0)
     remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
     yield (
-        f"The runs come down on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
+        f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
         f"{wider:.0f} % wider than {FEWEST_BEDS} would, by Student's t alone; {remedy} to {FEWEST_BEDS} or more."
     )
 
@@ -213,13 +213,13 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
         return
     if study.design.method == "drawn":
         yield (
-            "All runs come down at the same place of their beds: give impact.region, or a bed wider than "
+            "All runs land at the same point of their beds: give impact.region, or a bed wider than "
             f"{smallest_width(study):.2g} m, in whose middle impact points are sampled."
         )
     elif study.bed_count == 1 and study.has_soil:
         yield (
-            "All runs come down on the same place of the same bed, so the result holds for these boulders only: raise "
-            "bed.bed_count, or draw the place in impact.region."
+            "All runs land at the same point of the same bed, so the result holds for these boulders only: raise "
+            "bed.bed_count, or sample impact points in impact.region."
         )
 
 

@@ -65,16 +65,16 @@ def _compared(found: SiteMap) -> str:
 def _population(found: SiteMap) -> str:
     """Which landers the numbers hold over."""
     intervals = (
-        f"{percent(found.level)} intervals hold over other landers and other beds: the scatter between {found.refits} "
-        f"refits of the emulator to {found.beds} beds drawn with replacement ({found.touchdowns} touchdowns), and "
-        "whatever becomes of landers of unknown end"
+        f"{percent(found.level)} intervals cover other landers and other beds, by the scatter between {found.refits} "
+        f"refits of the emulator to {found.beds} beds sampled with replacement ({found.touchdowns} touchdowns), and "
+        "any outcome of landers whose outcome is unknown"
         if found.why is None
         else f"There are no intervals. {found.why}"
     )
     return (
-        f"{found.landers} landers a site, delivered as the study says but for their aim points, which are spread "
+        f"{found.landers} landers per site, delivered as in the study except for their aim points, which are spread "
         f"evenly over its {found.area_m2:.3g} m2; every site has the same landers. {intervals.rstrip('.')}. They do "
-        "not hold over soils outside of the study's ranges, nor over what the form of the emulator misses, which the "
-        "comparison with landings tests. A site is not answered where more than 10 % of its landers meet an impact "
-        "beyond the touchdowns of the study."
+        "not cover soils outside the ranges of the study, nor the model error of the emulator, which the comparison "
+        "with landings tests. A site has no result where more than 10 % of its landers have an impact outside the "
+        "range of the touchdowns of the study."
     )

@@ -156,8 +156,8 @@ def _flights(data: PageData) -> PageTable:
     if error:
         note = (
             f"{whose}Gravity is interpolated in a table; relative to surface gravity its error against the sum over "
-            f"the facets is {number(error.median, 2)} in the median and {number(error.p95, 2)} at the 95th percentile of "
-            f"{error.point_count} points."
+            f"the facets is {number(error.median, 2)} in the median and {number(error.p95, 2)} at the 95th percentile "
+            f"of {error.point_count} points."
         )
     if checks is not None and checks.jacobi_drift_largest_m2_s2 is not None:
         note += (

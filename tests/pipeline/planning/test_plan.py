@@ -265,7 +265,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
         ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
         ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
         ({"rest": {"count": 10}}, "Bounce after bounce on hard ground only"),
-        ({"bed": {"bed_count": 1}}, "All runs come down on the same place of the same bed"),
+        ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
     ],
 )  # fmt: skip
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
@@ -294,13 +294,13 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     ("changes", "said"),
     [
         ({}, None),
-        ({"bed": {"bed_count": 1}}, "All runs come down on one bed, and another bed gives another result"),
+        ({"bed": {"bed_count": 1}}, "All runs land on one bed, and another bed would change the result"),
         # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
         ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
         ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
         (
             {"impact": {"place": {"x": 0.0, "y": 0.1}}},
-            "All runs come down at the same place of their beds: give impact.region",
+            "All runs land at the same point of their beds: give impact.region",
         ),
     ],
 )
@@ -389,7 +389,7 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     assert least < found.lower < found.median < found.upper < most
     said = " ".join(plan_lines(plan))
     assert "90 % interval of the return fraction (144 runs on 12 beds): " in said
-    assert "By the fraction that comes out: 8.7 at 100 %." in said
+    assert "By the resulting fraction: 8.7 at 100 %." in said
     assert "a standard deviation of 0.04 to 0.21 of the share of flights that do; the correlation of two" in said
     assert plan.to_json()["half_width"]["own_run_count"] == 0
     one_bed = drawn(bed={"bed_count": 1})
@@ -561,7 +561,7 @@ def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
     for what, span in idle.seconds.items():
         assert span is not None
         assert busy.seconds[what] == pytest.approx((span[0], 4.0 * span[1]))
-    assert "all takes up to 4.0 times as long" in busy.basis
+    assert "everything takes up to 4.0 times as long" in busy.basis
     assert "Other work" not in idle.basis
 
 

@@ -99,13 +99,13 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
     assert " cannot be distinguished from the best, with 90 % confidence: impact.speed = 0.1, " in told
     told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=())))
     assert told.startswith(f"One of {allowed} delivery options within ")
-    assert " is better than every other, with 90 % confidence. Most landers are at rest at impact.speed = " in told
+    assert " is better than every other, with 90 % confidence. Most landers come to rest with impact.speed = " in told
 
 
 def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResults, found: dict[str, Any]) -> None:
     assert to_json(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
-    assert "ost landers are at rest at impact.speed = " in found["statement"]
+    assert "ost landers come to rest with impact.speed = " in found["statement"]
     page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     assert "Where to aim" in page
     assert [path.name for path in (results.folder / "report").glob("*_aim.png")]
