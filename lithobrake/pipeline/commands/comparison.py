@@ -172,17 +172,16 @@ def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     if not count:
         return None
     return (
-        f"{count} of {len(used)} beds are not the same in both, as they are poured of other grains or settled under "
-        "another gravity: less cancels between the runs of a pair. Where the grains are the same, give both the same "
-        "bed.settle_gravity."
+        f"{count} of {len(used)} beds differ between the studies (other grains, or settled under another gravity), so "
+        "paired runs are less correlated. If the grains are the same, give both studies the same bed.settle_gravity."
     )
 
 
 def _unlike(one: OneStudy, two: OneStudy, reason: str) -> ValueError:
     return ValueError(
         f"{one.path} ({FIRST}) and {two.path} ({SECOND}) cannot be paired: {reason}; give both the same seed, "
-        "bed.bed_count, bed.width and uncertain inputs (of another range, if need be a narrow one), so that run r of "
-        "both comes down on the same bed at the same place"
+        "bed.bed_count, bed.width and uncertain inputs (their ranges may differ and be narrow), so that run r of "
+        "both lands on the same bed at the same impact point"
     )
 
 

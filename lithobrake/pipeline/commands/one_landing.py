@@ -82,7 +82,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     without soil, or a number that no run of it has.
     """
     if not study.has_soil:
-        raise ValueError("the study has a solver of its own and no soil to land on: ask that solver for its motion")
+        raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
     study = with_site_gravity(study, "the study")
     Soils(Site(study)).refuse("the study")
     values = _values(study, number)
@@ -94,12 +94,12 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     if DrawnDesign(study).is_flown:
         raise ValueError(
             f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
-            "(delivery.states, delivery.release), whose first impact follows from there; change the study file"
+            "(delivery.states, delivery.release), which determine the first impact; change the study file"
         )
     if study.soil and any(key.startswith(GRAIN) for key in changed):
         raise ValueError(
-            f"--set names {', '.join(changed)}; allowed: nothing of grain in a study with [soil], whose touchdowns "
-            "take the soil of where they are; change the study file"
+            f"--set names {', '.join(changed)}; allowed: no key of grain in a study with [soil], whose touchdowns "
+            "take the soil of their region; change the study file"
         )
     _refuse(study, free | changed)
     if study.journey is None:
@@ -169,12 +169,12 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
     """The key and the number of a change. Raises ValueError where it is none."""
     key, sign, text = (part.strip() for part in change.partition("="))
     if not sign:
-        raise ValueError(f"--set is {change!r}; allowed: KEY=VALUE, say grain.friction=0.4")
+        raise ValueError(f"--set is {change!r}; allowed: KEY=VALUE, for example grain.friction=0.4")
     if key not in values:
-        known = f"{closest(key, values)}; it reads {', '.join(values)}"
-        raise ValueError(f"--set names {key!r}, which no landing of this study reads{known}")
+        known = f"{closest(key, values)}; it uses {', '.join(values)}"
+        raise ValueError(f"--set names {key!r}, which no landing of this study uses{known}")
     if not _NUMBER.fullmatch(text):
-        raise ValueError(f"--set {key} is {text!r}; allowed: a number as a study file has it, say 0.4")
+        raise ValueError(f"--set {key} is {text!r}; allowed: a number as in a study file, for example 0.4")
     value = float(text)
     if not math.isfinite(value):
         raise ValueError(f"--set {key} is {value:g}; allowed: a finite number")

@@ -145,8 +145,8 @@ class Landings:
         """Standard deviation of an output of the first level; 1 where it does not vary. Raises ValueError for none."""
         if not np.isfinite(values).any():
             raise ValueError(
-                f"limit_states.{self.name} asks for {output}, which no landing has; let the program that makes the "
-                "touchdowns give it, or ask for another limit state"
+                f"limit_states.{self.name} uses {output}, which no landing has; have the program that simulates the "
+                "touchdowns return it, or choose another limit state"
             )
         return float(np.nanstd(values)) or 1.0
 
@@ -196,8 +196,8 @@ def _limit_state(study: Study, name: str) -> LimitState:
     if words or not state.outputs:
         word = (words or state.fates)[0]
         raise ValueError(
-            f"limit_states.{name} asks for {word}, which is true or false, and levels need a distance from it; ask for "
-            "an output of the touchdown, as in speed_out > 0.1, or read its probability in the summary of the study"
+            f"limit_states.{name} uses {word}, which is true or false, but subset simulation needs a distance from the limit; "
+            "use an output of the touchdown, as in speed_out > 0.1, or read the probability in the summary of the study"
         )
     return state
 
@@ -208,9 +208,9 @@ def _statement(name: str, found: dict[str, Any]) -> str:
     if found["lower"] is not None:
         said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
     if not found["reached"]:
-        said = f"no landing met it down to the last level, which stands for {found['rarest']:.1g} of all landings"
+        said = f"no landing met it down to the last level, a probability of {found['rarest']:.1g}"
     unknown = found["without_known_end"]
-    lost = f"; {unknown} without a known end count as not meeting it" if unknown else ""
+    lost = f"; {unknown} with unknown outcome count as not meeting it" if unknown else ""
     levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
     landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
     why = f" {found['why']}" if found["why"] else ""
@@ -224,6 +224,6 @@ def _few_origins(origins: float, bed_count: int) -> str | None:
         return None
     what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
     return (
-        f"The landings that meet it descend from few {what}, as {origins:.1f} of one size would have it, so the same "
-        f"with another seed may give quite another probability: raise {more}."
+        f"The landings that meet it descend from few {what} (effective number {origins:.1f}), so another seed may give "
+        f"a very different probability: raise {more}."
     )

@@ -78,7 +78,7 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
         raise ValueError("sites follows landers to rest, and the study has no [journey]; add it")
     if study.soil:
         raise ValueError(
-            "sites follows landers by the emulator of the touchdowns, which has one soil for all of the body, and "
+            "sites follows landers by the emulator of the touchdowns, which has one soil for the whole body, but "
             "[soil] gives regions their own; leave [soil] out"
         )
     if study.delivery is not None and study.delivery.is_flown:

@@ -111,7 +111,7 @@ class Descents:
                 f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
                 f"{100.0 * speed.max():.3g} cm/s"
             )
-        words = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "come down on the partner"}
+        words = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
         ends = [f"{number} {words.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
         return "; ".join([said, *ends]) + "."
 

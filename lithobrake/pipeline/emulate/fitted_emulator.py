@@ -37,7 +37,7 @@ def fit_emulator(job: Job) -> None:
     left = int(runs.has_outputs.sum())
     if left < FEWEST:
         raise ValueError(
-            f"{left} of {runs.run_count} runs left the surface, and an emulator needs {FEWEST}; raise design.run_count"
+            f"{left} of {runs.run_count} runs left the surface, but an emulator needs {FEWEST}; raise design.run_count"
         )
     values = {name: runs.inputs[name] for name in job.design.inputs}
     bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
@@ -87,9 +87,9 @@ def _is_kept(job: Job, runs: DesignRuns, bound: EnergyBound) -> bool:
     beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
     if beyond:
         job.say(
-            f"{beyond} of {runs.run_count} runs left with more speed and spin than the energy of their arrival allows, "
-            "so the emulator sets both no limit; look for what gives the lander energy in the program that makes the "
-            "touchdowns, or give lander.inertia"
+            f"{beyond} of {runs.run_count} runs left with more speed and spin than the impact energy allows, so the "
+            "emulator bounds neither; find the source of energy in the program that simulates the touchdowns, or give "
+            "lander.inertia"
         )
     return not beyond
 

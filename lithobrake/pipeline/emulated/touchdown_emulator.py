@@ -37,7 +37,7 @@ OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL = ("impact.", "surface.")
 ONE_SOIL = (
-    "The study has no emulator of its touchdowns: it would have one soil for all of the body, and [soil] gives regions "
+    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
     "their own."
 )
 # How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.

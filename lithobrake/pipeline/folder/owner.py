@@ -23,7 +23,7 @@ def refuse_others_folder(source: StudySource, out: Path) -> None:
         out.resolve() in path.parents for path in (study.resolve(), study.parent.resolve() / study.name)
     ):
         raise ValueError(
-            f"{study} lies in {out}, where its own files would be written over it and what lies beside it; {_ANOTHER}, "
+            f"{study} lies in {out}, where results would overwrite it and its neighbours; {_ANOTHER}, "
             f"such as --out {shlex.quote(str(Path('runs') / study.stem))}"
         )
     strangers = _visible(out)
@@ -32,13 +32,13 @@ def refuse_others_folder(source: StudySource, out: Path) -> None:
     if not any((out / name).is_file() for name in (NAME, LOCK)):
         more = f" and {len(strangers) - 3} more" if len(strangers) > 3 else ""
         raise ValueError(
-            f"{out} holds {', '.join(strangers[:3])}{more}, and no study made it; {_ANOTHER}, one that is empty or is "
-            "not there yet"
+            f"{out} holds {', '.join(strangers[:3])}{more}, and no study made it; {_ANOTHER}, one that is empty or "
+            "does not exist"
         )
     owner, copy = _noted_study(out), out / "study.toml"
     if owner == (study and study.resolve()) or (copy.is_file() and copy.read_bytes() == source.content):
         return
-    unknown = f"does not note which study it is of, and its study.toml is not that of {source.name}"
+    unknown = f"does not record which study it belongs to, and its study.toml is not that of {source.name}"
     whose = f"has the files of another study, {owner}" if owner else unknown
     if study is None:
         raise ValueError(f"{out} {whose}; {_ANOTHER}")

@@ -49,9 +49,7 @@ def read_state(path: Path) -> FolderState:
     command = _command(path, study)
     if not notes.stages:
         reason = "is of an earlier format" if notes.files else "is not there"
-        unknown = (
-            f"{path / NAME} {reason}, so nobody knows which files belong together; have that noted with: {command}"
-        )
+        unknown = f"{path / NAME} {reason}, so it is unknown which files belong together; restore it with: {command}"
         return FolderState(notes, [], unknown, command, None)
     stages = [StageState(0, "", "study file", {STUDY_FILE: _state_of_copy(path, notes.study["sha256"])})]
     for number, (name, stage) in enumerate(notes.stages.items(), start=1):
@@ -71,7 +69,7 @@ def report_page(path: Path) -> tuple[Path, str]:
         raise ValueError(f"{path} has no report; make it with: {state.command}")
     wrong = grouped(state.stages)
     if wrong:
-        words = f"The report is older than the files of the study, or not of them ({wrong}); make it again with:"
+        words = f"The report does not match the files of the study ({wrong}); make it again with:"
         return page, f"{words} {state.command}"
     if state.edited:
         return page, f"{state.edited} was edited after this report was made; bring it up to date with: {state.command}"

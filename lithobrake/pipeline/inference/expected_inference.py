@@ -14,8 +14,8 @@ class ExpectedInput:
     def words(self) -> str:
         """Both in words."""
         after, count = self.left_of_sd.get("1"), self.halved_by
-        first = "" if after is None else f"one leaves {100 * after:.0f} % of its standard deviation; "
-        return first + ("no number that was looked at halves it" if count is None else f"{count:.0f} halve it")
+        first = "" if after is None else f"one bounce leaves {100 * after:.0f} % of its standard deviation; "
+        return first + ("no number that was tried halves it" if count is None else f"{count:.0f} halve it")
 
 
 @dataclass(frozen=True)
@@ -30,5 +30,5 @@ class ExpectedInference:
         """All of it in words, which a person should read before any bounce is looked at."""
         if self.why is not None:
             return [f"Bounces: {self.why}."]
-        first = f"Of bounces whose {', '.join(self.outputs)} are seen, taking the emulator as exact:"
+        first = f"Bounces with observed {', '.join(self.outputs)}, for an exact emulator:"
         return [first, *(f"  {name}: {one.words()}" for name, one in self.inputs.items())]

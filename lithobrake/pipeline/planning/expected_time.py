@@ -97,8 +97,8 @@ def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended:
     slower = busy_factor()
     if slower > 1.0:
         said += (
-            f". Other work is on these cores (load {_load():.1f} on {available_cores()}): while it lasts, everything takes up "
-            f"to {slower:.1f} times as long, which the upper ends include"
+            f". Other work is on these cores (load {_load():.1f} on {available_cores()}): while it lasts, everything "
+            f"takes up to {slower:.1f} times as long, which the upper ends include"
         )
     return f"{said}."
 

@@ -63,10 +63,10 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
     """What observed bounces would say, or what is to be run before that can be told."""
     why = None
     if study.design.method == "paper":
-        why = 'what they would say is told by an emulator, which design.method = "drawn" makes'
+        why = 'their information follows from an emulator, which needs design.method = "drawn"'
     elif EMULATOR in plan.stages:
         why = (
-            "what they would say is told by the emulator, which is not there yet; make it with: "
+            "their information follows from the emulator, which does not exist yet; make it with: "
             f"{shlex.join(['lithobrake', 'run', str(path), '--out', plan.folder])}"
         )
     return ExpectedInference((), {}, why) if why else InferredStudy.open(Path(plan.folder)).plan()

@@ -24,7 +24,7 @@ def why_no_soil(study: Study) -> str | None:
         return None
     return (
         f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the runs do not "
-        "tell of the impacts after the first; give it a distribution that reaches over the impacts to come"
+        "cover later impacts; give it a distribution that covers them"
     )
 
 

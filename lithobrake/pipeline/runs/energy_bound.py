@@ -120,8 +120,8 @@ def energy_warning(design: DrawnDesign, records: "Sequence[Record]", bed_height:
     worst = int(np.argmax(ratio))
     speeds = f"{speed[worst]:.3g} m/s after {inputs['impact.speed'][worst]:.3g} m/s"
     return (
-        f"{int(over.sum())} of {len(left)} landers that left have more energy than impact and gravity give them, the "
-        f"worst {ratio[worst]:.3g} times as much ({speeds}): is there a source of energy, or a unit wrong?"
+        f"{int(over.sum())} of {len(left)} landers that left have more energy than impact and gravity provide, at most "
+        f"{ratio[worst]:.3g} times as much ({speeds}): check for a source of energy or a wrong unit"
     )
 
 

@@ -54,9 +54,7 @@ def land_tellingly(job: Job) -> None:
     row = telling_run(runs)
     ended = _land(job, job.design.rows[row], TELLING, run=runs.keys[row])
     if ended != runs.outcomes[row]:
-        job.say(
-            f"the landing that is shown, run {runs.keys[row][:8]}, ended as {ended} here: {runs.outcomes[row]} as a run"
-        )
+        job.say(f"the landing shown, run {runs.keys[row][:8]}, ended as {ended} here: {runs.outcomes[row]} as a run")
 
 
 def telling_run(runs: DesignRuns) -> int:

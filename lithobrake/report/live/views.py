@@ -25,7 +25,7 @@ LARGEST = 32767
 # Speeds and forces are told apart over so many decades below the largest.
 DECADES = 4.0
 SHADE_UNITS = {"speed": "m/s", "force": "N"}
-SHADE_WORDS = {"speed": "speed", "force": "the size of the sum of contact forces"}
+SHADE_WORDS = {"speed": "speed", "force": "net contact force"}
 # A view takes in a sphere when its middle is so many radii away.
 AWAY = 4.2
 
@@ -51,10 +51,10 @@ def _landing(shown: Scene, which: str) -> LiveSection:
 def landing_words(shown: Scene, arrays: Mapping[str, np.ndarray], facts: Mapping[str, Any]) -> str:
     """What a view of a landing shows, and how exactly."""
     quantum = 1e3 * float(arrays["quanta"].max())
-    images = "" if shown.box is not None else ", images of the ground that repeats among them,"
+    images = "" if shown.box is not None else ", periodic images included,"
     names = " or ".join(SHADE_WORDS[one["name"]] for one in facts["shades"])
     return (
-        f"{len(shown.moving.vertices) - 1} grains{images} and the lander (blue) in {len(shown.moving.time)} pictures, "
+        f"{len(shown.moving.vertices) - 1} grains{images} and the lander (blue) in {len(shown.moving.time)} frames, "
         f"interpolated linearly, on a floor with a grid of {number(facts['grid'], 2)} m. Positions are rounded to "
         f"{number(quantum, 2)} mm, those of grains that hardly move more finely. Colour of the grains: {names}, on a "
         "logarithmic scale."

@@ -65,7 +65,7 @@ def landing_plots(data: RunsPage) -> list[Plot]:
     return [
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
         Plot("runs", "Rebounds of the landings", words.runs(data), lambda: _runs(data)),
-        Plot("variance", "What decides", words.variance(data), lambda: _variance(data)),
+        Plot("variance", "Sources of variance", words.variance(data), lambda: _variance(data)),
     ]
 
 

@@ -14,10 +14,9 @@ from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 LONG = 15
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "pages/page.js"
-NO_SCRIPT = '<noscript><p class="warning">What follows needs JavaScript, which does not run here.</p></noscript>\n'
+NO_SCRIPT = '<noscript><p class="warning">The parts below need JavaScript, which is not running here.</p></noscript>\n'
 FOOTER = (
-    "<footer>Written by lithobrake from the files of the results that it names. SI units; degrees where a label says "
-    "so.</footer>"
+    "<footer>Written by lithobrake from the result files named above. SI units; degrees where a label says so.</footer>"
 )
 HINT = '<p class="note hint">Click or tap a figure to enlarge it; click again or press Esc to return.</p>\n'
 
@@ -115,7 +114,7 @@ def _opening(section: PageSection) -> str:
 
 def _section(section: PageSection, figures: Mapping[str, str]) -> str:
     """What stands under the heading of a section; nothing for an empty one."""
-    said = "".join(f"<p>{escape(sentence)}</p>\n" for sentence in section.said)
+    said = "".join(f"<p>{_unbroken(sentence)}</p>\n" for sentence in section.said)
     shown = "".join(figures.get(plot.name, "") for plot in section.plots)
     tables = "".join(_table(table) for table in sorted(section.tables, key=_is_long) if table.rows)
     return said + shown + tables + _live(section.live) + "".join(_text(*one) for one in section.texts.items())

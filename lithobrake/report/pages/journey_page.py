@@ -73,9 +73,14 @@ def _when(data: JourneyPage) -> PageSection:
 def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
     """The parts of the variance, the sides of the lander, and the delivery options, as far as they are known."""
     aim, variance = data.results.aim, found["variance"]
-    first = Plot("variance", "What decides the first touchdown", words.first_variance(data), variance.draw)
+    first = Plot("variance", "Sources of variance at the first touchdown", words.first_variance(data), variance.draw)
     plots = [
-        Plot("end_variance", "What decides the ends", words.end_variance(data), lambda: _draw_ends(data)),
+        Plot(
+            "end_variance",
+            "Sources of variance of outcome, time and distance",
+            words.end_variance(data),
+            lambda: _draw_ends(data),
+        ),
         first,
     ]
     if aim is not None:
@@ -108,7 +113,7 @@ def _appendix(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
 
 def _of_first(found: Mapping[str, Plot], name: str) -> Plot:
     """A figure of a drawn study that is of first touchdowns here; found: those of a drawn study, by name."""
-    return Plot(name, OF_FIRST[name], words.of_first_touchdown(found[name].sentence), found[name].draw)
+    return Plot(name, OF_FIRST[name], found[name].sentence, found[name].draw)
 
 
 def place_map(data: JourneyPage) -> PlaceMap:

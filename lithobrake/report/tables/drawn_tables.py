@@ -38,7 +38,7 @@ def tiles(data: DrawnPage) -> list[Tile]:
     """The return fraction, and the most informative numbers beside it."""
     results, returns = data.results, data.results.returns
     digits = interval_digits(returns.lower, returns.upper)
-    alone = "of these landings, without an interval: other beds, impact points or attitudes give another figure"
+    alone = "of these landings, without an interval: other beds, impact points or attitudes would change this number"
     sure = f"({interval(returns, data.level)})" if has_interval(data) else alone
     share = percent(returns.share, digits).removesuffix(" %")
     found = [Tile(share, "%", f"of the landings {action(data)} {sure}"), *_at_rest(data)]
@@ -69,7 +69,7 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
     for ground, table in found.items():
         share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED]).partition(" %")
         unknown = table.outcomes[JourneyStatus.OUTSIDE].share
-        lost = f"; outcome of {percent(unknown)} unknown" if unknown > 0.0 else ""
+        lost = f"; {percent(unknown)} have an unknown outcome" if unknown > 0.0 else ""
         return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
     return []
 
@@ -138,10 +138,10 @@ def _outputs(data: RunsPage) -> PageTable:
     speed = data.results.spreads.get("speed_out")
     of = "the landings that left" if speed is None else speed.of
     note = (
-        f"Of {of}, over the input distributions, on beds, impact points and attitudes that were not in the study. In "
+        f"Of {of}, over the input distributions and for beds, impact points and attitudes outside the study. In "
         f"brackets {percent(data.level)} intervals."
         if has_interval(data)
-        else f"Of {of}, without intervals: other beds, impact points or attitudes give other numbers."
+        else f"Of {of}, without intervals: other beds, impact points or attitudes would change these numbers."
     )
     return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
 
@@ -181,7 +181,7 @@ def _variance(data: RunsPage) -> PageTable:
     inputs = list(dict.fromkeys(name for record in known for name in record.soil_by_input))
     names = [name for name in PART_WORDS if name != "soil" and any(name in one.parts for one in known)]
     heads = ["soil, at least", "with ranges twice as wide, at least"]
-    heads += [f"of it {input_words(name)} alone" for name in inputs]
+    heads += [f"of this, {input_words(name)} alone" for name in inputs]
     heads += [long_part_words(known[0], name) for name in names]
     rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
     note = (
@@ -224,7 +224,7 @@ def _runs(data: RunsPage) -> PageTable:
     aside, count = (
         ("left the surface across the edge of the bed", runs.over_rim)
         if far is None
-        else ("travelled farther in contact than the period of the bed, over ground that they disturbed", far)
+        else ("travelled more than one period of the bed in contact, over ground already disturbed", far)
     )
     rows.append([f"({aside})", str(count), percent(count / total)])
     note = " ".join(filter(None, [f"On {runs.beds} beds.", missing_sentence(data)]))
@@ -248,8 +248,8 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     columns = ["output", "total effect of the soil", "standard deviation by chaos", "unit"]
     note = (
         f"{side.soil_pairs} runs were repeated on a second soil, {side.twins} with an impact point "
-        f"{number(1e3 * side.twin_shift)} mm away. Total effect: the share of the variance that goes "
-        f"with the soil at a fixed bed, impact point and attitude. In brackets {percent(data.level)} "
+        f"{number(1e3 * side.twin_shift)} mm away. Total effect: the share of the variance due "
+        f"to the soil at a fixed bed, impact point and attitude. In brackets {percent(data.level)} "
         "intervals."
     )
     return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))

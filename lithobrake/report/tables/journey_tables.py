@@ -26,15 +26,16 @@ def tiles(data: JourneyPage) -> list[Tile]:
     other = max(others, key=lambda name: (others[name].share, others[name].upper or 0.0))
     found = [_end_tile(name, ends[name], count) for name in (JourneyEnd.AT_REST, other)]
     rest, (size, unit) = data.at_rest, time_unit(data)
-    found.append(_quantile_tile(rest.time_s, unit, "to rest, in the median", size))
-    found.append(_quantile_tile(rest.distance_m, "m", "from the aim point, in the median"))
+    found.append(_quantile_tile(rest.time_s, unit, "median time to rest", size))
+    found.append(_quantile_tile(rest.distance_m, "m", "median distance from the aim point"))
     if rest.regions:
         large = rest.regions[-1]
-        words = f"hold {percent(large.share)} of those at rest; {number(large.largest_extent_m, 2)} m across"
+        words = f"smallest region with {percent(large.share)} of those at rest; "
+        words += f"{number(large.largest_extent_m, 2)} m across"
         value, _, unit = area(large.area_m2).rpartition("\N{NO-BREAK SPACE}")
         found.append(Tile(value, unit, words))
     else:
-        found.append(_quantile_tile(rest.contacts, "contacts", "with the ground, in the median"))
+        found.append(_quantile_tile(rest.contacts, "contacts", "median number of contacts"))
     return found
 
 
@@ -50,7 +51,7 @@ def _quantile_tile(found: RestQuantiles, unit: str, words: str, size: float = 1.
     """A median with its interval, and the 95th percentile."""
     value, _, ends = quantile_words(found.median, size).partition(" ")
     most = quantile_words(found.q95, size).partition(" ")[0]
-    return Tile(value, unit, f"{words} {ends}; 95 %: {most} {unit}".replace("  ", " "))
+    return Tile(value, unit, f"{words} {ends}; 95 % within {most} {unit}".replace("  ", " "))
 
 
 def place_tables(data: JourneyPage) -> list[PageTable]:
@@ -73,7 +74,7 @@ def _numbers(data: JourneyPage) -> PageTable:
     ]
     if rest.tilt_deg is not None:
         rows.append(_row("tilt of the side that is down [deg]", rest.tilt_deg))
-    note = f"Of {rest.of}; in brackets {percent(LEVEL)} intervals."
+    note = f"From {rest.of}; in brackets {percent(LEVEL)} intervals."
     if rest.faces:
         sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
         note += f" Side down: {', '.join(f'{name} {with_interval(one)}' for name, one in sides)}."
@@ -113,8 +114,8 @@ def _sky(data: JourneyPage) -> PageTable:
             f"{dark[0]} on {with_interval(dark[1])}" if dark else "",
         ])  # fmt: skip
     note = (
-        "Of the landers at rest, over a day of the body, over the dates of the study, or over the places of the "
-        f"orbiter; hidden by the ground, by the rest of the shape and by a partner. In brackets {percent(LEVEL)} "
+        "Of the landers at rest, over a day of the body, the dates of the study, or the positions of the orbiter; "
+        f"occultation by the ground, the rest of the shape and a partner included. In brackets {percent(LEVEL)} "
         "intervals."
     )
     return PageTable("What they see from there", columns, rows, note, frozenset(columns[1:]))
@@ -135,7 +136,7 @@ def _delivery(data: JourneyPage) -> PageTable:
     note = f"{found.count} of {found.of} landers touch down."
     for one in found.regions:
         note += (
-            f" The smallest region with {percent(one.share)} of the first impacts has {area(one.area_m2)} and "
+            f" The smallest region with {percent(one.share)} of the first impacts covers {area(one.area_m2)} and "
             f"is {number(one.largest_extent_m, 2)} m across."
         )
     return PageTable("How they are delivered", columns, rows, note, frozenset(columns[1:]))
@@ -172,7 +173,7 @@ def soil_tables(data: JourneyPage) -> list[PageTable]:
         for name, one in data.results.soils.items()
     ]  # fmt: skip
     note = (
-        "By the region of the study file in which a lander comes down; elsewhere the soil is that of [grain]. In "
+        "By the region of the study file in which a lander lands; elsewhere the soil is that of [grain]. In "
         f"brackets {percent(LEVEL)} intervals, of each region by itself."
     )
     return [PageTable("By soil", columns, rows, note, frozenset(columns[1:]))] if rows else []

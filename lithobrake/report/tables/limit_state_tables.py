@@ -9,7 +9,7 @@ from lithobrake.report.words.numbers import fixed, number, table_cell
 from lithobrake.results.limit_state_results import LimitStateResult
 from lithobrake.vocabulary.percentages import percent
 
-SOURCES = {"runs": "runs", "emulator": "emulator: too few runs meet it"}
+SOURCES = {"runs": "runs", "emulator": "emulator, since too few runs meet it"}
 
 
 def limit_state_tables(data: DrawnPage) -> list[PageTable]:

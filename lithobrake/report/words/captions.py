@@ -14,6 +14,7 @@ from lithobrake.vocabulary.percentages import percent, with_interval
 
 BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
+WHOLE_WORDS = {"impact.speed": "impact speed"}
 POINT_WORDS = {
     "smolyak": "on the Smolyak grid",
     "sobol_sequence": "of a Sobol sequence",
@@ -24,6 +25,8 @@ POINT_WORDS = {
 
 def input_words(name: str) -> str:
     """An input in words, without unit: "restitution of the grains"."""
+    if name in WHOLE_WORDS:
+        return WHOLE_WORDS[name]
     section, _, field = name.partition(".")
     if part := re.fullmatch(PART_KEY, name):
         return f"{FIELD_WORDS.get(part['key'], part['key'].replace('_', ' '))} of {part['part']}"

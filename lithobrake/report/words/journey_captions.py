@@ -43,11 +43,6 @@ def journey_warnings(data: JourneyPage) -> list[str]:
     ]
 
 
-def of_first_touchdown(sentence: str) -> str:
-    """A caption that is about the first touchdown; empty stays empty."""
-    return f"{FIRST}. {sentence}" if sentence else ""
-
-
 def has_places(data: JourneyPage) -> bool:
     """Whether any lander ended on the ground of the body."""
     return any(data.ends[end].count for end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY))
@@ -60,7 +55,9 @@ def rest_map(data: JourneyPage) -> str:
     rest, said = data.at_rest, []
     if rest.regions:
         areas = " and ".join(f"{percent(one.share)} ({area(one.area_m2)})" for one in rest.regions)
-        said.append(f"Smallest regions that hold {areas} of the landers at rest, by a density fitted to their places.")
+        said.append(
+            f"Smallest regions that hold {areas} of the landers at rest, from a density fitted to their positions."
+        )
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     said += _delivery(data)
@@ -153,7 +150,7 @@ def first_variance(data: JourneyPage) -> str:
     """The figure of the parts of the variance; empty where it has none."""
     if not any(data.results.variance_shares.values()):
         return ""
-    said = of_first_touchdown(variance(data))
+    said = variance(data)
     correlations = (data.study.get("delivery") or {}).get("correlations") or ()
     pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
     if pairs:

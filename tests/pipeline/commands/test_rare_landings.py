@@ -159,8 +159,8 @@ def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> Non
     ("name", "count", "words"),
     [
         ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
-        ("gone", 200, r"limit_states\.gone asks for returns, which is true or false"),
-        ("hard", 20, r"limit_states\.hard asks for peak_acceleration, which no landing has"),
+        ("gone", 200, r"limit_states\.gone uses returns, which is true or false"),
+        ("hard", 20, r"limit_states\.hard uses peak_acceleration, which no landing has"),
         ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
     ],
 )

@@ -82,7 +82,7 @@ def test_the_ground_of_a_landing_has_a_floor_with_a_grid_of_round_meshes() -> No
 
 def test_the_page_says_how_far_places_are_rounded(paper: PaperPage) -> None:
     (landing,), (body,) = landing_views(paper), body_views(paper)
-    assert "12 grains and the lander (blue) in 8 pictures" in landing.html
+    assert "12 grains and the lander (blue) in 8 frames" in landing.html
     assert "Positions are rounded to" in landing.html
     assert 'id="body-3d-data"' in body.html
     assert f"the first {len(paper.paths[1])} flights, relative to the rotating body" in body.html
