@@ -79,9 +79,9 @@ def run(
 def _say_solver(command: str | None, shown: Progress) -> None:
     """Say which program or server of the user's the runs ask, if any."""
     if command:
-        what = "model of a server, which every run that is still to be made asks"
+        what = "model of a server, which every remaining run calls"
         if not command.startswith(PREFIX):
-            what = "program, which every run that is still to be made starts"
+            what = "program, which every remaining run starts"
         shown.say(f"This study names a {what}: {command}")
 
 

@@ -62,7 +62,7 @@ def told(study: tuple[Told, list[str]]) -> Told:
 
 def test_the_program_of_a_study_is_named_before_anything_starts_it(study: tuple[Told, list[str]]) -> None:
     (said,) = study[1]
-    assert said.endswith(f"every run that is still to be made starts: {PYTHON} {PROGRAM}")
+    assert said.endswith(f"every remaining run starts: {PYTHON} {PROGRAM}")
 
 
 @pytest.mark.parametrize("stage", list(WORKS))

@@ -196,7 +196,7 @@ def _limit_state(study: Study, name: str) -> LimitState:
     if words or not state.outputs:
         word = (words or state.fates)[0]
         raise ValueError(
-            f"limit_states.{name} uses {word}, which is true or false, but subset simulation needs a distance from the limit; "
+            f"limit_states.{name} uses {word}, which is true or false, but subset simulation needs a distance; "
             "use an output of the touchdown, as in speed_out > 0.1, or read the probability in the summary of the study"
         )
     return state

@@ -84,7 +84,7 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
     if study.delivery is not None and study.delivery.is_flown:
         raise ValueError(
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
-            "say instead how they arrive there (delivery.speed, delivery.incidence_deg)"
+            "give the arrival conditions there instead (delivery.speed, delivery.incidence_deg)"
         )
     if lander_count < 2 * REFIT_COUNT or lander_count % REFIT_COUNT:
         raise ValueError(

@@ -86,7 +86,7 @@ class DrawnDesign:
             raise StudyError(
                 [
                     f"[delivery]: none of {len(self.beds)} landers reaches the ground within journey.duration; "
-                    "allowed: states of which at least one does; mend them, or raise the duration"
+                    "allowed: states of which at least one does; correct them, or raise the duration"
                 ]
             )
         return found

@@ -20,7 +20,7 @@ from lithobrake.results.intact import KEYS
 
 NAME = KEYS
 FORMAT_VERSION = 2
-REMEDY = "have the files of this folder made again with: lithobrake run STUDY.toml --out DIR"
+REMEDY = "make the files of this folder again with: lithobrake run STUDY.toml --out DIR"
 _FORM = {
     "study": {"file": str, "sha256": str},
     "stages": {str: {"title": str, "key": str, "files": [str]}},

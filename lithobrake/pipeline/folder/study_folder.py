@@ -23,7 +23,7 @@ from lithobrake.pipeline.folder.notes import Notes
 from lithobrake.results.intact import LOCK
 
 # Files are looked at before they are read, so this is said where one changed within the moment between.
-AGAIN = "give the same command again, and it is made anew"
+AGAIN = "give the same command again to remake it"
 
 
 class FileState(StrEnum):
@@ -89,7 +89,7 @@ class StudyFolder:
         study: its file, None where it has none.
         """
         try:
-            notes = Notes.read(self.path, "so the files that it vouched for are made again")
+            notes = Notes.read(self.path, "so its files are made again")
         except DamagedFileError as error:
             say(f"{error}.")
             notes = Notes()

@@ -53,7 +53,7 @@ def outcome_model(job: Job) -> "OutcomeModel":
     names = tuple(TouchdownOutcome)
     ended = np.isin(outcomes, names)
     if not ended.any():
-        raise ValueError("every run has failed (runs.sqlite has the reasons); mend what they name")
+        raise ValueError("every run has failed (runs.sqlite has the reasons); remove their cause")
     return OutcomeModel(inputs, x[ended], [outcome for outcome in outcomes if outcome in names], names)
 
 

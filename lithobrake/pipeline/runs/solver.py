@@ -117,7 +117,7 @@ def refuse_contradictions(what: str, outputs: Mapping[str, float]) -> None:
     if outputs["velocity_out_z"] <= 0.0:
         raise ValueError(
             f"{what} has the outcome clear and a velocity_out_z of {outputs['velocity_out_z']:g} m/s; a lander "
-            "that leaves moves outwards, along +z: turn the axis round, or name another outcome"
+            "that leaves moves outwards, along +z: reverse the axis, or give another outcome"
         )
     if outputs["spin_out"] < 0.0:
         raise ValueError(f"{what} has a spin_out of {outputs['spin_out']:g} rad/s; it is a size: at least 0")
@@ -128,7 +128,7 @@ def refuse_contradictions(what: str, outputs: Mapping[str, float]) -> None:
             raise ValueError(
                 f"{what} has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from "
                 f"{'spin' if name == 'spin_out' else 'velocity'}_out_x, _y and _z (SI, angles in rad): leave it out, "
-                "or mend one of them"
+                "or correct one of them"
             )
 
 

@@ -141,8 +141,7 @@ def test_damaged_keys_are_told_and_noted_anew(tmp_path: Path) -> None:
     said: list[str] = []
     folder.begin(study, study.read_bytes(), STAGES, said.append)
     assert said == [
-        f"{folder / 'keys.json'} cannot be read (files is 3, not of type dict); so the files that it vouched for are "
-        "made again."
+        f"{folder / 'keys.json'} cannot be read (files is 3, not of type dict); so its files are made again."
     ]
     assert not folder.is_current(["scores.json"], "key")
 

@@ -272,7 +272,7 @@ def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -
     (home / "out" / "keys.json").write_text("")
     said = run(home)
     assert f"{home / 'out' / 'keys.json'} cannot be read (" in said
-    assert "so the files that it vouched for are made again" in said
+    assert "so its files are made again" in said
     assert said_by("status", home).splitlines()[1].startswith("11 of 11 stages are current")
 
 
