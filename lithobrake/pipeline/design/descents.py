@@ -199,8 +199,8 @@ def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequen
             raise StudyError(
                 [
                     f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
-                    "from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower the "
-                    "spread"
+                    "from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
+                    "the spread"
                 ]
             )
 
