@@ -33,7 +33,7 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
         PageSection(
             "Study files",
             tables=[_settings(comparison)],
-            said=[] if comparison.settings else ["They do not differ in any key."],
+            said=[] if comparison.settings else ["The study files agree in every key."],
             texts={f"The study file of {letter}": text for letter, text in zip("AB", texts, strict=True)},
         ),
     ]
@@ -106,12 +106,12 @@ def _table(comparison: StudyComparison) -> PageTable:
     ]
     columns = ["answer", "A", "B", "B minus A", "pairs", "correlation", "landings saved"]
     note = (
-        f"With {percent(comparison.level)} intervals. Correlation: of the two runs of a pair. Landings saved: how many "
-        "times the landings an unpaired comparison takes for an interval as narrow."
+        f"With {percent(comparison.level)} intervals. Correlation: of the two runs of a pair. Landings saved: factor "
+        "by which an unpaired comparison needs more landings for the same interval."
     )
     return PageTable("Answers", columns, rows, note, numbers=frozenset(columns[4:]))
 
 
 def _settings(comparison: StudyComparison) -> PageTable:
     rows = [[name, *values] for name, values in comparison.settings.items()]
-    return PageTable("What differs in the study files", ["key", "A", "B"], rows)
+    return PageTable("Differences between the study files", ["key", "A", "B"], rows)

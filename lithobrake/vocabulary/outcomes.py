@@ -41,16 +41,16 @@ class SampleOutcome(_Ending):
     CAPTURED = TouchdownOutcome.CAPTURED.texts
     LEFT_SIDEWAYS = TouchdownOutcome.LEFT_SIDEWAYS.texts
     TIME_LIMIT = TouchdownOutcome.TIME_LIMIT.texts
-    OUTSIDE = "outside", "The elevation was drawn outside 0 to 90 deg.", "drawn outside 0 to 90 deg"
+    OUTSIDE = "outside", "The sampled elevation was outside 0 to 90 deg.", "sampled outside 0 to 90 deg"
 
 
 class FlightStatus(_Ending):
     """How a flight ended."""
 
-    FLYING = "flying", "The lander still flew when the time was over."
-    IMPACT = "impact", "The lander came down on the body."
+    FLYING = "flying", "The lander was still in flight at the time limit."
+    IMPACT = "impact", "The lander hit the body."
     ESCAPED = "escaped", "The lander left for good: far out, moving outwards, with positive two-body energy."
-    PARTNER = "partner", "The lander came down on the partner of the body."
+    PARTNER = "partner", "The lander hit the partner of the body."
 
 
 class JourneyStatus(_Ending):
@@ -58,11 +58,11 @@ class JourneyStatus(_Ending):
 
     SETTLED = "settled", "The lander came to rest where gravity, rotation and friction together hold it."
     LOFTED = "lofted", "The lander was captured where gravity and rotation together push it outwards."
-    OUTSIDE = "outside", "The model of the bounce does not know the impact, and the journey stops there."
+    OUTSIDE = "outside", "The impact is outside the range of the bounce model, and the journey stops there."
     FLYING = FlightStatus.FLYING.texts
     ESCAPED = FlightStatus.ESCAPED.texts
-    PARTNER = FlightStatus.PARTNER.value, "The lander came down on the partner, where no bounce is followed."
-    SLIDING = "sliding", "The lander still slid along the ground when the time was over."
+    PARTNER = FlightStatus.PARTNER.value, "The lander hit the partner, where no bounce is followed."
+    SLIDING = "sliding", "The lander was still sliding at the time limit."
     BOUNCING = "bouncing", "The largest number of bounces did not bring the lander to rest."
 
 
@@ -72,5 +72,5 @@ class JourneyEnd(_Ending):
     AT_REST = "at_rest", "The lander rests where the ground holds it.", "at rest"
     ESCAPED = "escaped", FlightStatus.ESCAPED.sentence, "escaped"
     PARTNER = "partner", FlightStatus.PARTNER.sentence, "on the partner"
-    UNDER_WAY = "under_way", "The lander was still under way when the time was over.", "under way"
+    UNDER_WAY = "under_way", "The lander was still under way at the time limit.", "under way"
     FAILED = "failed", "A landing or flight of the journey failed.", "failed"

@@ -24,7 +24,7 @@ def rare_figure(rare: Mapping[str, RareLimitState]) -> Figure:
     axes.set_yscale("log")
     axes.invert_xaxis()
     axes.set_xlabel("distance from the limit [standard deviations of the first level]")
-    axes.set_ylabel("probability to be nearer")
+    axes.set_ylabel("probability of a smaller distance")
     axes.grid(visible=True, axis="y")
     axes.legend(frameon=False, loc="lower left")
     return figure

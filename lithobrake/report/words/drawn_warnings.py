@@ -83,7 +83,7 @@ def _few_beds(data: RunsPage) -> str:
     if not has_interval(data) or beds >= FEW_BEDS:
         return ""
     return (
-        f"The study has {beds} beds: its intervals are wide, and the variance between beds is hardly known. Set "
+        f"The study has only {beds} beds: intervals are wide, and the variance between beds is poorly known. Set "
         f"bed.bed_count to {FEW_BEDS} or more."
     )
 
