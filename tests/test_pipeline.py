@@ -236,7 +236,7 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
     found = return_fraction(study, table, 40)
     assert (found.lower, found.upper, found.next_bed, found.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why
-    assert found.from_ == "4 samples of an expansion of 40 landings on 1 bed"
+    assert found.from_ == "4 samples of an expansion fitted to 40 landings on 1 bed"
     assert found.missing == 0.0
     assert found.if_missing == (1.0, 1.0)
 

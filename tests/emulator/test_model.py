@@ -92,7 +92,7 @@ def test_a_law_is_followed_and_said() -> None:
     )
     assert medians[1] > medians[0] + 0.2
     assert fitted().follows_inputs
-    assert "better" in fitted().statement
+    assert "improve the energy score" in fitted().statement
 
 
 def test_without_a_law_draws_are_runs() -> None:
@@ -100,7 +100,7 @@ def test_without_a_law_draws_are_runs() -> None:
     x, y = rng.random((150, 2)), rng.standard_normal(150)
     model = emulator.fit(INPUTS, x, y)
     assert not model.follows_inputs
-    assert "drawing one of the 150 runs" in model.statement
+    assert "resampling the 150 runs" in model.statement
     drawn = model.sample([[0.1, 0.1], [0.9, 0.9]], 20_000)
     assert abs(drawn[0].mean() - drawn[1].mean()) < 5.0 * np.sqrt(2.0 / 20_000)
     assert abs(drawn.std() - y.std()) < 0.02
@@ -119,7 +119,7 @@ def test_a_gain_within_its_standard_error_is_no_law() -> None:
     assert "The inputs do not improve the prediction" in luck.statement_on("beds")
     assert law.follows_inputs
     assert law.scores.gain > law.scores.gain_error > 0.0
-    assert "4.5 % better (standard error 4.0)" in law.statement
+    assert "improve the energy score by 4.5 % (standard error 4.0 %)" in law.statement
 
 
 def test_refits_differ_by_whole_groups() -> None:

@@ -139,7 +139,7 @@ def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperPage, paper_page
     symmetric = replace(samples, outputs={**samples.outputs, "velocity_out_y": across})
     found = replace(paper, results=replace(paper.results, monte_carlo=symmetric))
     table = table_of(found, "Outputs of the samples that leave")
-    assert next(row for row in table.rows if row[0] == "velocity across y")[2:] == ["0"] * 5
+    assert next(row for row in table.rows if row[0] == "rebound velocity along y")[2:] == ["0"] * 5
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,7 @@ def test_beds_that_differ_are_named(pair: tuple[Path, Path]) -> None:
     one, two = (replace(OneStudy.open(pair[0]), results=WithBeds(height)) for height in (0.3, 0.31))
     used = np.arange(3)
     assert _other_beds(one, one, used) is None
-    assert "1 of 3 beds are not the same in both" in (_other_beds(one, two, used) or "")
+    assert "1 of 3 beds differ between the studies" in (_other_beds(one, two, used) or "")
     assert _other_beds(OneStudy.open(pair[0]), OneStudy.open(pair[1]), used) is None
 
 

@@ -111,7 +111,7 @@ def test_the_interval_holds_a_probability_that_is_known_under_noise(folder: Path
 def test_few_beds_that_led_to_all_of_it_are_warned_of(folder: Path) -> None:
     found = json.loads((folder / "rare_fast.json").read_text(encoding="utf-8"))
     assert 1.0 <= found["origins"] < 3.0
-    assert f"descend from few beds, as {found['origins']:.1f} of one size would have it" in found["warning"]
+    assert f"descend from few beds (effective number {found['origins']:.1f})" in found["warning"]
     assert found["statement"].endswith("raise bed.bed_count.")
 
 
@@ -127,8 +127,8 @@ def test_one_that_is_stopped_ends_with_the_same_bits_and_makes_no_landing_twice(
     after = ended()
     assert {key: after[key] for key in before} == before
     assert (tmp_path / "out" / "rare_fast.json").read_bytes() == (folder / "rare_fast.json").read_bytes()
-    assert f"{len(before)} of {found['landings']} landings were known and are reused" in shown.said
-    assert any("chance of its own" in sentence for sentence in shown.said)
+    assert f"{len(before)} of {found['landings']} landings are known and reused" in shown.said
+    assert any("random beyond its inputs" in sentence for sentence in shown.said)
 
 
 def test_its_landings_are_counted_as_what_they_are(folder: Path) -> None:
@@ -143,7 +143,7 @@ def test_its_landings_are_counted_as_what_they_are(folder: Path) -> None:
 def test_landings_without_a_known_end_are_counted_and_said(tmp_path: Path) -> None:
     found = rare(tmp_path / "out", model=NoisyLander(lost=True), landing_count=50)
     assert 0.05 < found["without_known_end"] / found["landings"] < 0.2
-    assert "without a known end count as not meeting it" in found["statement"]
+    assert "with unknown outcome count as not meeting it" in found["statement"]
 
 
 def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> None:
@@ -152,7 +152,7 @@ def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> Non
     assert found["levels"] <= 6
     assert found["inputs"]["grain.friction"]["median"] is None
     assert found["landings"] <= 20 + 6 * 18
-    assert "no landing met it down to the last level, which stands for" in found["statement"]
+    assert "no landing met it down to the last level, a probability of" in found["statement"]
 
 
 @pytest.mark.parametrize(

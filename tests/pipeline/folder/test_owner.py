@@ -118,7 +118,7 @@ def test_a_folder_of_the_first_format_or_with_damaged_keys_goes_on_with_its_stud
     begun(study, tmp_path / "out")
     (tmp_path / "out" / "keys.json").write_text(keys)
     write_study(study, "seed = 2")
-    assert "does not note which study it is of" in refusal(study, tmp_path / "out")
+    assert "does not record which study it belongs to" in refusal(study, tmp_path / "out")
     shutil.copy(study, tmp_path / "out" / "study.toml")
     begun(study, tmp_path / "out")
 

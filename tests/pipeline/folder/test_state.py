@@ -100,7 +100,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     refused = said_by("report", home, code=2)
     assert "of an earlier setting or version: designs/refined.csv, refined.json, " in refused
     assert f"lithobrake run {home / 'ball.toml'} --out {home / 'out'}" in refused
-    assert "older than the files of the study" in said_by("view", home)
+    assert "does not match the files of the study" in said_by("view", home)
 
 
 def test_edited_and_swapped_files_are_named_and_not_reported_on(home: Path) -> None:

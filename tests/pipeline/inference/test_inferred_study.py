@@ -140,7 +140,7 @@ def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_name_and_v
     assert said.stderr.startswith(
         f"{old / 'emulator.json'} has an emulator of an earlier version (format 1, lithobrake "
     )
-    assert "made again with: lithobrake run STUDY.toml" in said.stderr
+    assert "again with: lithobrake run STUDY.toml" in said.stderr
     assert len(said.stderr.splitlines()) == 1
 
 

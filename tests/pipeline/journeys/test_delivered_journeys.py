@@ -102,7 +102,7 @@ def test_the_delivery_stands_in_summary_page_and_status(flown: tuple[StudyResult
     assert found.descent_s[1] > 0.0
     assert [one.share for one in found.ellipse.shares] == [0.5, 0.95]
     page = (results.folder / "report" / "index.html").read_text()
-    assert "Blue: the same regions for the first impacts" in page
+    assert "Blue: the same for the first impacts" in page
     assert f"{COUNT - 2} of {COUNT} landers touch down" in page
     assert any("escaped" in line for line in study_status(results.folder).lines())
 

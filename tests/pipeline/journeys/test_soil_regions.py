@@ -323,7 +323,7 @@ def test_what_knows_one_soil_is_refused(body_file: Path, tmp_path: Path) -> None
     source = StudySource.of_tables(tables(body_file, {"sink": SINK}), function_identity(touchdown))
     with pytest.raises(ValueError, match=r"sites follows landers by the emulator .* \[soil\]"):
         map_sites(source, tmp_path / "out", cell_count=24, lander_count=40, worker_count=1, model=touchdown)
-    with pytest.raises(ValueError, match=r"--set names grain\.friction; allowed: nothing of grain"):
+    with pytest.raises(ValueError, match=r"--set names grain\.friction; allowed: no key of grain"):
         landing_inputs(read(body_file, {"sink": SINK}), ["grain.friction=0.4"])
 
 

@@ -142,7 +142,7 @@ def test_sliders_are_those_of_the_kept_inputs(results: StudyResults, given: dict
     assert kept == ["grain.restitution", "impact.speed"]
     page = unescape((results.folder / "report" / "index.html").read_text(encoding="utf-8"))
     others = "Young's modulus of the grains and friction of the grains"
-    assert f"Not kept by the screening, always over the whole input distribution: {others}." in page
+    assert f"Removed by the screening and always over their whole distribution: {others}." in page
     assert "residuals that fall on other runs; no other bed" in page
 
 

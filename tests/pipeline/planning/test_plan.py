@@ -260,7 +260,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
         ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
         (
             {"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
-            "grain.young_modulus is uniform from 100000 to 1e+08: nine tenths of its values are above 1e+07",
+            "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07",
         ),
         ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
         ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
@@ -390,7 +390,7 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     said = " ".join(plan_lines(plan))
     assert "90 % interval of the return fraction (144 runs on 12 beds): " in said
     assert "By the resulting fraction: 8.7 at 100 %." in said
-    assert "a standard deviation of 0.04 to 0.21 of the share of flights that do; the correlation of two" in said
+    assert "standard deviation 0.04 to 0.21 of the return fraction from landing to landing; mean correlation" in said
     assert plan.to_json()["half_width"]["own_run_count"] == 0
     one_bed = drawn(bed={"bed_count": 1})
     assert plan_for(one_bed, folder, 2).half_width is None

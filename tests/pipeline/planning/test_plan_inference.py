@@ -53,7 +53,7 @@ def test_without_an_emulator_it_says_what_to_run_first(study: Path, tmp_path: Pa
     paper = write_ball(tmp_path / "paper.toml", {})
     said = plan_study(paper, tmp_path / "out", infers=True).inference
     assert said is not None
-    assert 'design.method = "drawn" makes' in said.lines()[0]
+    assert 'needs design.method = "drawn"' in said.lines()[0]
 
 
 def test_a_plan_that_is_not_asked_of_bounces_says_nothing_of_them(study: Path) -> None:

@@ -175,6 +175,6 @@ def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound
     results = lithobrake.run(
         tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False, progress=Shown()
     )
-    assert any("with more speed and spin than the energy of their arrival allows" in sentence for sentence in said)
+    assert any("with more speed and spin than the impact energy allows" in sentence for sentence in said)
     samples = results.samples.where(results.samples["outcome"] == "clear")
     assert samples["speed_out"].max() > 0.05

@@ -78,7 +78,7 @@ def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str =
         ([landed(50.0, 0.0, outcome="captured")], None),
         (
             [landed(0.19, 0.0), landed(50.0, 0.0)],
-            "1 of 2 landers that left have more energy than impact and gravity give them, the worst 6.25e+04 times as",
+            "1 of 2 landers that left have more energy than impact and gravity provide, at most 6.25e+04 times as",
         ),
         ([landed(0.15, 6.0)], "1 of 1 landers that left have more energy"),
     ],

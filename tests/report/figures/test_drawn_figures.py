@@ -49,7 +49,7 @@ def test_every_part_has_its_interval_and_an_output_that_is_not_known_says_so() -
     with figure_style():
         figure = variance_figure({"speed_out": RECORD, "returns": None}, {"returns": "return fraction"}, 0.9)
     words = words_of(figure)
-    assert "these runs cannot tell" in words
+    assert "not separable from these runs" in words
     assert "return fraction" in words
     for found in ("12 % (7-17 %)", "20 % (15-25 %)", "not detected (0-5 %)", "60 % (55-65 %)", "8 % (3-13 %)"):
         assert found in words

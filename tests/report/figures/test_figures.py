@@ -117,7 +117,7 @@ def test_sobol_figure_says_what_is_scatter_and_where_no_input_was_found() -> Non
         figure = sobol_figure(("impact.speed",), first, spread, dict.fromkeys(PAPER_OUTPUTS, 0.7))
     words = texts(figure)
     assert words.count("100 %") == 2
-    assert words.count("no input found\nthat decides it") == 1
+    assert words.count("no significant\ninput") == 1
     assert words.count("scatter: 70 % of\nthe runs' variance") == 3
 
 
