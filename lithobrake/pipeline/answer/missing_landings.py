@@ -25,7 +25,7 @@ REMEDIES = {
     FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
 }
 # A program of the user's own has neither bed nor time limit in the study file.
-OF_A_PROGRAM = "outcomes clear or captured from the program that simulates the touchdowns"
+OF_A_PROGRAM = "a program that returns clear or captured for every touchdown"
 
 
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:

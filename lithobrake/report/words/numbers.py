@@ -10,7 +10,8 @@ ROUNDING = 1e-9
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Powers of units, "m2" and "m/s2", behind a number, a bracket or a unit.
 POWER = re.compile(
-    r"(?:(?<=\b(?:m|J|N)/)|(?<=\bkg/)|(?<=\brad/)|(?<=\bm2/)|(?<=\[)|(?<=\d[ \N{NO-BREAK SPACE}]))([ms])([23])\b"
+    r"(?:(?<=\b(?:m|J|N)/)|(?<=\bkg/)|(?<=\brad/)|(?<=\bm2/)|(?<=\[)|(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹][ \N{NO-BREAK SPACE}]))"
+    r"([ms])([23])\b"
 )
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot, Tile
 from lithobrake.report.pages.html import LONG, page
-from lithobrake.report.words.numbers import area, flat, number, show, unit_scales
+from lithobrake.report.words.numbers import area, flat, number, raised_units, show, unit_scales
 from lithobrake.vocabulary.fate_colours import FATE_COLOURS
 
 
@@ -153,3 +153,8 @@ def test_names_that_are_alike_share_one_scale() -> None:
     tree = {"extents_m": [851.0, 620.0], "centroid_m": [-2.2e-14, 0.0], "push": 1e-14}
     alike = (("extents_m", "centroid_m"), ("push", "absent"))
     assert flat(tree, alike=alike) == [("extents_m", "851, 620"), ("centroid_m", "0, 0"), ("push", "1 × 10⁻¹⁴")]
+
+
+def test_powers_of_units_are_raised_and_nothing_else_is() -> None:
+    assert raised_units("1419 m2, 6 × 10⁻⁷ m2/s2, 2294 kg/m3 [m/s2]") == "1419 m², 6 × 10⁻⁷ m²/s², 2294 kg/m³ [m/s²]"
+    assert raised_units("runs/s2, Q2 and m2") == "runs/s2, Q2 and m2"
