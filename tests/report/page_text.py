@@ -10,7 +10,7 @@ OTHERWISE = (
     (r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC", "Study of DATE"),
     (r"\b[\d.]+ [kM]?B\b", "SIZE"),
     # Rounding, and nothing else.
-    (r"flights changes by [^ ]+ × [^ ]+ m2/s2", "flights changes by ROUNDING m2/s2"),
+    (r"flights changes by [^ ]+ × [^ ]+ m²/s²", "flights changes by ROUNDING m²/s²"),
     (r"(?m)^((?:date|folder|host|system|cores|python|packages|wall_s|runs\.\w*_s)[\w.-]*) \| .*$", r"\1 | VALUE"),
 )
 

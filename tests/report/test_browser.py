@@ -166,7 +166,7 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     after = page.value(read)
     assert len(before) == len(after) == 5
     assert all(old != new for old, new in zip(before[:4], after[:4], strict=True))
-    assert page.value("document.querySelector('#explorer output').textContent") == "2850 to 3000 kg/m3"
+    assert page.value("document.querySelector('#explorer output').textContent") == "2850 to 3000 kg/m³"
 
 
 def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence_folder: Path) -> None:

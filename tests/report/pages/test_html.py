@@ -129,7 +129,7 @@ def test_numbers_in_words(value: float, text: str) -> None:
 def test_areas_have_two_digits_and_do_not_break() -> None:
     gap = "\N{NO-BREAK SPACE}"
     assert [area(value) for value in (31637.5, 456.4, 20.46, 3.14)] == [
-        f"32{gap}000{gap}m2", f"460{gap}m2", f"20{gap}m2", f"3.1{gap}m2",
+        f"32{gap}000{gap}m²", f"460{gap}m²", f"20{gap}m²", f"3.1{gap}m²",
     ]  # fmt: skip
 
 
