@@ -1,6 +1,5 @@
 """Landers on their way to their first touchdown: flown from states of another tool, or from where they are released."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -99,21 +98,6 @@ class Descents:
         """When each flight ends, in the time of the partner's motion [s], [count]."""
         end: np.ndarray = self.flights.start.time + self.flights.time
         return end
-
-    def sentence(self) -> str:
-        """How many reach the ground, and how, in words."""
-        flights, down = self.flights, self.touches_down
-        count, others = len(flights), Counter(flights.status[~down].tolist())
-        said = f"Delivery: {int(down.sum())} of {count} landers reach the ground"
-        if down.any():
-            speed, hours = flights.impact_speed[down], flights.time[down] / 3600.0
-            said += (
-                f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
-                f"{100.0 * speed.max():.3g} cm/s"
-            )
-        words = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
-        ends = [f"{number} {words.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
-        return "; ".join([said, *ends]) + "."
 
     def first_touchdowns(self, rows: Sequence[Row]) -> list[Row]:
         """Rows of all journeys as the first touchdowns of those that reach the ground, with what the flight tells."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
+from lithobrake.pipeline.design.descent_words import descents_in_words
 from lithobrake.pipeline.design.rough_ground import first_axes
 from lithobrake.pipeline.fly.flight_paths import Ways, write_flight_paths
 from lithobrake.pipeline.fly.flights import write_shape
@@ -30,7 +31,7 @@ def make_journeys(job: Job) -> None:
         if words:
             job.say(words)
     if job.design.descents is not None:
-        job.say(job.design.descents.sentence())
+        job.say(descents_in_words(job.design.descents))
     journeys = begun(job)
     rows = job.design.rows
     job.folder.note_runs("drawn", job.design.keys)

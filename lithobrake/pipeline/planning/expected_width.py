@@ -88,7 +88,8 @@ def expected_width(
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
     own = own if own >= FEWEST_ANSWERS and len(np.unique(bed)) > 1 else 0
-    law, words = law_of_runs(values, bed) if own else law_before(study)
+    reach = 1.0 if design.descents is None else float(design.descents.touches_down.mean())
+    law, words = law_of_runs(values, bed) if own else law_before(study, reach)
     missing = _missing(study, soil, values)
     there, to_come = _runs(design, values, bed)
 
@@ -123,17 +124,19 @@ def expected_correlation(study: Study) -> float:
     return CORRELATION if study.journey is None else JOURNEY_CORRELATION
 
 
-def law_before(study: Study) -> "tuple[RunLaw, str]":
-    """What is taken of a run before enough have ended, in words too, but for the full stop."""
+def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
+    """What is taken of a run before enough have ended, in words too, but for the full stop.
+
+    reach: fraction of the landers that reach the ground.
+    """
     from lithobrake.analysis.half_width import SPREAD_RANGE
     from lithobrake.analysis.half_width_range import AllOrNothing, Shares
 
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
     if study.journey is not None:
-        law = AllOrNothing(1.0, LEAST_AT_REST)
-        return (
-            law,
-            f"Assumed: {100 * LEAST_AT_REST:.0f} to 100 % of the landers come to rest, most likely nearly all; {beds}",
+        who = "the landers" if reach == 1.0 else "those that reach the ground"
+        return AllOrNothing(reach, LEAST_AT_REST * reach), (
+            f"Assumed: {100 * LEAST_AT_REST:.0f} to 100 % of {who} come to rest, most likely nearly all; {beds}"
         )
     if study.design.half_width_of is not None:
         return AllOrNothing(0.0, 1.0), f"Assumed: any probability; {beds}"

@@ -40,7 +40,7 @@ class Plan:
     site_slope_deg  of the ground at the site, against gravity and rotation together
     ground          of the first touchdowns of journeys; None for other studies
     soils           of regions of the body; None where it has one soil
-    delivery        how landers that are delivered as states reach the ground, in a sentence; None for others
+    delivery        where and when landers that are delivered as states reach the ground; None for others
     inference       what observed bounces would say of the inputs; None where that is not asked
     """
 

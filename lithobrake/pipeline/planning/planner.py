@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
+from lithobrake.pipeline.design.descent_words import descents_in_words
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.folder.owner import refuse_others_folder
@@ -73,8 +74,8 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
 
 
 def _delivery(design: DrawnDesign) -> str | None:
-    """How many of the landers that are delivered as states reach the ground, in a sentence."""
-    return None if design.descents is None else design.descents.sentence()
+    """Where and when the landers that are delivered as states reach the ground, in sentences."""
+    return None if design.descents is None else descents_in_words(design.descents)
 
 
 def plan_of(

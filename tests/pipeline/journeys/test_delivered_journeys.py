@@ -1,5 +1,6 @@
 """Journeys that begin with states, a release or correlated draws: tables, ends, results, and what outdates them."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +113,20 @@ def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     plan = plan_of(DrawnDesign(study), Site(study), "flown", StudyFolder.only_read(tmp_path), 1)
     line = next(line for line in plan_lines(plan) if line.startswith("Delivery"))
     assert f"of {COUNT} landers reach the ground" in line
+    # Distances along the ground, by the angles that the first touchdowns make with the aim point.
+    descents, aim = DrawnDesign(study).descents, Site(study).frames(Site(study).columns(1))[0][0]
+    assert descents is not None
+    places = descents.flights.position[descents.touches_down]
+    cosines = places @ aim / (np.linalg.norm(places, axis=1) * np.linalg.norm(aim))
+    median = np.median(np.linalg.norm(aim) * np.arccos(cosines))
+    told = re.search(r"lie ([\d.e+]+) m from the aim point", line)
+    assert told
+    assert float(told[1]) == pytest.approx(median, rel=6e-3)
+    latitude, longitude = Site(study).medians["latitude_deg"], Site(study).medians["longitude_deg"]
+    assert f"the aim point is at {latitude:.1f}, {longitude:.1f}." in line
     assert plan.made["journeys to rest"][1] == len(DrawnDesign(study).rows)
+    assert plan.half_width is not None
+    assert "100 % of those that reach the ground come to rest" in plan.half_width.assumed
 
 
 def test_an_edited_table_makes_the_journeys_outdated(tmp_path: Path) -> None:
