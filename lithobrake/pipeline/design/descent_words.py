@@ -39,7 +39,7 @@ def _places(descents: Descents) -> str:
     latitude = np.degrees(np.arctan2(centre[2], np.hypot(centre[0], centre[1])))
     longitude = np.degrees(np.arctan2(centre[1], centre[0]))
     return (
-        f" First touchdowns lie {middle:.3g} m from the aim point in the median (5 to 95 %: {near:.3g} to {far:.3g} m), "
-        f"about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {aim[0]:.1f}, "
+        f" First touchdowns lie {middle:.3g} m from the aim point in the median (5 to 95 %: {near:.3g} to {far:.3g} "
+        f"m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {aim[0]:.1f}, "
         f"{aim[1]:.1f}."
     )

@@ -13,6 +13,7 @@ from lithobrake.pipeline.commands.status import study_status
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.planning.expected_width import law_before
 from lithobrake.pipeline.planning.plan_in_words import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
@@ -125,8 +126,14 @@ def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     latitude, longitude = Site(study).medians["latitude_deg"], Site(study).medians["longitude_deg"]
     assert f"the aim point is at {latitude:.1f}, {longitude:.1f}." in line
     assert plan.made["journeys to rest"][1] == len(DrawnDesign(study).rows)
-    assert plan.half_width is not None
-    assert "100 % of those that reach the ground come to rest" in plan.half_width.assumed
+
+
+def test_a_plan_counts_none_at_rest_that_misses_the_ground() -> None:
+    law, words = law_before(study_of(tables()), reach=0.25)
+    assert "50 to 100 % of those that reach the ground come to rest" in words
+    at_rest = np.mean([law.study(np.random.default_rng(seed), 100).mean() for seed in range(200)])
+    # A quarter to an eighth, a third of the way on average.
+    assert at_rest == pytest.approx(0.25 - 0.125 / 3.0, abs=0.01)
 
 
 def test_an_edited_table_makes_the_journeys_outdated(tmp_path: Path) -> None:
