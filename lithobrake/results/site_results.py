@@ -90,6 +90,8 @@ class SiteResults:
     """from the site, in axes that do not turn, from this body alone [m/s]"""
     warning: str | None
     """what the site does to landers that lie there, in a sentence; null where it holds them"""
+    rotation: str | None
+    """how far the body turns away from uniform rotation, in a sentence; null where it turns uniformly"""
     gravity_warning: str | None
     """how touchdowns and site differ in acceleration, in a sentence; null where alike"""
     __repr__ = short_repr

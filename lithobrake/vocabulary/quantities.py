@@ -152,6 +152,7 @@ JOURNEY = {
 }
 # Of a body in the sky as a lander at rest sees it.
 SKY_FILE = "sky.csv"
+SKY_WORDS = {"sun": "the Sun", "earth": "Earth", "orbiter": "the orbiter"}
 SKY = {
     "journey": JOURNEY["journey"],
     "body": Quantity("", "sun, earth or orbiter"),

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 
 from lithobrake.analysis import LEVEL
 from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile
+from lithobrake.results.sky_results import SkyResults
 from lithobrake.results.soil_results import SoilResults
 from lithobrake.results.summary import DrawnResults
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.quantities import SKY_WORDS
 
 HOUR = 3600.0
 
@@ -27,7 +29,7 @@ def journey_answer(study: Study, results: DrawnResults) -> list[str]:
     ]
     if at_rest.why is not None:
         said.append(at_rest.why)
-    return [*said, *_rest(rest), *_soils(results.soils)]
+    return [*said, *_rest(rest), *_sky(results.sky), *_soils(results.soils)]
 
 
 def _others(ends: Mapping[str, EndShare]) -> str:
@@ -58,6 +60,16 @@ def _rest(rest: JourneyRest) -> list[str]:
         listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
         said.append("Side down: " + ", ".join(f"{name} {with_interval(one)}" for name, one in listed) + ".")
     return said
+
+
+def _sky(sky: Mapping[str, SkyResults]) -> list[str]:
+    """For which part of the time those at rest see the Sun, Earth and the orbiter."""
+    listed = [
+        f"{SKY_WORDS[name]} {_with_bounds(one.day_fraction, 0.01)} % of the time"
+        + (f" (never by {with_interval(one.never)})" if one.never.count else "")
+        for name, one in sky.items()
+    ]
+    return [f"Visible from the place of rest, median: {', '.join(listed)}."] if listed else []
 
 
 def _soils(soils: Mapping[str, SoilResults]) -> list[str]:

@@ -44,6 +44,7 @@ def site_results(site: Site) -> SiteResults:
         # In axes that do not turn, from the body alone.
         escape_speed_m_s=site.escape_speed,
         warning=site.warning,
+        rotation=site.rotation_words,
         gravity_warning=site.gravity_warning,
     )
 

@@ -11,6 +11,7 @@ from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import EndShare, RestQuantiles
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
+from lithobrake.vocabulary.quantities import SKY_WORDS
 
 # Tables of any drawn study that are of more than the first touchdown, and one that has another name here.
 OF_ALL = ("Beds", "Sampled inputs")
@@ -93,10 +94,6 @@ def _regions(data: JourneyPage) -> PageTable:
         for one in data.at_rest.regions
     ]
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
-
-
-# Of a body in the sky by its name.
-SKY_WORDS = {"sun": "the Sun", "earth": "Earth", "orbiter": "the orbiter"}
 
 
 def _sky(data: JourneyPage) -> PageTable:

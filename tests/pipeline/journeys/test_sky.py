@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -236,6 +237,10 @@ def test_the_summary_and_the_page_have_it(journeys: StudyResults, journeys_folde
     assert found["sun"].probability.lower < found["sun"].probability.share < found["sun"].probability.upper
     up = np.mean([float(row["side_+z"]) for row in sky_rows(journeys_folder, "sun")])
     assert found["sun"].side_probabilities["+z"].share == pytest.approx(up, abs=1e-9)
+    said = next(line for line in journeys.results.answer if line.startswith("Visible from the place of rest"))
+    median = re.search(r"the Sun (\d+) \(\d+-\d+\) % of the time, Earth ", said)
+    assert median
+    assert int(median[1]) == pytest.approx(100.0 * np.median(seen), abs=1.0)
 
 
 def test_the_sky_without_journeys_is_refused() -> None:

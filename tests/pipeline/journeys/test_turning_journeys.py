@@ -144,7 +144,7 @@ def test_the_study_has_its_page_and_its_flights_are_not_passed_on(made: Path, tm
     results = lithobrake.open_study(made)
     emulated = (made / "emulated.csv").read_text().splitlines()
     assert sum(row.startswith("fresh,") for row in emulated) == 30
-    assert (made / "report" / "index.html").is_file()
+    assert "from synchronous rotation; landers arrive over" in (made / "report" / "index.html").read_text()
     for kind in ("oem", "facets"):
         with pytest.raises(ValueError, match="no place for an attitude over time"):
             export_study(results, tmp_path, [kind])
