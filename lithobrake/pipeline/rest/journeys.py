@@ -85,7 +85,7 @@ def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> Non
             rows += sites.rows("soil", first, journeys)
             arcs = arc_rows(journeys.arcs, np.flatnonzero(~first.outside))
         else:
-            job.say(f"Bounce after bounce on hard ground only: {why}.")
+            job.say(f"Journeys from bounce to bounce are on hard ground only: {why}.")
         rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
         if RESTITUTION in rest_files(study):
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))

@@ -119,7 +119,7 @@ def test_the_page_says_that_it_is_one_touchdown_and_of_how_many(
     assert f"slope from {slope.min():.2g} to {slope.max():.2g} deg" in words
     assert data["flown"] is None
     assert {one["words"] for one in data["facts"]["inputs"]} >= {"impact speed", "incidence at impact", "gravity"}
-    assert [one["unit"] for one in data["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s2", "deg", "", "", ""]
+    assert [one["unit"] for one in data["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s²", "deg", "", "", ""]
 
 
 @needs_browser

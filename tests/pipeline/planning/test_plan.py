@@ -264,7 +264,7 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
         ),
         ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
         ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
-        ({"rest": {"count": 10}}, "Bounce after bounce on hard ground only"),
+        ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
         ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
     ],
 )  # fmt: skip
