@@ -14,7 +14,7 @@ from emulator_truths import PUBLISHED, TRUTHS
 from harness import PAGES, Row, read_rows
 
 sys.path.append(str(Path(__file__).parents[1] / "validation"))
-from page_text import broken
+from page_text import broken, table
 
 PAGE = PAGES / "emulator_peers.md"
 # Hilscher (2024), master's thesis with code, file error.txt: of degree 5, median of ten designs.
@@ -94,12 +94,6 @@ def mean_error(rows: Sequence[Row]) -> tuple[float, float]:
     errors = [row["error"] for row in rows]
     spread = statistics.stdev(errors) / len(errors) ** 0.5 if len(errors) > 1 else 0.0
     return statistics.mean(errors), spread
-
-
-def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table in Markdown."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def truth_table(rows: list[Row]) -> str:

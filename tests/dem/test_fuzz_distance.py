@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from distance_pairs import FAMILIES, library
 from fuzz_distance import check, solids
 
-PAIRS = 1000
+PAIRS = 400
 
 
 @pytest.fixture(scope="module")

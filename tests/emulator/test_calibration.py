@@ -8,6 +8,7 @@ from scipy import special, stats
 
 from lithobrake.emulator import Emulator
 
+from ..quick_studies import quick_studies
 from ..synthetic_landings import ELEVATION_LIMIT, NO_SOIL, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 from .conditional_errors import DrawnRuns, fitted, law_errors
 
@@ -62,7 +63,9 @@ def test_draws_have_the_skewness_of_the_scatter() -> None:
     truth = Truth(soil=1.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0)
     skewness = []
     for seed in range(2):
-        drawn = fitted(truth, 300, 30, seed).sample(random_soils(4000, np.random.default_rng(seed)), 5)[:, :, 0]
+        with quick_studies():
+            model = fitted(truth, 300, 30, seed)
+        drawn = model.sample(random_soils(4000, np.random.default_rng(seed)), 5)[:, :, 0]
         # A rare draw is captured, as no run was, and has no speed.
         skewness.append(stats.skew(special.logit(drawn[~np.isnan(drawn)] / SPEED_LIMIT)))
     assert abs(np.mean(skewness) - 2.0) < 0.5
@@ -93,7 +96,8 @@ def test_intervals_from_refits_hold_the_truth() -> None:
     soils = random_soils(1000, np.random.default_rng(0))
     held = 0
     for seed in range(5):
-        model = fitted(truth, 120, bed_count, seed)
+        with quick_studies():
+            model = fitted(truth, 120, bed_count, seed)
         # The same seed for all: they differ by what they were fitted to, and less by their draws.
         medians = [np.nanmedian(refit.sample(soils, 1)[:, 0, 0]) for refit in model.refits(refit_count)]
         half = stats.t.ppf(0.95, bed_count - 1) * np.std(medians) * np.sqrt(bed_count / (bed_count - 1.0))

@@ -27,7 +27,7 @@ from ..killed_studies import VICTIMS, kill, ledger, start
 from .soil_journeys import STUDY
 
 # Touchdowns that the ledger has when something is killed; there are 30 in all.
-MOMENTS = (3, 8, 12, 18)
+MOMENTS = (3, 9, 16)
 WORKERS = 2
 ROLLING = STUDY.replace("[site]\n", "[site.rotation]\nyaw_deg = 30.0\nroll_deg = 60.0\n[site]\n")
 TABLES = (*FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
