@@ -4,15 +4,15 @@ ABOUT = """# Forecast: Juventas and Milani on Dimorphos
 
 Made on {made}, before either had landed, by `python validation/forecast_hera/forecast.py`.
 
-ESA's Hera carries two CubeSats, Juventas and Milani, which are to land on Dimorphos in 2027. Where do they come to rest,
-and how certain is that? All published probabilities of coming to rest are for hard ground. This forecast follows each
-lander through simulated landings on rubble. Unknown properties of Dimorphos and of the descents are sampled from ranges
-that are as wide as the published facts allow. The forecast is dated and hashed, and will be scored.
+ESA's Hera carries two CubeSats, Juventas and Milani, which are to land on Dimorphos in 2027. Where do they come to
+rest, and how certain is that? All published probabilities of coming to rest are for hard ground. This forecast follows
+each lander through simulated landings on rubble. Unknown properties of Dimorphos and of the descents are sampled from
+ranges that are as wide as the published facts allow. The forecast is dated and hashed, and will be scored.
 
 **{first}**
 
-The intervals cover the scatter between landers and between beds, for the branches, weights and ranges below. They do not
-cover errors of the model. Numbers of simulated landers: {counts}.
+The intervals cover the scatter between landers and between beds, for the branches, weights and ranges below. They do
+not cover errors of the model. Numbers of simulated landers: {counts}.
 """
 
 METHOD = {
@@ -37,21 +37,21 @@ in the study files: Juventas measures 0.37 m along x, 0.23 m along y and 0.10 m 
 
 For the landers that touch down on soil, the table gives the fraction at rest in the lower and in the upper half of the
 range of each uncertain input. It also gives the rank correlation of the input with the time to rest and with the ratio
-of the first rebound speed to the impact speed (within branches; 90 % intervals over beds). If an interval contains 0, no
-correlation is detected.
+of the first rebound speed to the impact speed (within branches; 90 % intervals over beds). If an interval contains 0,
+no correlation is detected.
 """,
     "branches": """## By branch
 
-Three unknowns are not numbers: how Dimorphos has rotated since the impact of DART, how the lander descends, and to which end
-of the long axis. Each combination is a branch. The weights of the branches are our judgement. A lander that misses
-Dimorphos counts in the fractions too.
+Three unknowns are not numbers: how Dimorphos has rotated since the impact of DART, how the lander descends, and to
+which end of the long axis. Each combination is a branch. The weights of the branches are our judgement. A lander that
+misses Dimorphos counts in the fractions too.
 
 - **Small libration** starts with 7 degrees of yaw from the attitude in which the long axis points to Didymos, and stays
 a libration in yaw alone.
 - **Large libration** starts with 20 degrees of yaw, 1 degree of pitch and 2 degrees of roll; the pole deviates by up to
 45 degrees.
-- **Rolling** starts with 30 degrees of yaw and 60 degrees of roll: the pole turns over, while the long axis stays within
-36 degrees of the direction to Didymos.
+- **Rolling** starts with 30 degrees of yaw and 60 degrees of roll: the pole turns over, while the long axis stays
+  within 36 degrees of the direction to Didymos.
 - A lander arrives at a random time within 30 days of this motion. Each branch has its own landers, soils and beds.
 - **At the surface**: speed, angle and place of the first contact are sampled, as after a controlled descent.
 - **Ballistic**: the lander is released 200 m from the centre toward a vertical touchdown, 1.25 times as fast as the
@@ -60,8 +60,8 @@ slowest such descent, with errors of 90 m and 2 cm/s (3 sigma) in each direction
 """,
     "variants": """## The effect of two choices
 
-The landers of one branch (small libration, at the surface, near end; soil) were simulated again with one choice changed.
-These variants are not part of the forecast.
+The landers of one branch (small libration, at the surface, near end; soil) were simulated again with one choice
+changed. These variants are not part of the forecast.
 """,
     "priors": """## Assumptions
 
@@ -70,16 +70,16 @@ These variants are not part of the forecast.
     "falsified": """## What would contradict it
 
 The table lists observations to which the forecast assigns a probability of less than {unlikely:.0f} %, and their
-probability on hard ground. One such observation is a reason to doubt the model; several, from both landers, are a reason
-to reject it.
+probability on hard ground. One such observation is a reason to doubt the model; several, from both landers, are a
+reason to reject it.
 """,
 }
 
 VARIANTS_SAY = """If the interval of a ratio of median times contains 1, no difference is detected. The shape is a model
-from before the impact (bounding box 176 x 173 x 115 m, 4700 facets), moved to its centre of mass, turned to its principal
-axes and scaled to the volume of the ellipsoid (by 0.999 in length); mass and density are unchanged. A mesh has no partner
-in a study, so the shape is compared with an ellipsoid without Didymos. `validation/forecast_hera/variants.csv` has the
-landers.
+from before the impact (bounding box 176 x 173 x 115 m, 4700 facets), moved to its centre of mass, turned to its
+principal axes and scaled to the volume of the ellipsoid (by 0.999 in length); mass and density are unchanged. A mesh
+has no partner in a study, so the shape is compared with an ellipsoid without Didymos.
+`validation/forecast_hera/variants.csv` has the landers.
 """
 
 SCORING = """## How it will be scored

@@ -38,7 +38,7 @@ NUMBER_WORDS = {
     "first_speed_ratio": ("first rebound speed / impact speed", 1.0),
 }  # fmt: skip
 VARIANT_WORDS = {
-    "held_speed 0.03": "grains are frozen when slower than 0.03 of the lander's speed, instead of 0.1 (`contact.held_speed`)",
+    "held_speed 0.03": "grains are frozen below 0.03 of the lander's speed, instead of 0.1 (`contact.held_speed`)",
     "shape model alone": "shape from before DART, without Didymos, instead of an ellipsoid without Didymos",
 }
 BIN_WORDS = {
@@ -116,7 +116,8 @@ def variants_part(compared: list[dict[str, Any]]) -> list[str]:
         ]
         for one in compared
     ]  # fmt: skip
-    head = ("lander", "variant", "at rest: with and without the change", "median time to rest [min]", "ratio (90 % interval)")
+    changed = "at rest: with and without the change"
+    head = ("lander", "variant", changed, "median time to rest [min]", "ratio (90 % interval)")
     return [broken(METHOD["variants"]), table(head, rows), broken(VARIANTS_SAY)] if rows else []
 
 
@@ -155,7 +156,8 @@ def decides_table(landers: Answers) -> str:
                 for found in (one["time_s"], one["first_speed_ratio"])
             ]
             rows.append([name.capitalize(), INPUT_WORDS[one["input"]], halves, *ranks])
-    head = ("lander", "input", "at rest: lower, upper half", "correlation with time to rest", "correlation with first speed ratio")
+    correlations = (f"correlation with {output}" for output in ("time to rest", "first speed ratio"))
+    head = ("lander", "input", "at rest: lower, upper half", *correlations)
     return table(head, rows)
 
 
@@ -206,8 +208,8 @@ def first_line(landers: Answers) -> str:
         for name, of in landers.items()
     ]
     return (
-        f"Probability of coming to rest on Dimorphos: {', '.join(said)} (90 % intervals). Of the simulated landers that "
-        f"touch down, {' and '.join(hits)} come to rest."
+        f"Probability of coming to rest on Dimorphos: {', '.join(said)} (90 % intervals). "
+        f"Of the simulated landers that touch down, {' and '.join(hits)} come to rest."
     )
 
 
