@@ -166,8 +166,8 @@ def reasons(rows: list[Row]) -> str:
         f"{len(steep)} pushes down a slope steeper than that friction, {stopped} came to rest. By Coulomb's law none "
         "would.\n- **Scatter** depends on where the lander lies. One that catches an edge stops within half a grain at "
         "any friction.\n- **Faster pushes** lose more energy per path.\n- **Smaller landers** lie deeper among the "
-        "grains and have more effective friction; larger ones have no less.\n- **More friction between grains** than at "
-        "the lander increases the effective friction, too."
+        "grains and have more effective friction; larger ones have no less.\n- **More friction between grains** than "
+        "at the lander increases the effective friction, too."
     )
 
 

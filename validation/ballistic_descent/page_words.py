@@ -3,7 +3,7 @@
 TEXT = """\
 # Ballistic descents to Dimorphos
 
-From releases over which longitudes does a lander without propulsion reliably come to rest on the moon of a binary
+At which longitudes does a lander that descends without propulsion reliably come to rest on the moon of a binary
 asteroid, and do these longitudes agree with published ones?
 
 - **At the lowest possible touchdown speed, they hardly agree.** The published longitudes are not clearly better than
@@ -61,7 +61,7 @@ rest. The table lists its ends in degrees. In bold bands, both ends are within {
 
 {bands}
 
-The bands that agree are about 60 degrees long. Releases from closer and lower fractions have wider bands. If longitudes
+The bands that agree are about 60 degrees long. Bands are wider for closer releases and for lower fractions. If longitudes
 are counted from the side that faces Didymos, {other} bands agree.
 
 ## Other latitudes, released at {map} m, at the best speed
