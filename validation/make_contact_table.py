@@ -29,8 +29,9 @@ Does the contact law reproduce known solutions, and do systems of many bodies co
 tolerance. The expected values and tolerances were fixed before the code was written. T1 to T7 are the tests of Chung
 and Ooi (2011), Granular Matter 13, 643-656; the other values are derived in the tests.
 
-"Measured" lists the computed value of every comparison in the tests of a row. Semicolons separate sets of parameters. For a conserved quantity the value is its change. Some comparisons only ensure that the test does what is intended
-(for example that a contact occurred); their numbers are listed too. "Holds" is the result of a comparison of arrays.
+"Measured" lists the computed value of every comparison in the tests of a row. Semicolons separate sets of parameters.
+For a conserved quantity the value is its change. Some comparisons only ensure that the test does what is intended (for
+example that a contact occurred); their numbers are listed too. "Holds" is the result of a comparison of arrays.
 """
 TAIL = """
 ## Limits

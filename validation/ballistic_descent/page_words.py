@@ -61,8 +61,8 @@ rest. The table lists its ends in degrees. In bold bands, both ends are within {
 
 {bands}
 
-The bands that agree are about 60 degrees long. Bands are wider for closer releases and for lower fractions. If longitudes
-are counted from the side that faces Didymos, {other} bands agree.
+The bands that agree are about 60 degrees long. Bands are wider for closer releases and for lower fractions. If
+longitudes are counted from the side that faces Didymos, {other} bands agree.
 
 ## Other latitudes, released at {map} m, at the best speed
 
