@@ -41,7 +41,7 @@ class SiteSection(Section):
 
     body: str = "didymos"
     """"didymos" or "dimorphos" (built in, in any case), or a closed mesh (OBJ, STL, PDS plates, ICQ or a shape kernel
-    of SPICE) around the body's centre; the path counts from the study file."""
+    of SPICE) around the body's centre; the path is relative to the study file."""
     extents: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = None
     """Extents of a built-in body along its axes x, y and z, instead of its own; give site.mass too."""
     name: str | None = None

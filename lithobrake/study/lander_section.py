@@ -29,9 +29,10 @@ class CentreSection(Section):
 
 
 class PartSection(Section):
-    """A convex part that is fixed to the lander, such as a leg, a panel or a boom; any number, each in a table
-    [lander.part.NAME] of its own. Parts may overlap, never touch each other and do not bend. Lengths and directions are
-    in the axes of the lander: of a box or sphere from its centre, of a mesh those of its file."""
+    """A convex part that is fixed to the lander, such as a leg, a panel or a boom. There may be any number of parts,
+    each in a table [lander.part.NAME] of its own. Parts may overlap, have no contact with each other and do not bend.
+    Lengths and directions are along the axes of the lander, from the centre of a box or sphere, or from the origin of
+    the file of a mesh."""
 
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
@@ -42,7 +43,7 @@ class PartSection(Section):
     diameter: Annotated[float, Number("m", above=0)] | None = None
     """Diameter of a sphere."""
     file: str | None = None
-    """Closed mesh (OBJ or STL) whose convex hull is the part; the path counts from the study file."""
+    """Closed mesh (OBJ or STL) whose convex hull is the part; the path is relative to the study file."""
     unit: LengthUnit = "m"
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     centre: Annotated[tuple[float, float, float], Numbers("m", count=3)] = Field(
@@ -88,7 +89,7 @@ class LanderSection(Section):
     diameter: Annotated[Scalar, MaybeUncertain("m", above=0)] | None = None
     """Diameter of a sphere."""
     file: str | None = None
-    """Closed mesh (OBJ or STL) whose convex hull is the lander; the path counts from the study file."""
+    """Closed mesh (OBJ or STL) whose convex hull is the lander; the path is relative to the study file."""
     unit: LengthUnit = "m"
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     centre_of_mass: CentreSection | None = None
