@@ -23,7 +23,7 @@ DENSITY = 2500.0  # kg/m3
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 
 _STUDY = """\
-# Where does a lander come to rest? Landers are followed from delivery to rest, with a simulated landing at every impact.
+# Where does a lander come to rest? Each one is followed from delivery to rest, with a landing simulated at each impact.
 # Replace lander, body, delivery and ground by those of your mission. An unknown number is a table with a distribution,
 # from which it is sampled for each lander. The ranges of soil and delivery are examples.
 title = "{lander.name} on {body.name}"
