@@ -30,25 +30,22 @@ BEGIN = """\
 How accurate is the emulator compared with other methods fitted to the same runs?
 
 On eight known distributions with 150 and 300 runs, `fit` has the smallest error in {best} of {count} cases. Its error
-is
-{least} to {most} of that of resampling any run.
+is {least} to {most} times that of resampling the runs without regard to the inputs ("any run").
 
 `emulator.fit` estimates the conditional distribution of a stochastic model from runs ([Emulators](../emulator.md)). The
 alternatives use scikit-learn:
 
-- **near runs**: resampling of the k nearest runs, k with the lowest energy score on held-out groups;
-- **Gaussian process**: its mean, with a length scale for each input, and its leave-one-out residuals;
+- **near runs**: resampling of the k nearest runs; k has the lowest energy score on held-out groups;
+- **Gaussian process**: its mean, with a length scale for each input, plus its leave-one-out residuals;
 - **forest**: resampling of runs by how often they share a leaf of five runs with the point;
-- **mixture**: a Gaussian mixture of inputs and outputs, the number of components by BIC.
+- **mixture**: a Gaussian mixture of inputs and outputs; BIC chooses the number of components.
 
 ## Eight known distributions
 
 `benchmarks/emulator_truths.py` defines them. Runs come in groups of ten that share a small effect. The table lists the
 energy distance between the emulated and the true distribution of the outputs, at 60 new inputs (200 samples each,
-without
-bias), divided by that of resampling any of the runs. 0 is the truth; 1 makes no use of the inputs. Values are means
-over
-{seeds} seeds, with the standard error for `fit` in brackets. The best of a row is bold.
+without bias), divided by that of resampling any of the runs. 0 means equal to the truth; 1 means that the inputs are
+not used. Values are means over {seeds} seeds, with the standard error for `fit` in brackets. The best of a row is bold.
 
 """
 PUBLISHED_TEXT = """

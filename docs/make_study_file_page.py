@@ -25,16 +25,18 @@ HEAD = """# The study file
 <!-- Made by docs/make_study_file_page.py from the fields of lithobrake/study. -->
 
 A study file is written in TOML: a table for each section, a key for each quantity. This page lists
-them all. `lithobrake new NAME` writes a short study that runs; `lithobrake new NAME --full` writes
-all that stands here as a file to fill in. An unknown key or a value outside its range is refused
-before anything is computed, in a sentence that names the range and the remedy.
+all of them with meaning, unit, range and default. `lithobrake new NAME` writes a short study that
+is ready to run; `lithobrake new NAME --full` writes all keys of this page as a file to fill in. An
+unknown key or a value outside its range is refused before anything is computed, with a message that
+names the range and the remedy.
 
-Angles are in degrees and have `_deg` in their names; all else is SI. Ranges are intervals: (0, 1]
-is above 0 and at most 1. Paths count from the folder of the study file.
+Angles are in degrees and have `_deg` in their names; everything else is in SI units. Ranges are
+intervals: (0, 1] is above 0 and at most 1. Paths are relative to the folder of the study file.
 
 ## Uncertain numbers
 
-A key marked ± takes a distribution in place of the number, all of it within the range of the key:
+A key marked ± takes a distribution instead of the number. The whole distribution must lie within
+the range of the key:
 
 ```toml
 [grain]

@@ -20,46 +20,47 @@ HEAD = """# The keys of summary.json, scores.json and the expansions
 
 <!-- Made by docs/make_summary_page.py from the fields of lithobrake/results. -->
 
-`*` stands for any one name: of an output, an input by its dotted key, a design, an outcome. In a
-list of tables every table has these keys. Numbers are in SI where no unit is named; `null`: there
-is no such number. In Python `lithobrake.open_study("DIR").results` has the same by attribute, with
-types; a key that is a word of Python has an underscore there (`from_`).
+This page explains every key of the results that a study writes. `*` stands for any name of an
+output, an input (by its dotted key), a design or an outcome. In a list of tables every table has
+the keys that are listed. Numbers are in SI units unless another unit is named; `null` means that
+there is no such number. In Python `lithobrake.open_study("DIR").results` has the same as attributes,
+with types; a key that is a Python keyword has an underscore there (`from_`).
 
 ## `summary.json`
 
 | key | meaning |
 |---|---|
-| `format_version` | of the file; another number, another set of keys |
+| `format_version` | version of the format; files with different versions have different keys |
 | `study` | the study with all defaults, as the tables of its file (every key: lithobrake new) |
-| `results` | what came out; two executions of one study have the same |
-| `provenance` | where it comes from; all that may differ between two executions of one study |
+| `results` | the results, equal in two executions of one study |
+| `provenance` | origin of the results; everything that may differ between two executions of one study |
 """
 # What the parts that write these files put there.
 EXPANSION_KEYS = {
-    "format": "says that this is an expansion",
-    "format_version": "of the file",
+    "format": "identifies the file as an expansion",
+    "format_version": "version of the format",
     "written_by": "version of lithobrake",
     "inputs.*": "name, kind and parameters of the distribution of each input, in the file's units",
     "output_names": "columns of coefficients and residuals",
     "one_dimensional": "whether y had one dimension",
-    "multi_indices": "degrees of each term, one column an input",
-    "coefficients": "of the orthonormal terms, one column an output",
-    "residuals": "what each run is off the expansion, one column an output",
-    "report.method": "asked for, or best of each output",
-    "report.rrmse_estimate": "of each output, in their order: report.outputs.*.rrmse_estimate",
+    "multi_indices": "degrees of each term, one column per input",
+    "coefficients": "coefficients of the orthonormal terms, one column per output",
+    "residuals": "residual of the expansion at each run, one column per output",
+    "report.method": "method of the fit, or best: chosen for each output",
+    "report.rrmse_estimate": "report.outputs.*.rrmse_estimate of all outputs, in their order",
     "report.degree": "highest total degree of a term",
     "report.train_count": "runs that were fitted",
-    "report.dropped_count": "runs left out, as they have no outputs",
+    "report.dropped_count": "runs left out because they have no outputs",
     "report.data_hash": "hash of the inputs and outputs that were fitted",
-    "report.candidates.*.*": "error that each way of fitting promises at a new run, in the unit of the output",
-    "report.challenger.model": "a Gaussian process that every other way is compared with",
-    "report.challenger.rmse_estimate.*": "error that it promises; null where it could not be fitted",
+    "report.candidates.*.*": "expected error of each fit at a new run, in the unit of the output",
+    "report.challenger.model": "a Gaussian process with which all other fits are compared",
+    "report.challenger.rmse_estimate.*": "its expected error; null if it could not be fitted",
     "report.outputs.*.method": "how the output was fitted",
-    "report.outputs.*.term_count": "its terms",
+    "report.outputs.*.term_count": "number of its terms",
     "report.outputs.*.rmse_estimate": "root-mean-square error expected at a new run, with scatter, in its unit",
     "report.outputs.*.rrmse_estimate": "the same over the standard deviation of the runs; null where they do not vary",
-    "report.outputs.*.error_estimate": "how that error was found",
-    "report.outputs.*.condition_number": "of the least squares",
+    "report.outputs.*.error_estimate": "method of the error estimate",
+    "report.outputs.*.condition_number": "condition number of the least squares",
     "report.outputs.*.candidate_degree": "total degree of the terms that omp or lars chose from",
     "report.outputs.*.candidate_q_norm": "q-norm of the same terms",
     "report.outputs.*.covariance": "covariance of the Gaussian process",

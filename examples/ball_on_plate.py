@@ -1,7 +1,7 @@
 """A ball bounces off a hard plate: the smallest solver that a study can use in place of its own soil.
 
-As a program it reads `inputs.json` from the folder that it is started in and writes `outputs.json` there; any Python
-runs it, nothing has to be installed. `ball_on_plate_campaign.py` uses the function `bounce` itself.
+As a program it reads `inputs.json` from its working folder and writes `outputs.json` there. Any Python can run it;
+nothing has to be installed. `ball_on_plate_campaign.py` uses the function `bounce` directly.
 """
 
 import json

@@ -1,8 +1,8 @@
-"""The ball on a hard plate as a plain function: a campaign in Python, and an expansion of what came out.
+"""The ball on a hard plate as a plain function: a campaign in Python, and an expansion of its results.
 
     python examples/ball_on_plate_campaign.py [FOLDER]
 
-Stop it at any time and start it again: runs that had ended are read from FOLDER/runs.sqlite.
+You can stop it at any time and start it again: finished runs are read from FOLDER/runs.sqlite.
 """
 
 import math

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # A first study
 #
-# Where does a lander end up that bounces off ground whose friction and restitution nobody knows? A study answers from a
-# file: what is known, what is not, how many landings to make. This one lets a program of ours make the landings (a ball
-# on a hard plate, which takes milliseconds); without `[solver]` a bed of grains is poured and landed on.
+# A lander bounces off ground whose friction and restitution are unknown. Where does it end up? A study file states what
+# is known, what is unknown, and how many landings to make. In this study an external program computes the landings (a
+# ball on a hard plate, which takes milliseconds); without `[solver]` they are simulated on beds of grains.
 #
 # Each cell also runs in a script: `python examples/notebook_first_study.py`.
 
@@ -20,7 +20,7 @@ PROGRAM = HERE / "ball_on_plate.py"
 # %% [markdown]
 # ## The study file
 #
-# A number that is not known is a distribution. `lithobrake new NAME` writes a file with every key and what it means.
+# An unknown number is a distribution. `lithobrake new NAME --full` writes a file with every key and its meaning.
 
 # %%
 study = f"""
@@ -46,7 +46,7 @@ incidence_deg = {{ distribution = "uniform", lower = 20.0, upper = 50.0 }}
 [surface]
 gravity = 3e-5             # m/s2
 
-# A program of one's own is told all of this, too; this one does not listen.
+# Every solver receives these tables too; this one ignores them.
 [bed]
 grain_count = 100
 width = [0.6, 0.6]
@@ -82,7 +82,7 @@ count = 0
 Path("first_study.toml").write_text(study)
 
 # %% [markdown]
-# ## What it will take
+# ## Time and runs
 #
 # In a notebook, `!lithobrake plan first_study.toml` does the same.
 
@@ -94,7 +94,7 @@ print(plan)
 # %% [markdown]
 # ## Run it
 #
-# Stop it at any time: the same command goes on after the last run that has ended.
+# You can stop it at any time: the same command continues after the last finished run.
 
 # %%
 subprocess.run([*command, "run", "first_study.toml", "--out", "runs/first_study"], check=True)
@@ -108,8 +108,8 @@ for sentence in results.headline:
     print(sentence)
 
 # %% [markdown]
-# In a notebook, a value on the last line of a cell shows itself. The page `runs/first_study/report/index.html` has
-# figures, tables and where each number comes from.
+# In a notebook, a value on the last line of a cell is displayed. The report `runs/first_study/report/index.html` has
+# figures, tables and the source of each number.
 
 # %%
 results

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # One landing by hand
 #
-# Pour a bed of grains, let it settle, throw a box on it and look at what comes out. No study file is needed.
+# Pour a bed of grains, let it settle, land a box on it and look at the result. No study file is needed.
 
 # %%
 from lithobrake.dem import Box, Material
@@ -14,7 +14,7 @@ contact = ContactModel(steps_per_contact=25.0)
 # %% [markdown]
 # ## The bed
 #
-# Forty-eight grains are few: enough to see each step within seconds, too few to trust a number
+# Forty-eight grains are enough to see each step within seconds, but too few for a reliable number
 # (`docs/one_bed_is_not_enough.md`).
 
 # %%
@@ -63,9 +63,9 @@ for name, value in outcome.outputs.items():
     print(f"{name:<20} {value:.4g}")
 
 # %% [markdown]
-# ## How much of its speed does it keep?
+# ## Rebound speed
 #
-# The same box at other speeds, on the same bed: each landing begins from the settled bed again.
+# The same box lands at other speeds on the same bed; each landing starts from the settled bed.
 
 # %%
 speeds = [0.1, 0.2, 0.3, 0.4]
@@ -76,7 +76,7 @@ for speed, share in kept.items():
 # %% [markdown]
 # ## Look at it
 #
-# `landing.h5` has the hulls and where they were; the picture has twelve instants of it.
+# `landing.h5` has the hulls and their motion; the picture shows twelve instants.
 
 # %%
 from lithobrake.results import MovingBodies

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Your own shape
 #
-# A body is a closed triangle mesh with a mass and a spin. This notebook makes one (a lumpy ellipsoid of 200 m), asks
-# for its gravity, and throws landers off its surface.
+# A body is a closed triangle mesh with a mass and a spin. This notebook makes one (a lumpy ellipsoid of 200 m),
+# computes its gravity, and launches landers from its surface.
 
 # %%
 from pathlib import Path
@@ -14,7 +14,7 @@ from lithobrake.smallbody import Body, Shape, fly
 # %% [markdown]
 # ## A mesh
 #
-# A file as the archives have it serves as well; this one is written here: rings of latitude, wound outwards.
+# A file from an archive can be used in the same way. This mesh is made of rings of latitude, with outward normals.
 
 # %%
 rings, sectors = 8, 16
@@ -51,7 +51,7 @@ Path("lumpy.obj").write_text("\n".join(lines) + "\n")
 # %% [markdown]
 # ## A body
 #
-# The mesh is refused, in a sentence, where it is open or folded.
+# An open or folded mesh is refused, with a message.
 
 # %%
 shape = Shape.read("lumpy.obj", unit="m")
@@ -62,9 +62,9 @@ pull = np.linalg.norm(body.effective_acceleration(site))
 print(f"at the site a lander is held with {pull:.3g} m/s2, rotation included")
 
 # %% [markdown]
-# ## Landers that leave it
+# ## Landers that leave the surface
 #
-# Two hundred of them, up to 60 degrees from the vertical.
+# Two hundred landers leave at up to 60 degrees from the vertical.
 
 # %%
 random = np.random.default_rng(2)
@@ -77,7 +77,7 @@ shares = {str(status): float((flights.status == status).mean()) for status in np
 print(shares)
 
 # %% [markdown]
-# A result on the last line of a cell shows itself.
+# A result on the last line of a cell is displayed.
 
 # %%
 flights

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # Your own solver
 #
-# Any model of numbers in and numbers out can be run many times, kept, and replaced by a polynomial chaos expansion. The
-# model stands in a file of its own, `ball_on_plate_campaign.py`, because worker processes import it; here the runs are
-# few and quick, so this process makes them itself.
+# Any model with numbers as inputs and outputs can be run many times, with stored results, and replaced by a polynomial
+# chaos expansion. The model is in a file of its own, `ball_on_plate_campaign.py`, because worker processes import it.
+# Here the runs are few and quick, so this process makes them itself.
 
 # %%
 import sys
@@ -19,7 +19,7 @@ sys.path.insert(0, str(HERE))
 from ball_on_plate_campaign import INPUTS, OUTPUTS, model
 
 # %% [markdown]
-# ## Where to run it
+# ## The design
 #
 # A sparse grid in three uncertain inputs: few points, and exact for polynomials of a low degree.
 
@@ -30,7 +30,7 @@ print(f"{len(points)} runs of {', '.join(INPUTS)}")
 # %% [markdown]
 # ## Run it
 #
-# The ledger keeps each run the moment it ends; the second time all of them are known.
+# The ledger stores each run as soon as it ends; the second campaign reuses all of them.
 
 # %%
 with ThreadPoolExecutor(1) as here, campaign.Ledger(Path("runs.sqlite")) as ledger:
@@ -41,9 +41,9 @@ outputs = runs.outputs(OUTPUTS)
 print(f"{len(points)} runs, {runs.reused_count} of them known before")
 
 # %% [markdown]
-# ## Replace it
+# ## The expansion
 #
-# The expansion costs nothing to ask. It is scored on runs that it has not seen.
+# Evaluating the expansion costs almost nothing. It is tested on runs that were not used in the fit.
 
 # %%
 surrogate = chaos.fit(INPUTS, points, outputs, degree=3, method="ols", output_names=OUTPUTS)
@@ -63,4 +63,4 @@ for name, shares in zip(INPUTS, surrogate.sobol_total, strict=True):
     print(f"{name:<20} {'  '.join(f'{share:>14.3f}' for share in shares)}")
 
 # %% [markdown]
-# In a study the same program is named by `[solver] command`, and its bounces fly on: see `notebook_first_study.py`.
+# A study can use the same program (`[solver] command`) and continues with flights: see `notebook_first_study.py`.

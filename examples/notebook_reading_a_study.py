@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Reading a study
 #
-# `open_study` reads the folder of a study that ran. It writes and computes nothing, so it works on an archived copy,
-# and beside a study that still runs. This notebook reads what `notebook_first_study.py` has made.
+# `open_study` reads the folder of a study. It writes and computes nothing, so it works on an archived copy, and while
+# the study still runs. This notebook reads the study of `notebook_first_study.py`.
 
 # %%
 import numpy as np
@@ -15,7 +15,7 @@ results
 # %% [markdown]
 # ## Tables
 #
-# Each table knows of its columns what they are. With `pip install "lithobrake[data]"`, `results.runs.to_pandas()` and
+# Each column of a table has its unit and meaning. With `pip install "lithobrake[data]"`, `results.runs.to_pandas()` and
 # `to_xarray()` give them to other libraries.
 
 # %%
@@ -28,7 +28,7 @@ flights
 # %% [markdown]
 # ## Numbers
 #
-# The median bounce keeps this part of its speed, and comes down this far away after this time:
+# The fraction of its speed that the median bounce keeps, and the median time to the next impact:
 
 # %%
 kept = np.median(runs["speed_out"]) / results.study["impact"]["speed"]
@@ -38,8 +38,8 @@ print(f"{np.nanmedian(flights['time_s']) / 60:.0f} min to the next impact")
 # %% [markdown]
 # ## The emulator
 #
-# It gives samples of landings at any inputs, by their names and in the units of the study file: here at two frictions,
-# all else in the middle.
+# The emulator gives samples of landings at any inputs, by name and in the units of the study file: here at two
+# frictions, with all other inputs at their median.
 
 # %%
 emulator = results.emulator

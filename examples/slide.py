@@ -1,8 +1,8 @@
-"""A slide of a study that followed landers to rest: its title, its answer in sentences, its map.
+"""Draw a slide of a study of journeys: its title, main results and map.
 
 python examples/slide.py runs/hera
 
-Writes runs/hera_slide.png, 1920 x 1080 pixels, beside the study's folder. Change the words on the slide here.
+Writes runs/hera_slide.png, 1920 x 1080 pixels, next to the study's folder. To change its words, edit this file.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Where does a lander end up on a small body whose soil nobody knows, and how sure are we?"""
+"""Predict where a lander comes to rest on a small body whose soil is unknown, with confidence intervals."""
 
 from typing import TYPE_CHECKING
 

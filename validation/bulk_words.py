@@ -6,9 +6,10 @@ TEXT = """\
 Do many grains together behave as published experiments and simulations, and is a bed of the usual size large enough?
 
 - **Angle of repose and compression** agree with the published values to a few per cent.
-- **Platonic solids**: tetrahedron and cube pack as dice that settled in a flow, to about 0.01. Octahedron, dodecahedron
-  and icosahedron pack more densely than settled and less densely than shaken dice.
-- **Froude scaling** holds for the penetration. Durations scatter too much to tell.
+- **Platonic solids**: the solid fractions of tetrahedron and cube agree within about 0.01 with those of dice that
+  settled in a flow. Octahedron, dodecahedron and icosahedron pack more densely than settled and less densely than
+  shaken dice.
+- **Froude scaling** holds for the penetration. The durations scatter too much for a conclusion.
 - **Beds twice as wide and deep** give lower means in {below} of {count} cases. The largest difference is {most}
   standard errors.
 
@@ -16,8 +17,8 @@ Do many grains together behave as published experiments and simulations, and is 
 
 ## Angle of repose
 
-A heap is left when one end of a box opens. Published angles are about 25 degrees for rounded and 40 for angular grains
-(Kleinhans 2011). Less than the height filled is left, because the slope reaches the back wall.
+A box is filled, one end is opened, and a heap remains. Published angles of repose are about 25 degrees for rounded and
+40 for angular grains (Kleinhans 2011). The heap is lower than the filling, because its slope reaches the back wall.
 
 {repose}
 
@@ -31,15 +32,15 @@ Spheres are compressed from six sides. Published values are those of Agnolin and
 
 ## Poured beds by friction
 
-Beds of 150 hulls. Solid fraction and coordination number fall with friction, as they should.
+Beds have 150 hulls. Solid fraction and coordination number decrease with friction, as they should.
 
 {friction}
 
 ## Packing of the Platonic solids
 
-The solids are poured at 2 m/s with friction 0.5. Published are plastic dice (Baker and Kudrolli 2010): settled in a
-flow
-(in the table), and shaken: 0.64, 0.67, 0.64, 0.63, 0.59, each +-0.01.
+The solids are poured at 2 m/s with friction 0.5. The published values are for plastic dice (Baker and Kudrolli 2010).
+The table lists those of dice that settled in a flow; for shaken dice they are 0.64, 0.67, 0.64, 0.63 and 0.59, each
++-0.01.
 
 {packing}
 
@@ -47,17 +48,16 @@ flow
 
 A sphere is dropped into beds at three gravities. Equal Froude numbers should give equal scaled values. The means of the
 three gravities at one Froude number differ by {gravities} times the scatter between simulations. The mean duration is
-largest at the highest gravity for each Froude number, but two or three simulations per gravity do not decide whether
+largest at the highest gravity for each Froude number, but two or three simulations per gravity cannot show whether
 this is chance.
 
 {froude}
 
 ## Size of the bed
 
-The same landings on several beds of 150 grains, 0.7 m wide ("plain"), and on beds of 1200 grains, twice as wide and
-deep
-("double"). The rule of the smallest bed requires {rule}. Brackets hold the number of beds; "+-" is the standard
-deviation between beds.
+The same landings were simulated on several beds of 150 grains, 0.7 m wide ("plain"), and on beds of 1200 grains, twice
+as wide and deep ("double"). The rule of the smallest bed requires {rule}. Brackets hold the number of beds; "+-" is the
+standard deviation between beds.
 
 {beds}
 

@@ -23,15 +23,15 @@ ALL = Path(__file__).with_name("contact_tests.csv")
 HEAD = """\
 # What the contact physics reproduces
 
-Does the contact law reproduce known solutions, and do many bodies conserve what they must?
+Does the contact law reproduce known solutions, and do systems of many bodies conserve momentum and energy?
 
 **{passed} of {count} tests of the physics pass**, and {met} of the {rows} known results below are reproduced within the
 tolerance. The expected values and tolerances were fixed before the code was written. T1 to T7 are the tests of Chung
 and Ooi (2011), Granular Matter 13, 643-656; the other values are derived in the tests.
 
-"Measured" lists the left side of every comparison that the tests of a row make. Semicolons separate sets of parameters.
-For a quantity that should stay the same it is the change. Some comparisons only ensure that the test does what is meant
-(for example that a contact occurred); their numbers are listed too. "Holds" is a comparison of arrays.
+"Measured" lists the computed value of every comparison in the tests of a row. Semicolons separate sets of parameters.
+For a conserved quantity the value is its change. Some comparisons only ensure that the test does what is intended (for
+example that a contact occurred); their numbers are listed too. "Holds" is the result of a comparison of arrays.
 """
 TAIL = """
 ## Limits

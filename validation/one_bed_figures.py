@@ -40,7 +40,7 @@ Do two studies that differ in their seed alone agree?
 {answer}
 
 [One bed is not enough](../one_bed_is_not_enough.md) explains the studies and their result; this page has the tables.
-Intervals in brackets hold with 90 %.
+Brackets contain 90 % intervals.
 
 ## Pairs of seeds
 
@@ -54,8 +54,8 @@ sampling error of its flights takes its place.
 ## The paper method on one bed each
 
 The return fraction has the 90 % sampling error of its 5000 flights. The other "±" are standard deviations over the
-samples. "Dominant input" has the largest first Sobol index in the variance that the expansion explains. Q2 is on twelve
-fresh runs over all inputs; below 0 the expansion predicts worse than the mean.
+samples. "Dominant input" is the one with the largest first-order Sobol index in the variance that the expansion
+explains. Q2 is on twelve fresh runs over all inputs; below 0 the expansion predicts worse than the mean.
 
 {places}
 
@@ -64,8 +64,8 @@ fresh runs over all inputs; below 0 the expansion predicts worse than the mean.
 ![Parts of the variance, for three grain sizes](one_bed_grains.png)
 
 Each entry is a fraction of the variance of the output, with its 90 % interval. Estimates below 0 or above 1 are shown
-as 0 or 1. "Everything else" is impact point, attitude and what terms of first and second degree in the soil do not
-explain. "Total effect of the soil" includes interactions with the impact point and the attitude. It comes from paired
+as 0 or 1. "Everything else" is impact point, attitude and the effects of the soil beyond terms of first and second
+degree. "Total effect of the soil" includes interactions with the impact point and the attitude. It comes from paired
 landings at one impact point on two soils. All beds have the same volume of grains and are 0.7 m wide.
 
 {grains}

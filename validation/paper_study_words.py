@@ -3,14 +3,14 @@
 HEAD = """\
 # The paper's study: tables
 
-How much does the result of the published method depend on the bed that is hit, and how accurate is its expansion?
+How much does the result of the published method depend on the bed, and how accurate is its expansion?
 
 The paper method gives return fractions from {least} to {most} % on {beds} beds. The drawn method gives {value} % (90 %
-interval {low}-{high} %) over beds, impact points and attitudes. On fresh runs the expansion of order 5 errs by
-{errors}; the paper reports {published}.
+interval {low}-{high} %) over beds, impact points and attitudes. On fresh runs the expansion of order 5 has mean
+absolute errors of {errors}; the paper reports {published}.
 
-[The paper's study](../paper_study.md) explains set-up and results; this page has the tables. Intervals in brackets
-hold with 90 %.
+[The paper's study](../paper_study.md) explains set-up and results; this page has the tables. Brackets contain 90 %
+intervals.
 """
 
 ANSWERS = """\
@@ -24,8 +24,8 @@ covers the sampling of the flights only. "Paper method, seed N" repeats it at or
 
 The next table lists the origin of the variance of the rebound speed. For the paper method it has the three largest
 total Sobol indices of the expansion of order 3; they may sum to more than 1. For the drawn studies it has fractions of
-the variance. "Everything else" is impact point, attitude and what terms of first and second degree in the soil do not
-explain. Estimates below 0 are shown as 0.
+the variance. "Everything else" is impact point, attitude and the effects of the soil beyond terms of first and second
+degree. Estimates below 0 are shown as 0.
 
 {drivers}
 """
@@ -34,13 +34,14 @@ ERRORS = """\
 MAPE is the mean absolute error in percent of the output, Q2 the coefficient of determination on fresh runs. "Kept
 inputs" are three of the five; the others have their medians. "Due to chaos" is the error that a perfect mean would
 still have. It follows from runs that repeat the same soils with the impact point moved by 0.1 mm. "From the normal"
-counts the elevation from the normal of the surface, because the paper does not state from where it counts.
+counts the elevation from the normal of the surface, because the paper does not state its reference.
 
 {errors}
 """
 
 FITS = """\
-The grids are the runs of the expansions; 150 further runs are randomised. Scores are on fresh runs.
+"Grids" are the runs of the two expansions; "drawn" are 150 further runs with randomised inputs. Scores are on fresh
+runs.
 
 {fits}
 """
@@ -55,13 +56,13 @@ reference above it.
 """
 
 GRAINS = """\
-The drawn study on smaller grains. The first line is the study of 700 landings, the others have 320.
+The table has the drawn study on smaller grains. The first row is the study of 700 landings; the others have 320.
 
 {grains}
 """
 
 COST = """\
-Two cores; the load is that of the machine.
+Times are for two cores; the load is that of the machine.
 
 {cost}
 """
@@ -69,8 +70,8 @@ Two cores; the load is that of the machine.
 END = """\
 ## Limits
 
-The paper does not publish its input ranges, impact speed, grains or lander, so its design is reproduced and its numbers
-are not. [The paper's study](../paper_study.md#limits) lists the limits of the beds.
+The paper does not publish its input ranges, impact speed, grains or lander, so only its design can be reproduced,
+not its numbers. [The paper's study](../paper_study.md#limits) lists the limits of the beds.
 
 ## Reproduce this page
 

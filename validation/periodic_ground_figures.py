@@ -37,6 +37,11 @@ OUTCOMES = {
 }  # fmt: skip
 # Beds between walls as they grow, and then periodic ones, from the narrowest on.
 ORDER = sorted(GROUNDS, key=lambda name: (GROUNDS[name].sides != "walls", GROUNDS[name].width))
+# Study files by the title that they had when they ran.
+STUDY_FILES = {
+    "Quick look: CubeSat on Didymos": "`scenarios/first_bounce.toml`",
+    "A CubeSat on Didymos, with few landings": "`validation/studies/drawn_170.toml`",
+}
 
 
 def in_words(way: str) -> str:
@@ -138,7 +143,7 @@ def study_table() -> list[str]:
     for one in json.loads((HERE / "periodic_studies.json").read_text())["studies"]:
         bed, returns, escaped = one["bed"], one["returns"], one["shares"]["escaped"]
         ends = ", ".join(f"{count} {OUTCOMES[word]}" for word, count in sorted(one["outcomes"].items()))
-        cells = [one["title"], f"{bed['sides']}, {bed['grain_count']} on {bed['width'][0]:g} m", ends]
+        cells = [STUDY_FILES[one["title"]], f"{bed['sides']}, {bed['grain_count']} on {bed['width'][0]:g} m", ends]
         cells += [
             f"{100 * share['share']:.1f} ({100 * share['lower']:.1f} to {100 * share['upper']:.1f})"
             for share in (returns, escaped)

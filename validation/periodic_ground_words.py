@@ -23,13 +23,13 @@ What do the walls of a bed change, and do the periodic images of a narrow bed ch
 
 ## Set-up
 
-Soil and lander are those of the quick study, at the medians of their distributions. Beds lie between walls 0.7 m apart,
-or at twice or four times that width (4 and 16 times the area), or are periodic with a period of 0.56 to 1.4 m. All have
-equally many grains per area.
+Soil and lander are those of `scenarios/first_bounce.toml`, at the medians of their distributions. Beds lie between
+walls 0.7 m apart, or at twice or four times that width (4 and 16 times the area), or are periodic with a period of 0.56
+to 1.4 m. All have equally many grains per area.
 
-On a periodic bed the impact point is anywhere. Between walls it is in the middle half of the bed, so a wider bed puts
-the walls farther from the lander. Grains that are far from the lander and slower than 0.03 of its speed are frozen
-(`contact.held_speed = 0.03`).
+On a periodic bed the impact points cover the whole bed. Between walls they lie in the middle half of it, so in a wider
+bed the walls are farther from the lander. Grains that are far from the lander and slower than 0.03 of its speed are
+frozen (`contact.held_speed = 0.03`).
 
 A lander is lost if it crosses the edge of its bed without clearly flying. It has no outcome and is left out of all
 means. Brackets hold standard errors, with beds as clusters.
@@ -48,16 +48,16 @@ Means over beds, with the standard deviation in brackets.
 
 ## Slopes
 
-The same soil with a friction of 0.3, less than the tangent of either slope. Impacts are at 0.4 m/s, 30 degrees from the
-normal and downhill. A periodic bed is 0.7 m wide and held by its rough floor. A bed between walls is 1.4 m wide and
-held by its lower wall. There are three beds per slope between walls, too few for reliable standard errors.
+The soil is the same, with a friction of 0.3, less than the tangent of either slope. Impacts are at 0.4 m/s, 30 degrees
+from the normal and downhill. A periodic bed is 0.7 m wide and held by its rough floor. A bed between walls is 1.4 m
+wide and held by its lower wall. There are three beds per slope between walls, too few for reliable standard errors.
 
 {slopes}
 
 ## The studies of the scenarios
 
-Each study with the beds of its file and with the other kind of sides (the quick study on both widths). Means are over
-all landings that left the bed. Fractions have 90 % intervals.
+Each study was run with the beds of its file and with the other kind of sides (`scenarios/first_bounce.toml` with
+periodic beds of two widths). Means are over all landings that left the bed. Fractions have 90 % intervals.
 
 {studies}
 

@@ -37,20 +37,20 @@ Does a captured lander slide by Coulomb's law with the friction of its contacts?
 
 ## Set-up
 
-The box of the quick study (0.1 x 0.1 x 0.227 m, 2 kg) lies on beds of 200 hulls of 9 cm, all of one material. Beds are
-1.5 m long and two to three grains deep. The box came to rest there by itself. It was dropped from just above the grains
-with its long edge along the direction of motion, across it, oblique to it, or in any orientation. It is then set in
-motion along the bed, level or down a slope, by an instantaneous push.
+The box of `scenarios/first_bounce.toml` (0.1 x 0.1 x 0.227 m, 2 kg) lies on beds of 200 hulls of 9 cm, all of one
+material. Beds are 1.5 m long and two to three grains deep. The box is dropped from just above the grains, with its long
+edge along the later direction of motion, across it, oblique to it ("edge"), or in any orientation, and comes to rest.
+An instantaneous push then sets it in motion along the bed, level or down a slope.
 
 The **effective friction** is the energy lost, potential energy included, until the box is at rest again or leaves the
-bed, divided by its weight normal to the bed and the path of its centroid. Means are weighted by the path: energy lost
-by all, over weight and path of all.
+bed, divided by the component of its weight normal to the bed and by the path of its centroid. Means are weighted by the
+path.
 
-Speeds are given as Froude numbers v² / (g d), d being the grain diameter. By similarity only the Froude number,
-friction, restitution and E / (rho g d) matter. The last is 1e5 here, from a gravity of 0.02 m/s2 with E = 4.5e5 Pa. At
-5e-5 m/s2 the same pushes correspond to 1.1e3 Pa. Real soils are stiffer; the overlap is a thousandth of a grain here,
-and smaller there. One row below has 1e6. A captured lander, with v² < g a and a its smallest edge, has a Froude number
-below 1.1 here.
+Speeds are given as Froude numbers v² / (g d), where d is the grain diameter. By similarity only the Froude number,
+friction, restitution and the stiffness E / (rho g d) matter. The stiffness is 1e5 here, from a gravity of 0.02 m/s2 and
+E = 4.5e5 Pa; at 5e-5 m/s2 the same pushes correspond to E = 1.1e3 Pa. Real soils are stiffer: the overlap is a
+thousandth of a grain here and smaller in a real soil. One row below has a stiffness of 1e6. A captured lander has
+v² < g a, where a is its smallest edge, so its Froude number is below 1.1 here.
 
 ## Why the law differs
 
@@ -76,7 +76,7 @@ below 1.1 here.
 
 ## Limits
 
-All grains of a bed have one size, so nothing follows for finer or mixed grains. Many rows rest on 4 to 13 pushes.
+All grains of a bed have one size, so nothing follows for finer or mixed grains. Many rows are based on 4 to 13 pushes.
 
 ## Reproduce this page
 
@@ -166,8 +166,8 @@ def reasons(rows: list[Row]) -> str:
         f"{len(steep)} pushes down a slope steeper than that friction, {stopped} came to rest. By Coulomb's law none "
         "would.\n- **Scatter** depends on where the lander lies. One that catches an edge stops within half a grain at "
         "any friction.\n- **Faster pushes** lose more energy per path.\n- **Smaller landers** lie deeper among the "
-        "grains and are held more; larger ones are held no less.\n- **More friction between grains** than at the "
-        "lander holds it more, too."
+        "grains and have more effective friction; larger ones have no less.\n- **More friction between grains** than "
+        "at the lander increases the effective friction, too."
     )
 
 

@@ -31,7 +31,7 @@ def main(
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
-    """Where does a lander end up on a small body whose soil nobody knows, and how sure are we?"""
+    """Predict where a lander comes to rest on a small body whose soil is unknown, with confidence intervals."""
 
 
 # More processes than any machine runs at once.

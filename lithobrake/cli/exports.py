@@ -59,7 +59,9 @@ def export(
     body_number: BodyNumber = None,
     run: Again = None,
     force: Force = False,
-    out: Annotated[str | None, typer.Option("--out", metavar="FOLDER", help="The default is DIR/export.")] = None,
+    out: Annotated[
+        str | None, typer.Option("--out", metavar="FOLDER", help="Folder; the default is DIR/export.")
+    ] = None,
     json: Json = False,
 ) -> None:
     """Write results of a study in the formats of other programs: flights, attitudes, shape, map, motions."""

@@ -38,7 +38,7 @@ def land(
     change: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a study parameter.")
     ] = None,
-    number: Annotated[int, typer.Option("--number", metavar="N", help="Which run of the study, from 1.")] = 1,
+    number: Annotated[int, typer.Option("--number", metavar="N", help="Number of the run or journey, from 1.")] = 1,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -76,11 +76,9 @@ def serve(
     out: OutPath = None,
     host: Annotated[
         str,
-        typer.Option(
-            "--host", metavar="ADDRESS", help="Address to listen on; the default is reached from this machine only."
-        ),
+        typer.Option("--host", metavar="ADDRESS", help="Address to listen on; the default serves this machine only."),
     ] = "127.0.0.1",
-    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0 takes a free one.")] = 4242,
+    port: Annotated[int, typer.Option("--port", min=0, max=65535, help="Port; 0: any free port.")] = 4242,
     time_limit: Annotated[
         float | None,
         typer.Option(

@@ -57,7 +57,7 @@ def runs(
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
     json: Json = False,
 ) -> None:
-    """List the runs of a study: how each ended, how fast the lander left, and where on which bed it came down."""
+    """List the runs of a study: outcome, rebound speed, bed and impact point of each."""
     with one_sentence():
         from lithobrake.campaign import run_lines, write_csv
         from lithobrake.results import open_study
@@ -86,7 +86,7 @@ def runs(
 def view(
     folder: StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Show a landing in a window instead (PyVista).")] = False,
-    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Run that --3d shows.")] = None,
+    run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Run to show with --3d.")] = None,
     journey: JourneyNumber = None,
 ) -> None:
     """Open the report of a study, or a page about one journey, in the browser."""
@@ -116,14 +116,14 @@ def view(
 def film(
     folder: StudyDirectory,
     run: Annotated[
-        str | None, typer.Option("--run", metavar="ID", help="Which run; default: the preview landing.")
+        str | None, typer.Option("--run", metavar="ID", help="The run; default: the preview landing.")
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             "--out",
             metavar="FILE",
-            help="A film, .mp4 or .webp, a sheet of pictures, .png, or .vtkhdf for ParaView; DIR/landing.mp4.",
+            help="A film (.mp4, .webp), a sheet of pictures (.png), or .vtkhdf for ParaView; default: DIR/landing.mp4.",
         ),
     ] = None,
     seconds: Annotated[

@@ -27,7 +27,7 @@ def rare(
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Name of a limit state of the study.", show_default=False)
     ],
-    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings of each level.")] = 500,
+    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings per level.")] = 500,
     out: OutPath = None,
     workers: Workers = None,
     executor: ExecutorName = "local",
@@ -49,7 +49,7 @@ def rare(
     tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 
 
-@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake infer results --bounce bounces.csv")
+@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv")
 def infer(
     folder: StudyDirectory,
     bounce: Annotated[
@@ -59,7 +59,7 @@ def infer(
         ),
     ] = None,
 ) -> None:
-    """Infer the soil from observed bounces with a study's emulator: writes posterior.json and posterior.png there."""
+    """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
     with one_sentence():
         from lithobrake.pipeline import InferredStudy, infer_study
 
@@ -77,9 +77,9 @@ def infer(
 
 
 study_command("bed", "Pour and settle the beds, and simulate a preview landing.", EXPERT, until="landing")
-study_command("screen", "Run the screening design and fit an expansion in all inputs.", EXPERT)
-study_command("refine", "Run the refined design and fit an expansion in the inputs that matter.", EXPERT)
-study_command("test", "Run the test points and score the expansions on them.", EXPERT)
-study_command("sample", "Draw Monte Carlo samples from the refined expansion.", EXPERT)
+study_command("screen", "Paper method: run the screening design and fit an expansion in all inputs.", EXPERT)
+study_command("refine", "Paper method: run the refined design and fit an expansion in the kept inputs.", EXPERT)
+study_command("test", "Paper method: run the test points and score the expansions on them.", EXPERT)
+study_command("sample", "Take Monte Carlo samples of the emulator (paper method: of the refined expansion).", EXPERT)
 study_command("fly", "Fly the samples that leave the surface to their next impact.", EXPERT)
 study_command("rest", "Follow samples from bounce to bounce until they come to rest.", EXPERT)

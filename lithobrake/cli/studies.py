@@ -132,7 +132,7 @@ def study_command(name: str, what: str, group: str, until: str | None = None) ->
         tell(study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
     epilog = f"Example: lithobrake {name} study.toml --out results --workers 4"
-    full = f"{what} Reuses what its folder already has, and runs any earlier stage whose output is missing."
+    full = f"{what} Reuses the files in its folder, and first runs all earlier stages whose files are missing."
     app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)(command)
 
 
@@ -147,7 +147,7 @@ def plan(
     ] = False,
     json: Json = False,
 ) -> None:
-    """Show the runs of a study, the time and disk they take, the expected half-width and warnings. Runs nothing."""
+    """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
     folder = study_folder(study, out)
     with one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study

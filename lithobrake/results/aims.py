@@ -16,14 +16,14 @@ class AimOnGround:
     missing: float
     """share of the landers with an unknown outcome"""
     distance_p95: Estimate | None
-    """95 % of those at rest lie within this distance over the ground [m]; null where none is at rest, a bound where so
-    few landers do not show it"""
+    """95 % of those at rest lie within this distance over the ground [m]; null if none is at rest, and a bound is null
+    if there are too few landers for it"""
     time_p95: Estimate | None
-    """95 % of those at rest are so within this time [s]; null likewise"""
+    """95 % of those at rest are at rest within this time [s]; null and bounds as for distance_p95"""
     allowed: bool
-    """whether the option keeps the limits on this ground"""
+    """whether the option satisfies the conditions on this ground"""
     share_of_refits: float | None = None
-    """share of the refits in which most landers are at rest here, on soil"""
+    """fraction of the refits in which this option has most landers at rest, on soil"""
 
 
 @dataclass(frozen=True)
@@ -42,46 +42,48 @@ class BestAim:
     """The allowed option at which most landers are at rest; null where none is allowed, or no lander is at rest."""
 
     aim: int
-    """its place among the aims, from 0"""
+    """its index among the options, from 0"""
     share_of_refits: float | None
-    """share of the refits in which it is the best, no probability that it is; null on hard ground"""
+    """fraction of the refits in which it is the best, which is not the probability that it is the best; null on hard
+    ground"""
     own: ShareInterval | None
-    """its share of landers at rest less what its selection among the options adds, with the error that all options
-    which cannot be distinguished from it have over refits; null on hard ground, and where refits give none"""
+    """its fraction of landers at rest without the selection bias, with the error over refits of all options that cannot
+    be distinguished from it; null on hard ground, and if refits give none"""
     not_worse: tuple[int, ...] | None
-    """places of the other allowed options that cannot be distinguished from the best at the level, all of them
-    together; null likewise"""
+    """indices of the other allowed options that cannot be distinguished from the best at the level, all of them
+    together; null in the same cases"""
     next: int | None
-    """place of the second best; null likewise"""
+    """place of the second best; null in the same cases"""
     difference: Estimate | None
-    """its share less that of the second, with bounds over refits; null where there is no second, and likewise"""
+    """its fraction minus that of the second, with bounds over refits; null if there is no second, and in the same
+    cases"""
 
 
 @dataclass(frozen=True)
 class AimResults:
-    """The delivery options of the study file (docs/aiming.md), the last name running fastest."""
+    """The delivery options of the study file (docs/aiming.md); the last name varies fastest."""
 
     names: tuple[str, ...]
-    """what is chosen, by dotted key, in the order of aims.values"""
+    """keys of the options, dotted, in the order of aims.values"""
     units: tuple[str, ...]
     """of the names"""
     within: tuple[str, ...]
-    """limits that the best option keeps"""
+    """conditions that the best option must satisfy"""
     lander_count: int
     """landers at each option"""
     refit_count: int
-    """fits of the emulator to beds drawn with replacement that they share in"""
+    """refits of the emulator to resampled beds, which all options share"""
     level: float
     """probability that the bounds of this table stand for"""
     why: str | None
-    """why the soil gives no interval, in a sentence; null where it gives one"""
+    """why there is no interval on soil, in a sentence; null if there is one"""
     aims: tuple[AimResult, ...]
     best_on_soil: BestAim | None
     best_on_hard: BestAim | None
     statement: str
-    """the best option and how sure it is, in sentences"""
+    """the best option and its uncertainty, in sentences"""
     sides: tuple[str, ...] = ()
-    """with aim.sides: the sides to choose from in words, of which the values of that name are places"""
+    """with aim.sides: the sides in words; the values of that name are indices in this list"""
     __repr__ = short_repr
 
     def value_words(self, name: str, value: float) -> str:

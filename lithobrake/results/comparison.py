@@ -15,7 +15,7 @@ class ComparedNumber:
     lower: float | None
     """lower bound, over beds and impact points not in the study; null where there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
 
 
 @dataclass(frozen=True)

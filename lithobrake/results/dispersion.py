@@ -41,7 +41,7 @@ class ImpactNumbers:
 
 @dataclass(frozen=True)
 class GravityTableError:
-    """Errors of the table of gravity over the mean gravity on the surface."""
+    """Errors of the table of gravity, divided by the mean gravity on the surface."""
 
     median: float
     """median over points"""
@@ -50,7 +50,7 @@ class GravityTableError:
     largest: float
     """the same, largest"""
     point_count: int
-    """points looked at"""
+    """number of points checked"""
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class FlightChecks:
     gravity_table_error: GravityTableError | None
     """null where the gravity is exact"""
     jacobi_flight_count: int
-    """flights whose Jacobi constant was looked at, without the partner"""
+    """flights whose Jacobi constant was checked, without the partner"""
     jacobi_drift_median_m2_s2: float | None
-    """how far it drifts, in the median [m2/s2]; null without flights"""
+    """median of its drift [m2/s2]; null without flights"""
     jacobi_drift_largest_m2_s2: float | None
     """the same, largest"""
 
@@ -114,34 +114,33 @@ class WithoutScatter:
 
 @dataclass(frozen=True, kw_only=True)
 class GroundResults:
-    """Where the followed samples end on a ground (docs/flights.md).
-
-    settled, lofted, outside, flying, escaped, partner, sliding or bouncing; on soil, hard ground, and in a drawn study
-    hard ground with the restitution that the soil implies (equivalent). null where none were followed. Quantiles are of
-    the landers at rest, and absent where there is none.
+    """Ends of the followed samples on one kind of ground (docs/flights.md): settled, lofted, outside, flying, escaped,
+    partner, sliding or bouncing. The kinds are soil, hard ground, and in a drawn study hard ground with the restitution
+    of the soil (equivalent). null if none were followed. Quantiles are of the landers at rest, and absent if there are
+    none.
     """
 
     sample_count: int
     """samples followed"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
     slid: CountedShare
-    """moved along the ground at all, however they ended"""
+    """samples that slid along the ground, whatever their end"""
     time_s: Mapping[str, float] | None = None
     """time until rest [s], by level, as "quantile_0.5" """
     path_length: Mapping[str, float] | None = None
-    """sum of the straight lines between impacts [m], likewise"""
+    """sum of the straight lines between impacts [m], by level"""
     rebounds: Mapping[str, float] | None = None
-    """impacts after which the lander went on, likewise"""
+    """impacts after which the lander continued, by level"""
     slid_length: Mapping[str, float] | None = None
-    """distance along the ground, in contact with it [m], likewise"""
+    """distance along the ground, in contact with it [m], by level"""
     slid_time_s: Mapping[str, float] | None = None
-    """time of that [s], part of time_s, likewise"""
+    """duration of the sliding [s], part of time_s, by level"""
     ellipses: LandingEllipses | None
     outside_too_slow: CountedShare
-    """of those of unknown outcome: slower than any run"""
+    """samples with unknown outcome because the impact was slower than all runs"""
     of: str
-    """which journeys the table describes and what they depend on, in words: hard ground takes no soil, bed or emulator
-    of the study"""
+    """which trajectories the table describes and what they depend on, in words: hard ground uses no soil, bed or
+    emulator of the study"""
     interval: Level | None = field(metadata=INLINE)
     """of the shares; none on the equivalent ground, and on the soil of a paper study"""
     regions: tuple[RestRegion, ...] = ()
@@ -171,10 +170,10 @@ class GroundResults:
 
 @dataclass(frozen=True)
 class RestResults:
-    """From bounce to bounce until the landers are at rest."""
+    """Landers followed from bounce to bounce until they are at rest."""
 
     why_no_soil: str | None
-    """why journeys on the soil end with the first impact, in a sentence, or null"""
+    """why trajectories on the soil end at the first impact, in a sentence, or null"""
     trained_ranges: Mapping[str, tuple[float, float]]
     """smallest and largest value of each input in runs in which all vary, in its unit"""
     soil: GroundResults | None

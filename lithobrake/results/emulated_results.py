@@ -9,35 +9,37 @@ from lithobrake.vocabulary.screen import short_repr
 
 @dataclass(frozen=True)
 class ControlVariate:
-    """What the emulator's prediction of each journey does to the share at rest."""
+    """Effect of the emulator's predictions, as a control variate, on the fraction at rest."""
 
     is_used: bool
-    """whether the shares of the ends have it taken off: only where that narrows the interval of those at rest"""
+    """whether the fractions of the ends use this control variate: only if it narrows the interval of the fraction at
+    rest"""
     half_width: float
-    """half width of the interval of the share at rest without it"""
+    """half-width of the interval of the fraction at rest without it"""
     half_width_with: float
     """the same with it"""
 
 
 @dataclass(frozen=True)
 class EmulatedJourneys:
-    """Landers that the emulator of all touchdowns took from touchdown to touchdown (emulated.csv)."""
+    """Landers that the emulator of all touchdowns followed from touchdown to touchdown (emulated.csv)."""
 
     why: str | None
     """why the touchdowns have no emulator, in a sentence; null where they have one"""
     count: int
     """landers"""
     landings: int
-    """simulated landings where the emulator had no answer"""
+    """landings simulated outside the training range of the emulator"""
     most_landings: int
-    """the most that would have been made"""
+    """largest number of such landings"""
     unknown: float
-    """share of the landers whose end is unknown: no answer, and no landing left to be made"""
+    """fraction of the landers with unknown end: outside the training range when the largest number of landings was
+    reached"""
     ends: Mapping[str, EndShare]
-    """how the others ended, as results.ends; bounds over refits to beds drawn with replacement, wider by the unknown"""
+    """ends of the others, as in results.ends; bounds over refits to resampled beds, widened by the unknown fraction"""
     agrees: bool | None
-    """whether the shares of all ends differ from those of the journeys by no more than their intervals together; null
-    without intervals"""
+    """whether the fractions of all ends agree with those of the journeys within their joint intervals; null without
+    intervals"""
     control: ControlVariate | None
     """null where the emulator predicts nothing of the ends"""
     statement: str

@@ -11,7 +11,7 @@ class JointScore:
     """The score of all outputs together."""
 
     energy_skill: float
-    """1 - energy score over that of drawing runs, whatever the inputs"""
+    """1 - energy score divided by that of resampling runs without regard to the inputs"""
 
 
 @dataclass(frozen=True)
@@ -19,11 +19,11 @@ class OutputScore:
     """The scores of an output on held-out beds."""
 
     crps_skill: float
-    """1 - CRPS over that of drawing runs, whatever the inputs"""
+    """1 - CRPS divided by that of resampling runs without regard to the inputs"""
     band_90: float
     """share of runs inside the middle 90 % of their predictive distribution"""
     pit: tuple[int, ...]
-    """runs by where in its predictive distribution each lies (PIT value), in ten steps"""
+    """number of runs by their PIT value (quantile in the predictive distribution), in ten bins"""
 
 
 @dataclass(frozen=True)
@@ -41,11 +41,11 @@ class EmulatorResults:
     of: str
     """which landings it describes, in words"""
     statement: str
-    """what it makes of the inputs, in a sentence"""
+    """predictive value of the inputs, in a sentence"""
     follows_inputs: bool
-    """whether samples depend on the inputs; else each is one of the runs"""
+    """whether samples depend on the inputs; otherwise runs are resampled"""
     found_inputs: tuple[str, ...]
     """significant inputs: they change a mean, alone or by products; one test of 90 % for all"""
     scores: EmulatorScores
     warning: str | None
-    """that its share lies outside the interval of the runs, in a sentence; null where it does not"""
+    """if its fraction lies outside the interval of the runs, a sentence that states this; otherwise null"""

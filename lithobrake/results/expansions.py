@@ -13,7 +13,7 @@ IntervalByInput = Mapping[str, tuple[float, float]]
 
 @dataclass(frozen=True)
 class NodeCounts:
-    """Nodes of grids, whatever design the study has."""
+    """Numbers of nodes of grids, for comparison with the design of the study."""
 
     input_counts: tuple[int, ...]
     """numbers of inputs, the rows of the two tables"""
@@ -34,11 +34,11 @@ class DesignCounts:
     replicate_count: int
     """runs at every point"""
     run_count: int
-    """runs, of which several may be one in the ledger"""
+    """runs; equal ones are one row in the ledger"""
     with_outputs: int
     """runs after which the lander left, with all outputs"""
     outcomes: Mapping[str, int]
-    """runs that ended so; failed: runs without an outcome"""
+    """number of runs with this outcome; failed: runs without an outcome"""
 
 
 @dataclass(frozen=True)
@@ -77,23 +77,23 @@ class ExpansionResults:
     mean: Mapping[str, float]
     """by output: mean over the distributions of the inputs"""
     std: Mapping[str, float]
-    """by output: standard deviation likewise, without scatter from run to run"""
+    """by output: standard deviation over the distributions of the inputs, without scatter from run to run"""
     sobol_first: Mapping[str, ByInput]
-    """by output and input: share of the variance of the expansion that the input explains alone, freed of scatter"""
+    """by output and input: share of the variance of the expansion that the input explains alone, corrected for
+    scatter"""
     sobol_total: Mapping[str, ByInput]
     """the same with all its interactions"""
     sobol_first_interval: Mapping[str, IntervalByInput]
-    """its 95 % interval, by drawing residuals of the runs with replacement: lower, upper"""
+    """its 95 % interval, from resampled residuals of the runs: lower, upper"""
     sobol_total_interval: Mapping[str, IntervalByInput]
-    """likewise"""
+    """95 % interval of sobol_total, in the same way"""
     __repr__ = short_repr
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputErrors:
-    """Errors of an expansion on a set of runs, of one output.
-
-    screening and refined: on their own runs; test_screening, test_kept and test_all: on runs that they have not seen.
+    """Errors of an expansion on a set of runs, for one output. screening and refined: on the runs of the fit;
+    test_screening, test_kept and test_all: on runs that were not used in the fit.
     """
 
     mape: float | None
@@ -109,13 +109,13 @@ class OutputErrors:
     ape: tuple[float | None, ...] | None = None
     """absolute percentage error of every run [%], in scores.json alone; null where the true value is 0"""
     mape_interval: Ends
-    """95 % interval, by drawing runs with replacement: lower, upper; null: no such end"""
+    """95 % interval of mape, from resampled runs: lower, upper; null if that bound does not exist"""
     rmse_interval: Ends
-    """likewise"""
+    """the same for rmse"""
     rrmse_interval: Ends
-    """likewise"""
+    """the same for rrmse"""
     q2_interval: Ends
-    """likewise"""
+    """the same for q2"""
 
 
 @dataclass(frozen=True)

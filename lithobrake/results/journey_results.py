@@ -19,7 +19,7 @@ class EndShare:
     lower: float | None
     """lower bound, over beds and impact points not in the study; null where there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     why: str | None = None
     """why there is no interval, in a sentence"""
 
@@ -33,7 +33,7 @@ class RestQuantile:
     lower: float | None
     """lower bound of its 90 % interval, over beds not in the study; null where there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     why: str | None = None
     """why a bound is missing, in a sentence"""
 
@@ -49,14 +49,14 @@ class RestQuantiles:
 
 @dataclass(frozen=True)
 class DeliveryResults:
-    """Where and how the landers come down first (touchdowns.csv): the delivery, whatever the ground does with it."""
+    """Place and state of the first impacts (touchdowns.csv): the delivery, before any effect of the ground."""
 
     count: int
     """landers that touch down"""
     of: int
     """journeys"""
     speed: tuple[float, float, float]
-    """speed of the first impact against the ground: 5, 50 and 95 % of the landers are below [m/s]"""
+    """speed of the first impact relative to the ground: quantiles of 5, 50 and 95 % over the landers [m/s]"""
     incidence_deg: tuple[float, float, float]
     """the same of the angle of that velocity from the inward normal [deg]"""
     descent_s: tuple[float, float, float] | None
@@ -72,7 +72,7 @@ class DeliveryResults:
 
 @dataclass(frozen=True)
 class JourneyRest:
-    """Where, when and how the landers rest that came to rest (journeys.csv)."""
+    """Places, times and attitudes of the landers at rest (journeys.csv)."""
 
     of: str
     """which journeys it describes, in words"""
@@ -81,13 +81,13 @@ class JourneyRest:
     contacts: RestQuantiles
     """contacts with the ground"""
     distance_m: RestQuantiles
-    """way over the ground from the aim point [m]"""
+    """distance over the ground from the aim point [m]"""
     regions: tuple[RestRegion, ...]
     """regions that hold 50 and 95 %; empty where why_no_regions says why"""
     faces: Mapping[str, EndShare]
-    """by the side of the lander that is down, by its own axes; empty for a ball"""
+    """by the side of the lander that is down, by its own axes; empty for a sphere"""
     tilt_deg: RestQuantiles | None
-    """angle between that side's axis and the plumb line [deg]; null for a ball"""
+    """angle between that side's axis and the plumb line [deg]; null for a sphere"""
     why_no_regions: str | None = None
     """why there are no regions, in a sentence"""
     __repr__ = short_repr

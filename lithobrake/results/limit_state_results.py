@@ -9,22 +9,22 @@ from lithobrake.vocabulary.screen import short_repr
 
 @dataclass(frozen=True)
 class LimitStateRuns:
-    """A limit state by the runs, whichever source is used."""
+    """A limit state estimated from the runs, whichever source is used."""
 
     share: float
     """of the landings that meet it"""
     lower: float | None
     """lower bound, over beds and impact points not in the study; null where there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     from_: str
     """of how many landings and beds"""
     next_bed: tuple[float, float] | None
     """prediction interval for a new bed: lower, upper; null where that is not known"""
     if_missing: tuple[float, float]
-    """the share if none, and if all, of the landings without an outcome meet it, without sampling error"""
+    """the fraction if none, and if all, of the landings without an outcome meet it, without sampling error"""
     missing: float
-    """share of the landings of which it is not known"""
+    """fraction of the landings for which it is unknown"""
 
 
 @dataclass(frozen=True)
@@ -32,19 +32,20 @@ class LimitStateInput:
     """An input among the runs that meet a limit state."""
 
     distance: float
-    """largest difference of the distribution functions of the input among the runs that meet it and over all"""
+    """largest difference between the distribution function of the input among the runs that meet it and its input
+    distribution"""
     lower: float
-    """lower bound, by drawing beds with replacement"""
+    """lower bound, from resampled beds"""
     upper: float
-    """upper bound likewise"""
+    """upper bound"""
     luck: float
-    """distance that chance alone passes in one of ten studies, all inputs together"""
+    """distance that, without any effect, any of the inputs exceeds in one of ten studies"""
     median: float
     """of the input among the runs that meet it, in its unit"""
     median_of_all: float
     """of its input distribution"""
     found: bool
-    """whether the distance is above luck"""
+    """whether the input is significant: the distance exceeds luck"""
 
 
 @dataclass(frozen=True)
@@ -52,30 +53,30 @@ class LimitStateResult:
     """A limit state of the study file (docs/reliability.md)."""
 
     condition: str
-    """as the study file has it"""
+    """as in the study file"""
     probability: float
     """share of the landings that meet it, over the input distributions of the study file"""
     lower: float | None
     """lower bound, over beds and impact points not in the study; null where why says that there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     level: float
     """probability that the bounds of this table stand for"""
     source: str
-    """runs, or the emulator where it is so rare (or so sure) that runs cannot tell"""
+    """runs, or emulator if the probability is too close to 0 or 1 for the runs"""
     runs: LimitStateRuns
     emulator: ShareInterval | None
-    """the same by the emulator; null where it cannot tell"""
+    """estimate from the emulator; null if there is none"""
     tail_limit: float
-    """largest probability of an event that no run on so many beds has met"""
+    """upper limit of the probability of an event that occurred in no run on this number of beds"""
     why: str | None
     """why there is no interval, in a sentence; null where there is one"""
     failing_runs: float
-    """runs that meet it; of those whose flights meet it in part, their shares"""
+    """runs that meet it; a run whose flights meet it in part counts with that fraction"""
     inputs: Mapping[str, LimitStateInput]
-    """by input; empty where no run meets it, or all came down on one bed"""
+    """by input; empty if no run meets it, or if there is only one bed"""
     statement: str
-    """all of it in a sentence"""
+    """the result in a sentence"""
     __repr__ = short_repr
 
 
@@ -84,13 +85,13 @@ class RareLimitState:
     """A rare limit state, by subset simulation with landings of its own (rare_*.json, docs/reliability.md)."""
 
     condition: str
-    """as the study file has it"""
+    """as in the study file"""
     probability: float
     """of a landing that meets it; 0 where it was not reached"""
     lower: float | None
     """lower bound; null where there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     level: float
     """probability that the bounds stand for"""
     origins: float
@@ -108,7 +109,7 @@ class RareLimitState:
     landings: int
     """landings that were made"""
     beds: int
-    """beds that they came down on"""
+    """beds of these runs"""
     statement: str
-    """all of it in a sentence"""
+    """the result in a sentence"""
     __repr__ = short_repr

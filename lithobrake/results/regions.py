@@ -7,7 +7,8 @@ from lithobrake.vocabulary.screen import short_repr
 
 @dataclass(frozen=True)
 class RestRegion:
-    """The smallest region of the ground (highest density) that holds a share of landers: at rest, or at an impact."""
+    """The smallest region of the ground (highest density) that contains a fraction of the landers: at rest, or at an
+    impact."""
 
     share: float
     """that it holds, of 1"""

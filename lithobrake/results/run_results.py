@@ -33,24 +33,24 @@ class MissingLandings:
     share: float
     """the same as a share of all runs"""
     outcomes: Mapping[str, int]
-    """of these, runs that ended so; empty where every run has an outcome"""
+    """of these, number of runs with each outcome; empty where every run has an outcome"""
 
 
 @dataclass(frozen=True)
 class SideRuns:
-    """What auxiliary runs show (design.side_runs)."""
+    """Results of the auxiliary runs (design.side_runs)."""
 
     soil_pairs: int
     """runs that were repeated on a second soil"""
     twins: int
-    """runs that were repeated with an impact point a little beside"""
+    """runs that were repeated with a slightly shifted impact point"""
     twin_shift: float
-    """how far beside [m]"""
+    """that shift [m]"""
     soil_total_effect: Mapping[str, VariancePart]
-    """by output: share of its variance that goes with the soil, interactions with bed, impact point and attitude
-    included"""
+    """by output: share of its variance that the soil explains, including interactions with bed, impact point and
+    attitude"""
     chaos_deviation: Mapping[str, Estimate]
-    """by output: standard deviation that chaos alone gives, in the output's unit"""
+    """by output: standard deviation due to chaos alone, in the output's unit"""
 
 
 @dataclass(frozen=True)
@@ -60,18 +60,18 @@ class RunResults:
     count: int
     """runs"""
     beds: int
-    """beds that they came down on"""
+    """beds of these runs"""
     outcomes: Mapping[str, int]
-    """runs that ended so; failed: runs without an outcome"""
+    """number of runs with this outcome; failed: runs without an outcome"""
     missing: MissingLandings
     warning: str | None
-    """where more than 2 % of the runs have no outcome: how many, why, what they leave undescribed, and how to avoid it,
-    in a sentence; else null"""
+    """if more than 2 % of the runs have no outcome: how many, why, what this means for the results, and how to avoid
+    it, in a sentence; otherwise null"""
     over_rim: int
-    """of those that left: runs that crossed the edge of the bed in flight, touching nothing and going up"""
+    """runs that left across the edge of the bed in flight, moving up and touching nothing"""
     farther_than_period: int | None
-    """runs in which the lander travelled farther in contact than the bed's period, over ground that it may have
-    disturbed; null where beds have walls"""
+    """runs in which the lander travelled farther in contact than the width of the bed, over ground that it may have
+    disturbed; null if beds have walls"""
     side_runs: SideRuns | None
     """null without design.side_runs"""
 
@@ -92,26 +92,26 @@ class OutputEstimate:
 
 @dataclass(frozen=True)
 class OutputDirection:
-    """An output that has neither beginning nor end, as azimuth_out, over the runs that have it."""
+    """An output that is an angle around the circle, such as azimuth_out, over the runs that have it."""
 
     mean_direction: Estimate
     """direction of the mean of the unit vectors [rad]; its bounds may lie beyond pi"""
     resultant_length: Estimate
-    """length of that mean: 0 where directions cancel, 1 where all are alike"""
+    """length of that mean: 0 if directions cancel, 1 if all are equal"""
     of: str
     """which landings it describes, in words"""
 
 
 @dataclass(frozen=True)
 class OutputRange:
-    """What else the touchdowns gave, over distinct runs that have it."""
+    """Other outputs of the touchdowns, over the distinct runs that have them."""
 
     median: float
-    """in the unit beside it"""
+    """median over these runs"""
     smallest: float
-    """likewise"""
+    """smallest value"""
     largest: float
-    """likewise"""
+    """largest value"""
     unit: str
     """of the three numbers"""
     of: str
@@ -120,30 +120,31 @@ class OutputRange:
 
 @dataclass(frozen=True)
 class VarianceParts:
-    """Where the scatter of an output of a drawn study comes from (docs/estimates.md).
+    """Parts of the variance of an output of a drawn study (docs/estimates.md).
 
-    null where the runs cannot tell, and in a paper study. returns: of the share of its flights for which a run returns.
+    null where the runs cannot show it, and in a paper study. returns: the return fraction of each run over its flights.
     """
 
     soil: VariancePart
-    """inputs of grains and surface, and of the lander's contacts: at least so much, by its terms"""
+    """part that inputs of grains, surface and the lander's contacts explain at least, by their terms"""
     soil_doubled: VariancePart
-    """at least so much with input distributions of the soil twice as wide, each on its own scale"""
+    """the same with input distributions of the soil twice as wide, each on its own scale"""
     terms: str
-    """of which degree the terms of inputs are, in words"""
+    """degree of the terms of the inputs, in words"""
     soil_by_input: Mapping[str, VariancePart]
-    """one of them alone"""
+    """part of one of these inputs alone"""
     arrival: VariancePart | None
     """all other inputs, as speed, incidence and mass; null where none is uncertain"""
     attitude: VariancePart | None
     """terms of second degree of the surface normal and the direction of travel, seen from the lander; null for a ball,
     for one attitude alone, and where the runs are too few"""
     bed: VariancePart
-    """what landings on one bed have in common"""
+    """part that landings on one bed have in common"""
     place: VariancePart
-    """everything else: impact point, lack of fit and interactions; of a journey all that its later touchdowns draw"""
+    """everything else: impact point, lack of fit and interactions; for a journey also everything that is random in
+    later touchdowns"""
     chaos: VariancePart | None
-    """what twins differ in; null without auxiliary runs"""
+    """part due to chaos, from perturbed runs; null without auxiliary runs"""
     of: str
     """which landings it describes, in words"""
     __repr__ = short_repr

@@ -36,16 +36,16 @@ class CountedShare:
     """An outcome of landings, samples or journeys: how many have it, and which share that is."""
 
     count: int
-    """of sample_count, those of which this is so"""
+    """number with this outcome, of sample_count"""
     share: float
-    """of all; among landings of a drawn study those without an outcome count as like those that left in flight across
+    """fraction of all; landings of a drawn study without an outcome get the mean of those that left in flight across
     the edge of the bed"""
     lower: float | None
-    """lower bound: of landings over beds and impact points not in the study, whatever became of the landings without an
-    outcome; of samples over refits of the emulator to other beds; of journeys on hard ground by their number; null
-    where there is none"""
+    """lower bound; for landings over beds and impact points not in the study and all possible ends of landings without
+    an outcome; for samples over refits of the emulator to resampled beds; for journeys on hard ground from their
+    number; null if there is none"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     upper_limit: float | None = None
     """95 % limit of the share of an outcome that no run had, with design.method = "paper" """
 
@@ -62,39 +62,39 @@ class Level:
 
 @dataclass(frozen=True)
 class ReturnFraction:
-    """Of all landings those that impact again within flight.duration, or are captured where the site holds them."""
+    """Return fraction: landings that impact again within flight.duration, or are captured where the site holds them."""
 
     share: float
-    """over the input distributions of the study file: of the landings of a drawn study, those without an outcome as
-    like those that left in flight across the edge of the bed, or of samples of the expansion"""
+    """return fraction over the input distributions of the study file: of the landings of a drawn study, where those
+    without an outcome get the mean of those that left in flight across the edge of the bed; or of the samples of the
+    expansion"""
     lower: float | None
-    """lower bound, over beds and impact points not in the study, whatever became of the landings without an outcome;
-    null where why says that there is none"""
+    """lower bound, over beds and impact points not in the study, for all possible ends of the landings without an
+    outcome; null if there is none (see why)"""
     upper: float | None
-    """upper bound likewise"""
+    """upper bound"""
     level: float
     """probability that the bounds of this table stand for"""
     from_: str
-    """of how many landings and beds, or samples"""
+    """number of landings and beds, or of samples"""
     next_bed: tuple[float, float] | None
     """prediction interval for a new bed of the size of the study's: lower, upper; null where that is not known"""
     if_missing: tuple[float, float]
-    """the share if none, and if all, of the landings without an outcome return, without sampling error"""
+    """the fraction if none, and if all, of the landings without an outcome return, without sampling error"""
     missing: float
     """share of the landings, or samples, without an outcome"""
     emulator: float | None
-    """the share by the emulator or the expansion, of the samples whose end is known"""
+    """the fraction from the emulator or the expansion, of the samples whose end is known"""
     why: str | None
     """why there is no interval, in a sentence; null where there is one"""
 
 
 @dataclass(frozen=True)
 class SampleShares:
-    """What became of the samples of a paper study, up to the last that flew.
-
-    captured, left_sideways, time_limit, outside (with an elevation or speed that cannot be), impact, flying (at the end
-    of the time), escaped, partner; returns (impact, and captured where the site holds) and missing (left_sideways,
-    time_limit, outside) hold some of these.
+    """Outcomes of the samples of a paper study, up to the last whose flight was computed. captured, left_sideways,
+    time_limit, outside (with an impossible elevation or speed), impact, flying (at the end of flight.duration),
+    escaped, partner. returns (impact, plus captured where the site holds the lander) and missing (left_sideways,
+    time_limit, outside) are sums of some of these.
     """
 
     sample_count: int
@@ -109,7 +109,7 @@ class SampleShares:
 
 @dataclass(frozen=True)
 class EmulatorShares:
-    """The same by the samples of the emulator of a drawn study, as shares of all of these, for comparison."""
+    """Outcomes of the samples of the emulator of a drawn study, as fractions of all of them, for comparison."""
 
     sample_count: int
     """samples up to the last that flew"""
@@ -127,7 +127,7 @@ class RunShares:
     """What became of the landings of a drawn study, by the flights of its runs, as estimates.json holds it."""
 
     sample_count: int
-    """flights of all landings, 64 each, whether they could be made or not"""
+    """flights of all landings, 64 each, computed or not"""
     flight_count: int
     """of those, flights that were made"""
     level: float
@@ -139,10 +139,9 @@ class RunShares:
 
 @dataclass(frozen=True)
 class LandingShares(RunShares):
-    """What became of the landings of a drawn study, by the flights of its runs.
-
-    impact, flying (at the end of the time), escaped, partner and captured add up to 1. returns: impact, and captured
-    where the site holds; settled and lofted: captured where the ground holds, or lifts off; missing: left_sideways,
+    """Outcomes of the landings of a drawn study, from the flights of its runs. impact, flying (at the end of
+    flight.duration), escaped, partner and captured add up to 1. returns: impact, plus captured where the site holds the
+    lander. settled and lofted: captured where gravity and rotation hold the lander, or do not. missing: left_sideways,
     time_limit, failed.
     """
 

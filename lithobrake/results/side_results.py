@@ -7,21 +7,21 @@ from lithobrake.results.journey_results import EndShare, RestQuantile
 
 @dataclass(frozen=True)
 class SideResults:
-    """Landers that touch down first with one side toward the ground, and touchdowns with it."""
+    """Landers whose first touchdown has this side toward the ground, and all touchdowns with it."""
 
     words: str
     """the side in words, of a box with the lengths of its face"""
     landings: int
     """first touchdowns in which this side faces the ground: its axis is the nearest to the normal"""
     speed_ratio: RestQuantile
-    """of these the median of the rebound speed over the impact speed"""
+    """median of rebound speed / impact speed of these landings"""
     returns: EndShare
-    """of these the return fraction; count: landings of which all flights return"""
+    """return fraction of these landings; count: landings of which all flights return"""
     at_rest: EndShare | None = None
-    """with [journey]: of these landers the share that comes to rest in the end"""
+    """with [journey]: fraction of these landers that comes to rest"""
     time_s: RestQuantile | None = None
-    """with [journey]: of these landers the median time to rest [s]"""
+    """with [journey]: median time to rest of these landers [s]"""
     touchdowns: int | None = None
     """with [journey]: all touchdowns in which this side faces the ground"""
     rests: EndShare | None = None
-    """with [journey]: of these the share in which the lander comes to rest"""
+    """with [journey]: fraction of these touchdowns in which the lander comes to rest"""

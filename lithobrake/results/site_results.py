@@ -10,9 +10,9 @@ class BedNumbers:
     """A bed, in the order of the files; none where a program or function of the user's own makes the touchdowns."""
 
     solid_fraction: float
-    """share of the volume that grains fill"""
+    """fraction of the volume that grains fill"""
     coordination_number: float
-    """contacts of a grain in the mean"""
+    """mean number of contacts of a grain"""
     surface_height_m: float
     """mean height of the surface above the floor [m]"""
     mean_diameter_m: float
@@ -32,20 +32,20 @@ class KernelNumbers:
     spin_period_s: float
     """time of a turn [s], from the constants (PCK), as are the next three"""
     pole_right_ascension_deg: float
-    """of the axis about which it turns counter-clockwise (J2000)"""
+    """right ascension of the axis about which it turns counter-clockwise (J2000)"""
     pole_declination_deg: float
-    """likewise"""
+    """declination of that axis (J2000)"""
     prime_meridian_deg: float
     """where longitude 0 is at the epoch J2000, as the constants count it"""
     partner_longitude_deg: float | None = None
-    """east longitude over which the partner stands at site.epoch, from the ephemeris (SPK), as are the next three; none
+    """east longitude over which the partner is at site.epoch, from the ephemeris (SPK), as are the next three; none
     without site.epoch"""
     partner_latitude_deg: float | None = None
-    """latitude over which it stands; flights have it in the equator"""
+    """latitude over which it is; in the flights it is in the plane of the equator"""
     partner_distance_m: float | None = None
     """between the centres [m]; flights have partner_distance_m of results.site"""
     partner_period_s: float | None = None
-    """of a circle at its angular speed then [s]"""
+    """period of a circle at its angular speed at that time [s]"""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class SiteResults:
     mass_kg: float
     """mass of the body [kg]"""
     bulk_density_kg_m3: float
-    """mass over the volume of the shape [kg/m3]"""
+    """mass divided by the volume of the shape [kg/m3]"""
     spin_period_s: float
     """time of a turn [s]"""
     kernels: KernelNumbers | None
@@ -75,9 +75,9 @@ class SiteResults:
     partner_distance_m: float | None
     """between the two centres [m], or null"""
     latitude_deg: float
-    """planetocentric latitude of the aim"""
+    """planetocentric latitude of the aim point"""
     longitude_deg: float
-    """east longitude of the aim"""
+    """east longitude of the aim point"""
     heading_deg: float | None
     """of the incoming horizontal velocity, from north toward east; null where it has no median"""
     place_m: tuple[float, float, float]
@@ -89,11 +89,11 @@ class SiteResults:
     escape_speed_m_s: float
     """from the site, in axes that do not turn, from this body alone [m/s]"""
     warning: str | None
-    """what the site does to landers that lie there, in a sentence; null where it holds them"""
+    """why the site does not hold landers at rest, in a sentence; null where it holds them"""
     rotation: str | None
     """how far the body turns away from uniform rotation, in a sentence; null where it turns uniformly"""
     gravity_warning: str | None
-    """how touchdowns and site differ in acceleration, in a sentence; null where alike"""
+    """how touchdowns and site differ in acceleration, in a sentence; null if they agree"""
     __repr__ = short_repr
 
     @property

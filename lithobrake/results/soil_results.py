@@ -11,13 +11,13 @@ class SoilResults:
     """The touchdowns in a region of the body with a soil of its own, or elsewhere, on [grain]."""
 
     area_share: float
-    """share of the surface of the body that it has, of 1"""
+    """fraction of the surface of the body"""
     touchdowns: int
     """touchdowns in it"""
     rests: EndShare | None
-    """of these the share in which the lander comes to rest; null where there are none"""
+    """fraction of these touchdowns in which the lander comes to rest; null if there are none"""
     at_rest: EndShare
-    """of all journeys the share that ends at rest there"""
+    """fraction of all journeys that end at rest there"""
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     """latitude and east longitude [deg] along its edges; none for the ground elsewhere"""
     __repr__ = short_repr

@@ -47,7 +47,7 @@ class Estimates:
 
 @dataclass(frozen=True)
 class DrawnResults:
-    """What came out of a drawn study; two executions of one study have the same."""
+    """Results of a drawn study, equal in two executions of one study."""
 
     units: Mapping[str, str]
     """unit of each output of the emulator"""
@@ -66,39 +66,41 @@ class DrawnResults:
     without_scatter: WithoutScatter | None
     """null: samples of an emulator have no expansion alone"""
     rest: RestResults | JourneyRest
-    """of a study with [journey] where, when and how the landers rest; else journeys of samples of the emulator"""
+    """with [journey]: where, when and how the landers come to rest; otherwise trajectories of samples of the
+    emulator"""
     limit_states: Mapping[str, LimitStateResult]
-    """each limit state of the study file; empty where it asks for none"""
+    """each limit state of the study file; empty if it has none"""
     aim: AimResults | None
     """delivery options; null where the study file has none"""
     emulator: EmulatorResults | None
     """null with [journey]"""
     answer: tuple[str, ...]
-    """what becomes of the landers, over what that holds, and what is missing, in sentences"""
+    """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
-    """the answer, then the most informative numbers, in sentences"""
+    """the answer, then the main numbers, in sentences"""
     sides: Mapping[str, SideResults] = field(default_factory=dict)
-    """by the side of the lander that faces the ground at the first touchdown; empty for a ball, a cube, and where
-    attitudes are not told"""
+    """by the side of the lander that faces the ground at the first touchdown; empty for a sphere, a cube, and if
+    attitudes are not known"""
     end_variance_shares: Mapping[str, VarianceParts | None] = field(default_factory=dict)
-    """with [journey]: where the scatter of the ends comes from, by inputs of the first touchdowns: at_rest (whether),
-    time_s and distance_m of those at rest; empty without"""
+    """with [journey]: parts of the variance of the ends by inputs of the first touchdown: at_rest (0 or 1), and time_s
+    and distance_m of the landers at rest; empty without [journey]"""
     ends: Mapping[str, EndShare] | None = None
     """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
     delivery: DeliveryResults | None = None
-    """with [journey]: where and how the landers come down first"""
+    """with [journey]: place and state of the first impacts"""
     journeys: int | None = None
     """with [journey]: how many were followed"""
     touchdowns: int | None = None
     """with [journey]: landings that were simulated for them"""
     sky: Mapping[str, SkyResults] = field(default_factory=dict)
-    """by sun and earth what the landers at rest see of it; empty where the study does not ask"""
+    """visibility of sun, earth and orbiter for the landers at rest; empty without [sky]"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
     soils: Mapping[str, SoilResults] = field(default_factory=dict)
     """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
     regions: tuple[RestRegion, ...] = ()
-    """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty with [journey], and for few"""
+    """smallest regions that contain 50 and 95 % of the next impacts of the samples; empty with [journey], and if there
+    are too few"""
     __repr__ = short_repr
 
     @property
@@ -114,7 +116,7 @@ class DrawnResults:
 
 @dataclass(frozen=True)
 class PaperResults:
-    """What came out of a paper study; two executions of one study have the same."""
+    """Results of a paper study, equal in two executions of one study."""
 
     units: Mapping[str, str]
     """unit of each output of the expansions"""
@@ -131,7 +133,7 @@ class PaperResults:
     kept_share: Mapping[str, float]
     """by output: share of the variance of the screening expansion that the kept inputs explain together"""
     scores: Mapping[str, Mapping[str, OutputErrors]]
-    """errors of the expansions by set of runs and output; scores.json has those of single runs beside them"""
+    """errors of the expansions by set of runs and output; scores.json also has those of single runs"""
     monte_carlo: ExpansionSamples
     site: SiteResults
     variance_shares: Mapping[str, VarianceParts | None]
@@ -144,9 +146,9 @@ class PaperResults:
     """null where the samples have no scatter from run to run"""
     rest: RestResults
     answer: tuple[str, ...]
-    """what becomes of the landers, over what that holds, and what is missing, in sentences"""
+    """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
-    """the answer, then the most informative numbers, in sentences"""
+    """the answer, then the main numbers, in sentences"""
     regions: tuple[RestRegion, ...] = ()
     """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty for few"""
     __repr__ = short_repr
@@ -154,23 +156,23 @@ class PaperResults:
 
 @dataclass(frozen=True)
 class RunTimes:
-    """What the runs took."""
+    """Time of the runs."""
 
     asked: int
     """runs of all designs"""
     distinct: int
-    """those that differ, as the ledger has them"""
+    """distinct runs, as in the ledger"""
     wall_s: float
     """wall time of all of them together"""
     cpu_s: float
-    """CPU time likewise"""
+    """CPU time of all of them together"""
     longest_wall_s: float
     """wall time of the longest"""
 
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where it comes from; all that may differ between two executions of one study."""
+    """Origin of the results; everything that may differ between two executions of one study."""
 
     date: str
     """when the summary was made, UTC"""
@@ -179,9 +181,9 @@ class Provenance:
     host: str
     """name of the machine"""
     system: str
-    """its operating system"""
+    """operating system"""
     cores: int | None
-    """its cores"""
+    """number of cores"""
     python: str
     """version of Python"""
     packages: Mapping[str, str]

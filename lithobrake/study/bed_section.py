@@ -59,8 +59,8 @@ class PowerLaw(Section):
 
 
 class BoulderSection(Section):
-    """Boulders among the grains, each cut off where it would reach below the floor. They lie on a broad face, in the
-    bed before the grains are poured on and around them, and are of the same material."""
+    """Boulders among the grains. They lie on a broad face and are placed before the grains are poured on and around
+    them; a part that would reach below the floor is cut off. They are of the same material."""
 
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "power_law", cumulative_exponent = 2.65, lower = 0.3, upper = 0.6 }']
@@ -68,38 +68,39 @@ class BoulderSection(Section):
     """Diameter of the sphere of equal volume, as bed.diameter. No boulder reaches farther than 0.75 diameters from its
     centroid."""
     coverage: Annotated[float, Number("", above=0, at_most=LARGEST_COVERAGE)] = Field(examples=["0.1"])
-    """Part of the ground under the boulders, seen from above as discs of their diameters, in the mean over beds: a bed
-    has a whole number of boulders, the next one by chance."""
+    """Fraction of the ground that the boulders cover, seen from above as discs of their diameters, in the mean over
+    beds. A bed has a whole number of boulders; whether it is rounded up or down is random."""
     cover: Annotated[tuple[float, float], Numbers("m", count=2)] = Field((0.0, 0.0), examples=["[-0.1, 0.1]"])
-    """Depth of a boulder's top under the mean surface of the grains, smallest and largest; each boulder draws its own.
-    Below 0 it stands out. A boulder that is too small for that lies on the floor."""
+    """Depth of a boulder's top below the mean surface of the grains, smallest and largest; it is sampled for each
+    boulder. If negative, the boulder protrudes. A boulder that is too small for its depth lies on the floor."""
 
 
 class BedSection(Section):
     """The surface: grains are convex hulls of random clouds of points, poured on a floor and settled."""
 
     grain_count: Annotated[int, Whole("", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
-    """How many grains."""
+    """Number of grains."""
     width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
-    """Width along x and y, between the walls or until the ground repeats; at least twice the lander's largest
-    diameter, of its main shape, and wider than its parts reach."""
+    """Width along x and y, between the walls or until the ground repeats. It must be at least twice the largest
+    diameter of the lander's main shape, and wider than its parts reach."""
     sides: Literal["walls", "periodic"] = "walls"
-    """What is beyond the width: "walls", an open box that a lander may leave across its edge; or "periodic", the same
-    ground again, so that nothing is lost laterally, and a lander that goes farther meets ground that it has disturbed.
-    The latter is the default of design.method = "drawn"."""
+    """What is beyond the width. "walls": an open box, which a lander may leave across its edge. "periodic": the same
+    ground again; no lander leaves it laterally, and one that travels farther meets ground that it has disturbed.
+    "periodic" is the default of design.method = "drawn"."""
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "constant", value = 0.08 }']
     )
     """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
-    upper) or power_law (exponent or cumulative_exponent, lower, upper): the number of grains per diameter D falls with
-    D**-exponent, and that of grains larger than D with D**-cumulative_exponent, 1 less. Both are written positive."""
+    upper) or power_law (exponent or cumulative_exponent, lower, upper). With power_law the number of grains per
+    diameter D is proportional to D**-exponent, and that of grains larger than D to D**-cumulative_exponent, whose
+    exponent is smaller by 1. Both are written positive."""
     bed_count: Annotated[int, Whole("", at_least=1, at_most=MOST_BEDS)] | None = None
-    """How many beds; with more than one, each run draws its bed. Absent: one; with design.method = "drawn", a bed for
-    every 20 landings, or for every 4 journeys (rounded up), at least 12."""
+    """Number of beds; with more than one, the bed of each run is sampled. Absent: one; with design.method = "drawn",
+    one bed for every 20 landings, or for every 4 journeys (rounded up), at least 12."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
-    """Acceleration under which the grains fall; it is then lowered slowly to the one they settle under."""
+    """Acceleration under which the grains fall. It is then lowered slowly to that under which they settle."""
     boulders: BoulderSection | None = None
     """Boulders among the grains."""
     settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None

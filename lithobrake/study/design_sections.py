@@ -23,11 +23,11 @@ def method_name(given: Any) -> Any:
 
 
 class MethodKey(Section):
-    """Each of the other keys goes with one of the two methods."""
+    """Each of the other keys belongs to one of the two methods."""
 
     method: Annotated[Method, BeforeValidator(method_name)] = DEFAULT_METHOD
-    """How runs are chosen: "drawn", every run with soil, impact point, azimuth and attitude of its own, on many beds;
-    "paper", a screening over all inputs, then more runs over those that matter."""
+    """How runs are chosen. "drawn": every run has its own soil, impact point, azimuth and attitude, on many beds.
+    "paper": a screening over all inputs, then more runs over those that matter."""
 
 
 class DrawnKeys(MethodKey):
@@ -36,17 +36,17 @@ class DrawnKeys(MethodKey):
     run_count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] = 240
     """Number of runs; a larger one keeps the runs of a smaller one, each on its bed."""
     half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
-    """Half the interval that the answer is to have, as a share of 1; more runs than run_count are made, on more beds,
-    until it has. Absent: run_count runs, whatever their interval."""
+    """Requested half-width of the interval of the result, as a fraction of 1. More runs than run_count are made, on
+    more beds, until it is reached. Absent: run_count runs, whatever their interval."""
     half_width_of: StrictStr | None = None
-    """Name of the limit state that half_width is asked of. Absent: of the return fraction."""
+    """Name of the limit state to whose probability half_width applies. Absent: it applies to the return fraction."""
     largest_run_count: PointCount = None
-    """Most runs that half_width may ask for. Absent: ten times run_count."""
+    """Largest number of runs with half_width. Absent: ten times run_count."""
     side_runs: StrictBool = False
-    """Whether to make, beside these, up to 20 of the runs again on a second soil, and up to 12 at a point a little
-    beside, which measure the effects of soil and chaos."""
+    """Whether to make auxiliary runs: up to 20 of the runs again on a second soil, and up to 12 again at a slightly
+    shifted impact point. They measure the effects of soil and chaos."""
     twin_shift: Annotated[float, Number("m", above=0)] = 1e-4
-    """How far beside, with side_runs."""
+    """Shift of the impact point, with side_runs."""
 
     @property
     def most_runs(self) -> int:
@@ -60,9 +60,9 @@ class PaperKeys(MethodKey):
     """With method = "paper" only:"""
 
     points: Literal["smolyak", "sobol_sequence", "latin_hypercube", "fekete"] = "smolyak"
-    """Where the runs stand: "smolyak", its sparse grid, takes the levels and inputs with two limits;
-    "sobol_sequence" (a larger count keeps the runs of a smaller one), "latin_hypercube" and "fekete" (best conditioned
-    for the degree) take the counts and any input."""
+    """Design of the runs. "smolyak", a sparse grid, uses the levels, and needs inputs with two limits. "sobol_sequence"
+    (a larger count keeps the runs of a smaller one), "latin_hypercube" and "fekete" (best conditioned for the degree)
+    use the counts, and allow any input."""
     screening_level: Level = 3
     """Level of the Smolyak grid over all uncertain inputs."""
     screening_count: PointCount = None
@@ -76,13 +76,13 @@ class PaperKeys(MethodKey):
     refined_degree: Degree = 5
     """Total degree of the expansion in the kept inputs."""
     replicate_count: Annotated[int, Whole("", at_least=1, at_most=1000)] = 1
-    """Runs at every point of these two designs, each with draws of its own (bed, impact point, azimuth, attitude): two
-    or more measure the scatter that no expansion removes."""
+    """Runs at every point of these two designs; what is random (bed, impact point, azimuth, attitude) is sampled for
+    each of them. Two or more measure the scatter that no expansion removes."""
     fit: Literal["ols", "lars", "omp", "gaussian_process", "best"] = "ols"
-    """How expansions are fitted: "ols", least squares of the degrees above (the paper's); the others choose their terms
-    themselves, "best" for each output by the smallest expected error."""
+    """How expansions are fitted. "ols": least squares of the degrees above, as in the paper. The others choose their
+    terms themselves; "best" takes the fit with the smallest expected error for each output."""
     kept_share: Annotated[float, Number("", above=0, at_most=1)] = 0.9
-    """Share of the explained variance that the kept inputs must reach in every output of kept_outputs."""
+    """Fraction of the explained variance that the kept inputs must reach in every output of kept_outputs."""
     kept_outputs: Annotated[tuple[OutputName, ...], Field(min_length=1)] = OUTPUTS
     """Outputs that decide which inputs are kept."""
     test_count: Annotated[int, Whole("", at_least=2, at_most=100_000)] = 40
@@ -104,37 +104,38 @@ class MonteCarloSection(Section):
     """Samples of the emulator, or, with design.method = "paper", of the refined expansion."""
 
     sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
-    """How many samples."""
+    """Number of samples."""
     scatter: StrictBool = False
-    """With design.method = "paper" only: whether samples get the scatter from run to run on top of the expansion: what
-    the expansion leaves of the refined runs, drawn jointly for all outputs; samples.h5 then has them without it too.
-    (An emulator's always do.)"""
+    """With design.method = "paper" only: whether samples include the scatter from run to run. It consists of the
+    residuals of the expansion at the refined runs, sampled jointly for all outputs; samples.h5 then also has the
+    samples without it. (Samples of an emulator always include it.)"""
 
 
 class CampaignSection(Section):
-    """How runs are made, and how many may fail; nothing here changes what a run gives."""
+    """How runs are made, and how many may fail. Nothing here changes the result of a run."""
 
     wall_limit: Annotated[float, Number("s", above=0)] | None = None
-    """Longest time that one run may take on the clock; it is then ended and counts as failed. Absent: any time."""
+    """Longest wall-clock time of a run; it is then ended and counts as failed. Absent: no limit."""
     memory_limit: Annotated[float, Number("bytes", above=0)] | None = None
-    """Most memory that one run may hold, with all that it starts; above that it is ended. Absent: any (Linux only)."""
+    """Largest memory of a run and all processes that it starts; above that it is ended (Linux only). Absent: no
+    limit."""
     retry_count: Annotated[int, Whole("", at_least=0, at_most=100)] = 1
-    """How often a run that failed is tried again."""
+    """Number of times that a failed run is tried again."""
     failed_share: Annotated[float, Number("", at_least=0, below=1)] = 0.05
-    """Largest share of failed runs of a design with which an expansion is still fitted."""
+    """Largest fraction of failed runs of a design with which an expansion is still fitted."""
 
 
 class SolverSection(Section):
-    """A program of your own that makes the touchdowns in place of this one (docs/own_solver.md)."""
+    """A program of your own that computes the touchdowns instead of lithobrake (docs/own_solver.md)."""
 
     command: str | None = None
-    """Its command line, started in a folder for each run, where it reads inputs.json and writes outputs.json; words
-    that name files count from the study file. Or "umbridge:http://HOST:PORT/MODEL", the model of a server in its place.
-    Absent: this program's own soil."""
+    """Its command line. It is started in a folder for each run, where it reads inputs.json and writes outputs.json;
+    file names are relative to the study file. Or "umbridge:http://HOST:PORT/MODEL", a model on a server. Absent:
+    lithobrake simulates the soil."""
     templates: list[str] = Field(default=[])
-    """Files, counted from the study file, in which {{ grain.friction }} becomes that number of a run and {{ seed }} its
-    seed; each is put into the run's folder under its own name."""
+    """Files, relative to the study file, in which {{ grain.friction }} is replaced by that number of a run and {{ seed
+    }} by its seed; each is written to the run's folder under its own name."""
     answer: str = "outputs.json"
     """Name of the file that the program writes, with the ending .json, .csv, .yaml, .yml, .h5 or .hdf5."""
     inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
-    """Numbers that only your program knows, by names of your own."""
+    """Numbers that only your program uses, by names of your own."""

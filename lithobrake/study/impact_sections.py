@@ -33,24 +33,25 @@ class ImpactSection(Section):
     """How the lander arrives."""
 
     speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] | None = Field(examples=["0.2"])
-    """Speed; far below the limit already a contact may be too deep for its law, which is looked at too."""
+    """Speed. A contact may be too deep for the contact law even far below the limit; this is checked too."""
     incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] | None = Field(examples=["30.0"])
     """Angle between the velocity and the mean surface normal; 0 is straight down."""
     azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0
-    """Direction of the horizontal velocity in the bed, from +x; "random" draws it anew for each run, which is the
-    default of design.method = "drawn"."""
+    """Direction of the horizontal velocity in the bed, from +x. "random", the default of design.method = "drawn": it is
+    sampled for each run."""
     place: PlaceSection | None = None
-    """The place of impact, the same for all runs; absent: the middle of the bed, or as `region` says."""
+    """Impact point, the same for all runs. Absent: the middle of the bed, or as `region` states."""
     region: RegionSection | None = None
-    """In place of `place`: each run draws its place in this rectangle. With design.method = "drawn" and neither of
-    the two: all over ground that repeats, or wherever the lander is so far from the walls that they do not answer its
-    first blow."""
+    """Instead of `place`: the impact point of each run is sampled in this rectangle. With design.method = "drawn" and
+    neither of the two, it is sampled over the whole bed if the ground repeats; between walls, where it is so far from
+    the walls that they do not affect the first impact."""
     orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = (1.0, 0.0, 0.0, 0.0)
-    """Attitude as a quaternion w, x, y, z; "random" draws it anew for each run, uniform over rotations, which is the
-    default of design.method = "drawn"."""
+    """Attitude as a quaternion w, x, y, z. "random", the default of design.method = "drawn": it is sampled for each
+    run, uniformly over rotations."""
     pointing_error_deg: Annotated[float, Number("deg", above=0, at_most=180)] | None = None
-    """Half the opening of a cone about the lander's z axis, as `orientation` turns it: each run draws where this axis
-    points, evenly over the cone, and the lander turns there by the shortest way, without a roll about the axis."""
+    """Half the opening angle of a cone about the lander's z axis, as `orientation` turns it. The direction of this axis
+    is sampled for each run, uniformly over the cone; the lander turns there by the shortest rotation, without a roll
+    about the axis."""
     spin_x: Spin = 0.0
     """Angular velocity about the bed's x axis."""
     spin_y: Spin = 0.0
@@ -63,39 +64,41 @@ class SurfaceSection(Section):
     """The constant acceleration during the touchdown."""
 
     gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field(examples=["5e-5"])
-    """Acceleration toward the surface; negative points outward, as it may near the equator of a fast rotator. "site":
-    that of gravity and rotation together at the site of the section [site]."""
+    """Acceleration toward the surface. A negative value points outward, as is possible near the equator of a fast
+    rotator. "site": that of gravity and rotation together at the site of [site]."""
     slope_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = 0.0
-    """Angle by which the surface is tilted against the acceleration."""
+    """Angle by which the surface is tilted relative to the acceleration."""
     slope_azimuth_deg: Angle = 0.0
     """Downhill direction in the bed, from +x."""
 
 
 class ContactSection(Section):
-    """Readings of the contact law."""
+    """Options of the contact law."""
 
     shear_modulus_rule: Literal["mindlin", "paper"] = "mindlin"
-    """Effective shear modulus: Mindlin's, or Eq. (8) as the paper prints it."""
+    """Effective shear modulus: Mindlin's, or Eq. (8) as printed in the paper."""
     damping_mass: Literal["contact", "paper"] = "contact"
-    """Mass in the damping terms: that which the contact point feels, or that of the two whole bodies."""
+    """Mass in the damping terms: "contact", the effective mass at the contact point, or "paper", that of the two whole
+    bodies."""
     pair_rule: Literal["smaller", "mean", "geometric"] = "smaller"
-    """Restitution and friction of a pair of materials."""
+    """Restitution and friction of a contact: the smaller value of its two materials, their mean, or their geometric
+    mean."""
     steps_per_contact: Annotated[float, Number("", at_least=10, at_most=1000)] = 25.0
-    """Time steps in each contact, or in the shortest that the impact can make."""
+    """Time steps in each contact, or with stepping = "global" in the shortest contact of the impact."""
     stepping: Literal["global", "local"] = "local"
-    """Steps of a touchdown: "local", each contact at steps of its own, or "global", the same for all contacts, which
-    takes several times as long."""
+    """Time steps of a touchdown. "local": each contact has steps of its own. "global": all contacts have the same
+    steps, which takes several times as long."""
     resolved_speed: Annotated[float, Number("", at_least=0, at_most=1)] = 0.3
-    """Collisions slower than this share of the lander's speed take fewer steps than steps_per_contact, in proportion,
-    but at least five. 0: all take as many. Only with stepping = "local"."""
+    """Collisions slower than this fraction of the lander's speed take fewer steps than steps_per_contact, in proportion
+    to their speed, but at least five. 0: all collisions take the same number of steps. Only with stepping = "local"."""
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0
-    """Grains that touch something stand still while they are slower than this share of the lander's speed and farther
-    from it than the smallest bed keeps clear; a blow that makes them faster frees them. 0: none do. Only with
-    stepping = "local"."""
+    """Grains in contact are frozen while they are slower than this fraction of the lander's speed and farther from it
+    than the walls of the smallest bed would be. An impact that makes them faster releases them. 0: no grain is frozen.
+    Only with stepping = "local"."""
 
 
 class LandingSection(Section):
-    """When a touchdown is given up."""
+    """When the simulation of a touchdown stops."""
 
     time_limit: Annotated[float, Number("s", above=0)] = 60.0
     """Longest simulated time of one touchdown."""

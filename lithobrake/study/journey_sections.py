@@ -32,11 +32,11 @@ HELD_SPEED = 0.03
 
 
 class DeliverySection(Section):
-    """How the lander arrives at its first touchdown: as the keys say, or flown to the ground from a state, a row of
-    `states` or a draw of [delivery.release]. Each key up to spin_z stands here or, by the same name, in [impact] or
-    [site]. A lander that is flown takes speed, incidence, heading and place from its flight, and attitude and spin from
-    here unless `states` has them; latitude_deg and longitude_deg are then its aim point, from which distances count
-    and under whose gravity beds settle."""
+    """How the lander arrives at its first touchdown: as the keys state, or by a flight to the ground from a state,
+    which is a row of `states` or a sample of [delivery.release]. Each key up to spin_z may be given here or, by the
+    same name, in [impact] or [site]. After a flight, speed, incidence, heading and place are those of the flight;
+    attitude and spin are those given here, unless `states` has them. latitude_deg and longitude_deg are then the aim
+    point: distances count from it, and beds settle under its gravity."""
 
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] | None = None
     """Latitude of the aim point, planetocentric."""
@@ -45,17 +45,17 @@ class DeliverySection(Section):
     heading_deg: Angle | None = None
     """Direction of the incoming horizontal velocity, from north toward east."""
     north_error: Error | None = None
-    """How far the delivery misses the aim point toward north."""
+    """Distance by which the delivery misses the aim point toward north."""
     east_error: Error | None = None
     """The same toward east."""
     speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] | None = None
-    """Speed against the ground."""
+    """Speed relative to the ground."""
     incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] | None = None
     """Angle between the velocity and the inward normal of the ground; 0 is straight down."""
     orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] | None = None
     """Attitude as a quaternion w, x, y, z, or "random"; absent: random."""
     pointing_error_deg: Annotated[float, Number("deg", above=0, at_most=180)] | None = None
-    """Half the opening of the cone in which the lander's z axis points, about where `orientation` turns it."""
+    """Half the opening angle of the cone in which the lander's z axis points, about its direction by `orientation`."""
     spin_x: Spin | None = None
     """Angular velocity about x, which lies along the incoming horizontal velocity where impact.azimuth_deg is 0."""
     spin_y: Spin | None = None
@@ -65,17 +65,17 @@ class DeliverySection(Section):
     correlations: tuple[Correlation, ...] | None = Field(
         default=None, examples=['[["north_error", "east_error", 0.5]]']
     )
-    """Rank correlations (Spearman) of uncertain keys above, each two keys and a number between -1 and 1; all other
-    pairs are independent. Draws go together by a Gaussian copula."""
+    """Rank correlations (Spearman) of uncertain keys above: for each, two keys and a number between -1 and 1. All other
+    pairs are independent. Samples come from a Gaussian copula."""
     frame: Literal["body_fixed", "icrf"] | None = None
-    """Axes of the states: "body_fixed", turning with the body, velocities against them; "icrf", which do not turn,
-    through site.pole_right_ascension_deg, site.pole_declination_deg and site.meridian_deg. Either has its origin at
-    that of the body's shape."""
+    """Axes of the states. "body_fixed": they rotate with the body, and velocities are relative to them. "icrf": they do
+    not rotate; site.pole_right_ascension_deg, site.pole_declination_deg and site.meridian_deg give the attitude of the
+    body. Both have the origin of the body's shape."""
     epoch: str | None = Field(default=None, examples=['"2027-04-20T12:00:00"'])
-    """Date and time at which the time of the states is 0, in the time system of an ephemeris message, else UTC; absent:
-    that of the earliest state of the message."""
+    """Date and time at which the time of the states is 0, in the time system of an ephemeris message, otherwise in UTC.
+    Absent: that of the earliest state of the message."""
     states: str | None = Field(default=None, examples=['"states.csv"'])
-    """States that another tool has drawn, one a journey in the order of the file, which counts from the study file: a
+    """File of states from another tool, relative to the study file, one state per journey in the order of the file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""
     release: ReleaseSection | None = None
 
@@ -89,19 +89,19 @@ SURFACE_KEYS = tuple(key for key in DeliverySection.model_fields if key not in O
 
 
 class JourneySection(Section):
-    """Each lander is followed to rest, with a simulated landing at every impact. Absent: it is followed through its
-    first touchdown, and the emulator answers for those that come after."""
+    """Each lander is followed to rest, with a simulated landing at every impact. Absent: only the first touchdown is
+    simulated, and the emulator predicts later ones."""
 
     count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None = Field(default=None, examples=["96"])
-    """How many journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
+    """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
     duration: Annotated[float, Number("s", above=0)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
     hop_height: Annotated[float, Number("m", above=0)] | None = None
-    """A lander that would rise higher over the ground leaves the bed and flies in the gravity of the body; lower hops
-    are part of the touchdown. Absent: three times the lander's largest diameter."""
+    """A lander that would rise higher above the ground than this leaves the bed and flies in the gravity of the body;
+    lower hops are part of the touchdown. Absent: three times the lander's largest diameter."""
     emulated_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 5000
-    """Landers that the emulator of all touchdowns follows beside them, as a check and to narrow the shares of the ends;
-    0: none."""
+    """Number of further landers that the emulator of all touchdowns follows, as a check and to narrow the intervals of
+    the fractions of all ends. 0: none."""
 
 
 def arrival_key(name: str) -> str:

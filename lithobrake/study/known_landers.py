@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from lithobrake.study.by_name import by_name
 
-_CDS = "largest mass and envelope in [CDS-2022], without what unfolds"
+_CDS = "largest mass and envelope in [CDS-2022], without deployable parts"
 
 
 @dataclass(frozen=True)

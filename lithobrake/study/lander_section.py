@@ -29,9 +29,10 @@ class CentreSection(Section):
 
 
 class PartSection(Section):
-    """A convex part that is fixed to the lander, such as a leg, a panel or a boom; any number, each in a table
-    [lander.part.NAME] of its own. Parts may overlap, never touch each other and do not bend. Lengths and directions are
-    in the axes of the lander: of a box or sphere from its centre, of a mesh those of its file."""
+    """A convex part that is fixed to the lander, such as a leg, a panel or a boom. There may be any number of parts,
+    each in a table [lander.part.NAME] of its own. Parts may overlap, have no contact with each other and do not bend.
+    Lengths and directions are along the axes of the lander, from the centre of a box or sphere, or from the origin of
+    the file of a mesh."""
 
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
@@ -42,19 +43,19 @@ class PartSection(Section):
     diameter: Annotated[float, Number("m", above=0)] | None = None
     """Diameter of a sphere."""
     file: str | None = None
-    """Closed mesh (OBJ or STL) whose convex hull is the part; the path counts from the study file."""
+    """Closed mesh (OBJ or STL) whose convex hull is the part; the path is relative to the study file."""
     unit: LengthUnit = "m"
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     centre: Annotated[tuple[float, float, float], Numbers("m", count=3)] = Field(
         default=(0.0, 0.0, 0.0), examples=["[0.93, 0.0, 0.0]"]
     )
-    """Where the centre of the box or sphere, or the origin of the mesh, stands."""
+    """Position of the centre of the box or sphere, or of the origin of the mesh."""
     orientation: Annotated[tuple[float, float, float, float], Numbers("", count=4)] = (1.0, 0.0, 0.0, 0.0)
-    """How it is turned about that: a quaternion w, x, y, z."""
+    """Rotation of the part about that point: a quaternion w, x, y, z."""
     mass: Annotated[float, Number("kg", above=0)] | None = Field(default=None, examples=["0.05"])
     """Its mass, which is part of lander.mass; or give density."""
     density: Annotated[float, Number("kg/m3", above=0)] | None = None
-    """Its mass over its volume; or give mass."""
+    """Its mass divided by its volume; or give mass."""
     young_modulus: Annotated[float, Number("Pa", above=0)] | None = None
     """Young's modulus of the part; absent: that of the lander."""
     poisson_ratio: Annotated[float, Number("", at_least=0, below=0.5)] | None = None
@@ -80,7 +81,7 @@ class LanderSection(Section):
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["2.6"])
-    """Mass, that of parts included."""
+    """Mass, including that of the parts."""
     edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
         default=None, examples=["[0.1, 0.1, 0.227]"]
     )
@@ -88,15 +89,15 @@ class LanderSection(Section):
     diameter: Annotated[Scalar, MaybeUncertain("m", above=0)] | None = None
     """Diameter of a sphere."""
     file: str | None = None
-    """Closed mesh (OBJ or STL) whose convex hull is the lander; the path counts from the study file."""
+    """Closed mesh (OBJ or STL) whose convex hull is the lander; the path is relative to the study file."""
     unit: LengthUnit = "m"
     """Unit of the lengths in the mesh: "m", "km", "cm" or "mm"."""
     centre_of_mass: CentreSection | None = None
     """Centre of mass in the axes of the lander; absent: that of homogeneous shape and parts."""
     inertia: Annotated[tuple[float, ...], Tensor("kg m2")] | None = None
-    """Inertia about the centre of mass, in the axes of the lander: three moments, each at most the sum of the other
-    two, or six elements of the tensor, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, with Ixy minus the sum of mass x y; absent: that
-    of homogeneous shape and parts."""
+    """Inertia about the centre of mass, in the axes of the lander. Either three moments, each at most the sum of the
+    other two, or six elements of the tensor: Ixx, Iyy, Izz, Ixy, Ixz, Iyz, where Ixy is minus the sum of mass x y.
+    Absent: that of homogeneous shape and parts."""
     young_modulus: YoungModulus | None = None
     """Young's modulus of the lander; absent: that of the grains."""
     poisson_ratio: PoissonRatio | None = None

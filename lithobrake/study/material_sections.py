@@ -21,7 +21,7 @@ class GrainSection(Section):
     density: Density = Field(examples=["2500.0"])
     """Density of the rock."""
     young_modulus: YoungModulus = Field(examples=['{ distribution = "log_uniform", lower = 1e6, upper = 1e8 }'])
-    """Young's modulus; expand it over decades with log_uniform."""
+    """Young's modulus; over decades use log_uniform."""
     poisson_ratio: PoissonRatio = Field(examples=['{ distribution = "uniform", lower = 0.15, upper = 0.35 }'])
     """Poisson's ratio."""
     restitution: Restitution = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.8 }'])
@@ -29,10 +29,11 @@ class GrainSection(Section):
     friction: Friction = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.9 }'])
     """Coefficient of friction."""
     rolling_friction: Friction = 0.0
-    """Resistance to rolling: a contact's largest couple over normal force and contact radius."""
+    """Resistance to rolling: the largest couple of a contact divided by normal force and contact radius."""
     spinning_friction: Friction = 0.0
-    """Resistance to spinning about the contact normal, likewise."""
+    """Resistance to spinning about the contact normal, defined in the same way."""
     cohesion_force: Cohesion = 0.0
     """Pull of every contact, whatever its size."""
     surface_energy: SurfaceEnergy = 0.0
-    """Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*; lunar soil 0.0029 for clean grains."""
+    """Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*. For clean grains of lunar soil it is
+    0.0029."""

@@ -35,10 +35,10 @@ def condition_text(given: object) -> str:
 
 
 class LimitStatesSection(Section):
-    """Conditions whose probability the study tells, by names of your own: fast = "speed_out > 0.1 and not returns".
+    """Conditions whose probability the study estimates, by names of your own: fast = "speed_out > 0.1 and not returns".
 
-    Outputs of the touchdown [SI] stand in comparisons; returns, captured, impact, flying, escaped and partner are true
-    or false (docs/reliability.md). With design.method = "drawn" only."""
+    Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
+    true or false (docs/reliability.md). With design.method = "drawn" only."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
@@ -50,25 +50,25 @@ class LimitStatesSection(Section):
 
 
 class AimSection(Section):
-    """Where to aim: speeds, angles and places to choose from, each tried with landers that go on until they rest.
+    """Delivery options to compare: speeds, angles and sites, each with landers that are followed to rest.
 
-    docs/aiming.md. With design.method = "drawn" only; without [journey] impact.speed and impact.incidence_deg are
-    uncertain."""
+    See docs/aiming.md. With design.method = "drawn" only; without [journey], impact.speed and impact.incidence_deg must
+    be uncertain."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
-    """What is chosen, by dotted key, and the values to try, ascending: one to three uncertain numbers of [impact], or
-    latitude_deg, longitude_deg, heading_deg of [site], with [journey] all of them as keys of [delivery]; all their
-    combinations are aims. Everything else is drawn."""
+    """Keys of the options, and their values in ascending order: one to three uncertain numbers of [impact], or
+    latitude_deg, longitude_deg, heading_deg of [site]; with [journey], keys of [delivery]. All combinations are
+    options. Everything else is sampled."""
     sides: list[str] = Field(default=[])
-    """The side of the lander that faces the ground at the first touchdown, to choose from beside the grid; turned about
-    the vertical at random, without a pointing error. Of a box by its axes, "z", and "x or y" where edges are alike; of
-    a mesh "+x" to "-z". With [journey] only."""
+    """Sides of the lander that face the ground at the first touchdown, as further options; the lander is turned about
+    the vertical at random, without a pointing error. For a box its axes, such as "z", or "x or y" where edges are
+    equal; for a mesh "+x" to "-z". With [journey] only."""
     within: list[str] = Field(default=[])
-    """What the best aim must keep, as in "incidence_deg < 45": a name of the grid without its table, or settled
-    (with [journey] at_rest), missing (shares), distance_p95 [m], time_p95 [s]; compared with a number by <, <=, > or
-    >=."""
+    """Conditions that the best option must satisfy, such as "incidence_deg < 45": a name of the grid without its table,
+    or settled (with [journey] at_rest), missing (fractions), distance_p95 [m], time_p95 [s]; compared with a number by
+    <, <=, > or >=."""
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
-    """Landers at each aim for each of the 50 fits of the emulator to beds drawn anew."""
+    """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
 
     def aims(self) -> list[dict[str, float]]:
         """All aims, the last of the names running fastest; a side by its place among `sides`."""

@@ -57,12 +57,12 @@ class Deviations(Numbers):
 
 
 class ReleaseSection(Section):
-    """The state in which a carrier releases the lander, in the axes of delivery.frame; each journey draws its own from
-    a normal distribution about it, and flies to the ground. Its spread is `covariance`, or `position_std` and
-    `velocity_std`; none of them: all journeys begin alike."""
+    """The mean state in which a carrier releases the lander, in the axes of delivery.frame. The state of each journey
+    is sampled from a normal distribution about it, and the lander flies to the ground. The spread is `covariance`, or
+    `position_std` and `velocity_std`; without them all journeys begin in the same state."""
 
     time: Annotated[float, Number("s")] = 0.0
-    """When, counted from delivery.epoch."""
+    """Time of the release, counted from delivery.epoch."""
     position: Annotated[tuple[float, ...], Numbers("m")] = Field(examples=["[0.0, -300.0, 0.0]"])
     """x, y, z from the centre of the body."""
     velocity: Annotated[tuple[float, ...], Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
@@ -74,7 +74,7 @@ class ReleaseSection(Section):
     velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0)] | None = Field(
         default=None, examples=["0.0067"]
     )
-    """Likewise of the velocity."""
+    """The same for the velocity."""
     covariance: Annotated[Matrix, SquareMatrix()] | None = None
-    """In place of these: six rows of six numbers, for x, y, z, vx, vy, vz along the axes of delivery.frame [m2, m2/s,
+    """Instead of these: six rows of six numbers, for x, y, z, vx, vy, vz along the axes of delivery.frame [m2, m2/s,
     m2/s2]."""

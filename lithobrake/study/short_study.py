@@ -15,26 +15,26 @@ GRAINS = 2.5  # over the square of width over diameter: some three deep
 # FASTEST [m/s].
 SPEEDS, FASTEST = (0.5, 0.9), 0.5
 SLOW_WORDS = f"{SPEEDS[0]:g} to {SPEEDS[1]:g} of the escape speed"
-FAST_WORDS = "far below the escape speed: a fall from afar is faster, and needs stiffer grains"
+FAST_WORDS = "far below the escape speed; free fall is faster, and needs stiffer grains"
 # Over density and square of the speed: what a contact must have to be stiff, and the least of any use [Pa].
 STIFFNESS, SOFTEST = 16_000.0, 2e5
-LOST_PARTNER = "A mesh has no partner: the other body of the binary neither attracts nor is hit."
+LOST_PARTNER = "A mesh has no partner: the other body of the binary has no gravity and cannot be hit."
 DENSITY = 2500.0  # kg/m3
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 
 _STUDY = """\
-# Where does a lander end up? Landers are followed from delivery to rest, with a simulated landing at every impact.
-# Change what is yours: lander, body, delivery, and what is known of the ground. A number that is not known is a table
-# with a distribution; each lander draws its own. The ranges of soil and delivery are examples.
+# Where does a lander come to rest? Each one is followed from delivery to rest, with a landing simulated at each impact.
+# Replace lander, body, delivery and ground by those of your mission. An unknown number is a table with a distribution,
+# from which it is sampled for each lander. The ranges of soil and delivery are examples.
 title = "{lander.name} on {body.name}"
 seed = 1
 
 # The ground: boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
 [bed]
 grain_count = {grains}
-width = [{width}, {width}]    # m; `lithobrake plan` says the smallest
+width = [{width}, {width}]    # m; `lithobrake plan` prints the smallest
 diameter = {{ distribution = "constant", value = {diameter} }}    # m, of the sphere of equal volume
-pour_gravity = 0.5    # m/s2; they then settle under the local gravity
+pour_gravity = 0.5    # m/s2; grains then settle under the local gravity
 
 [grain]
 density = {density}    # kg/m3
@@ -49,7 +49,7 @@ shape = "box"    # or "sphere" with diameter, or "hull" with file
 edges = {edges}    # m
 mass = {lander.mass}    # kg
 
-# How it arrives at the ground, in any attitude.
+# Delivery, in any attitude.
 [delivery]
 latitude_deg = {latitude}
 longitude_deg = {longitude}
@@ -67,7 +67,7 @@ duration = 172_800.0    # s, two days
 """
 
 _ALL_KEYS = """\
-# All keys of a study file by their tables, with meaning, unit, range and default; write those that you need into the
+# All keys of a study file by their tables, with meaning, unit, range and default. Copy those that you need to the
 # tables above. A key marked "number or table" takes a number, or one of these distributions:
 """
 

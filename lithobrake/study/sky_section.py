@@ -32,9 +32,9 @@ class OrbitSection(Section):
 
 
 class OrbiterSection(Section):
-    """An orbiter that landers talk to, in one of three ways: a circle (`altitude`, `inclination_deg`), over any phase
-    of it and of the body's turn; a table of body-fixed places (`states`); or SPICE (`kernel_name`) from sky.date to
-    sky.until."""
+    """An orbiter that landers communicate with, given in one of three ways: a circle (`altitude`, `inclination_deg`),
+    with all phases of the orbit and of the body's rotation; a table of body-fixed states (`states`); or SPICE
+    (`kernel_name`) from sky.date to sky.until."""
 
     altitude: Annotated[float, Number("m", above=0)] | None = Field(default=None, examples=["2000.0"])
     """Height of the circle above the sphere around the body that touches its highest point."""
@@ -43,8 +43,8 @@ class OrbiterSection(Section):
     )
     """Inclination of the circle to the body's equator; absent: 90, over the poles."""
     states: str | None = Field(default=None, examples=['"orbiter.csv"'])
-    """Body-fixed states, in the format of delivery.states, which counts from the study file; each stands for half the
-    time to its neighbours."""
+    """File of body-fixed states, relative to the study file, in the format of delivery.states; each state represents
+    half the time to each of its neighbours."""
     kernel_name: str | None = Field(default=None, examples=['"HERA"'])
     """Name or number, as text, of the orbiter in site.kernels."""
 
@@ -55,30 +55,28 @@ class OrbiterSection(Section):
 
 
 class SkySection(Section):
-    """What a lander at rest sees of the Sun, of Earth and of an orbiter, and which of its sides face them; with
-    [journey] only.
-
-    A body far away stands over one latitude for a day of the small body, and over another in another season. Either the
-    latitudes are given (a distribution asks for a year: each lander draws its own), or `date` tells them, through
-    site.pole_right_ascension_deg and site.pole_declination_deg and the heliocentric orbit, or through site.kernels. The
-    shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
+    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them; with [journey]
+    only. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
+    season. Either give the latitudes (a distribution represents a year: each lander samples its own), or give `date`,
+    from which they follow by site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by
+    site.kernels. The shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
     """
 
     sun_latitude_deg: Latitude | None = None
-    """Latitude over which the Sun stands; absent: sunlight is not asked for, unless `date` is given."""
+    """Latitude at which the Sun is overhead. Absent: no sunlight is computed, unless `date` is given."""
     earth_latitude_deg: Latitude | None = None
-    """Latitude over which Earth stands; absent: it is not asked for, unless `date` is given."""
+    """Latitude at which Earth is overhead. Absent: its visibility is not computed, unless `date` is given."""
     date: str | None = None
-    """UTC date and time, "2027-04-20T00:00:00": Sun and Earth stand where they are then."""
+    """UTC date and time, for example "2027-04-20T00:00:00", for the positions of Sun and Earth."""
     until: str | None = None
-    """End of a span of time from `date` on, say a year: fractions are means over 24 of its days, and `sky.csv` has that
-    of the worst of them."""
+    """End of a time span that begins at `date`, for example a year: fractions are means over 24 days of it, and
+    `sky.csv` also has the fraction of the worst day."""
     orbit: OrbitSection | None = None
     orbiter: OrbiterSection | None = None
     mask_deg: Annotated[float, Number("deg", at_least=0, below=90)] = 0.0
-    """Height above the plane of the ground below which Earth and the orbiter are not seen."""
+    """Elevation above the plane of the ground below which Earth and the orbiter are not visible."""
     beam_deg: Annotated[float, Number("deg", above=0, at_most=90)] = 90.0
-    """Half the opening of an antenna's beam about the normal of its side, for Earth and the orbiter."""
+    """Half the opening angle of an antenna's beam about the normal of its side, for Earth and the orbiter."""
 
     @property
     def latitudes(self) -> dict[SkyBody, Scalar]:

@@ -24,10 +24,10 @@ Ends = tuple[float, float]
 
 
 class SoilGrainSection(Section):
-    """What the grains of a region are made of, where that differs from [grain]; sizes are those of [bed] everywhere."""
+    """Material of the grains of a region where it differs from [grain]; the sizes are those of [bed] everywhere."""
 
     density: Density | None = None
-    """Density of the rock; absent, here and below: that of [grain]."""
+    """Density of the rock. If this or a property below is absent, it is that of [grain]."""
     young_modulus: YoungModulus | None = None
     """Young's modulus."""
     poisson_ratio: PoissonRatio | None = None
@@ -52,21 +52,21 @@ class SoilGrainSection(Section):
 
 
 class SoilSection(Section):
-    """A soil of a region of the body, with [journey]; any number of regions, each in a table [soil.NAME] of its own. A
-    region is the ground within all of its bounds; where regions overlap the first in the file counts, and where there
-    is none [grain]. Beds are those of [bed] and [grain] everywhere: a touchdown in the region is made on one of them
-    with the region's materials. A lander has one draw of the soil of each region, which it meets again whenever it
-    comes back."""
+    """The soil of a region of the body; with [journey] only. There may be any number of regions, each in a table
+    [soil.NAME] of its own. A region is the ground within all of its bounds. Where regions overlap, the first in the
+    file applies; where there is none, [grain] applies. All beds are those of [bed] and [grain]: a touchdown in the
+    region uses one of them with the region's materials. The soil of each region is sampled once for each lander."""
 
     latitude_deg: Annotated[Ends, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
-    """Between which planetocentric latitudes it lies; absent, here and below: at any."""
+    """Smallest and largest planetocentric latitude. If this or a bound below is absent, it does not limit the
+    region."""
     longitude_deg: Annotated[Ends, Numbers("deg", at_least=-360, at_most=360, count=2)] | None = None
-    """From which longitude eastward to which; [170, -170] goes across 180."""
+    """First longitude and, eastward of it, the last one; [170, -170] crosses 180."""
     slope_deg: Annotated[Ends, Numbers("deg", at_least=0, at_most=180, count=2, ascending=True)] | None = None
-    """Between which slopes its facets lie, at their centres against gravity, rotation and the partner's tide at the
-    medians of [site]; above 90 the ground does not hold what lies on it."""
+    """Smallest and largest slope of its facets, at their centres, against gravity, rotation and the partner's tide at
+    the medians of [site]. Above 90 an object at rest leaves the ground."""
     facets: str | None = Field(default=None, examples=['"ponds.csv"'])
-    """Text file, counted from the study file, with the numbers of its facets in the shape of the body, from 0, one a
+    """Text file, relative to the study file, with the numbers of its facets in the shape of the body, from 0, one per
     line."""
     grain: SoilGrainSection
 

@@ -39,9 +39,9 @@ class Study(Section):
     """A landing study."""
 
     title: str = ""
-    """One line about the study."""
+    """Title of the study, one line."""
     seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
-    """Everything random follows from this number."""
+    """Seed of all random numbers of the study."""
     bed: BedSection
     grain: GrainSection
     soil: dict[str, SoilSection] = Field(default={})

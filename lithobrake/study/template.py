@@ -13,7 +13,7 @@ from lithobrake.study.study import Study
 from lithobrake.study.units import is_named, limits, table
 
 _HEAD = """\
-# A landing study. A key marked "number or table" takes a distribution in place of the number, as in
+# A landing study. A key marked "number or table" also takes a distribution instead of the number, as in
 #     friction = { distribution = "uniform", lower = 0.3, upper = 0.9 }
 # with one of:
 """

@@ -28,22 +28,22 @@ UNLIKELY = 0.02
 Answers = dict[str, Any]
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground, restitution from 0 to 1"}
 END_WORDS = {
-    "at_rest": "at rest on Dimorphos", "escaped": "away from both bodies", "partner": "on Didymos",
+    "at_rest": "at rest on Dimorphos", "escaped": "escaped from both bodies", "partner": "on Didymos",
     "under_way": "still moving after three days",
 }  # fmt: skip
 # Words of a number, and its unit in SI.
 NUMBER_WORDS = {
     "time_s": ("time from the first contact to rest [min]", 60.0), "contacts": ("contacts", 1.0),
-    "distance": ("distance from the aim to rest [m]", 1.0),
-    "first_speed_ratio": ("first rebound speed over impact speed", 1.0),
+    "distance": ("distance from the aim point to rest [m]", 1.0),
+    "first_speed_ratio": ("first rebound speed / impact speed", 1.0),
 }  # fmt: skip
 VARIANT_WORDS = {
-    "held_speed 0.03": "grains are held when slower than 0.03 of the lander, not 0.1 (`contact.held_speed`)",
-    "shape model alone": "shape of before DART, without Didymos, not an ellipsoid without Didymos",
+    "held_speed 0.03": "grains are frozen below 0.03 of the lander's speed, instead of 0.1 (`contact.held_speed`)",
+    "shape model alone": "shape from before DART, without Didymos, instead of an ellipsoid without Didymos",
 }
 BIN_WORDS = {
-    "time_min": "minutes from the first contact to rest", "contacts": "contacts to rest",
-    "first_speed_ratio": "first rebound speed over impact speed",
+    "time_min": "minutes from the first contact to rest", "contacts": "contacts until rest",
+    "first_speed_ratio": "first rebound speed / impact speed",
 }  # fmt: skip
 INPUT_WORDS = {
     "mass_kg": "mass of Dimorphos", "speed": "speed of the first impact",
@@ -55,7 +55,7 @@ INPUT_WORDS = {
 }  # fmt: skip
 DIGEST_WORDS = {
     "branches": "branches.py, descent.py, grounds.py, landers.py, hard_ground.py",
-    "code": "all files of the package, by path", "results": "landers.csv",
+    "code": "all files of the package, in the order of their paths", "results": "landers.csv",
 }  # fmt: skip
 
 
@@ -102,7 +102,7 @@ def regions_table(landers: Answers) -> str:
             area, lower, upper = (plain(one[key], 3) for key in ("area_m2", "lower", "upper"))
             ground = f"{100 * one['of_ground']:.0f} %"
             rows.append([name.capitalize(), f"{100 * one['share']:.0f} %", f"{area} ({lower}-{upper})", ground])
-    return table(("lander", "share of the landers", "area [m2]", "part of all ground"), rows)
+    return table(("lander", "fraction of the landers", "area [m2]", "fraction of the surface"), rows)
 
 
 def variants_part(compared: list[dict[str, Any]]) -> list[str]:
@@ -116,7 +116,8 @@ def variants_part(compared: list[dict[str, Any]]) -> list[str]:
         ]
         for one in compared
     ]  # fmt: skip
-    head = ("lander", "variant", "at rest: with it and without", "median time to rest [min]", "ratio (90 % interval)")
+    changed = "at rest: with and without the change"
+    head = ("lander", "variant", changed, "median time to rest [min]", "ratio (90 % interval)")
     return [broken(METHOD["variants"]), table(head, rows), broken(VARIANTS_SAY)] if rows else []
 
 
@@ -141,7 +142,7 @@ def branches_table(landers: Answers) -> str:
                 [name.capitalize(), one["branch"], f"{one['weight']:.3g}", str(one["landers"]), *shares, beside]
             )
     words = (END_WORDS[end] for end in ENDS[:3])
-    return table(("lander", "branch", "weight", "landers", *words, "hard ground: at rest"), rows)
+    return table(("lander", "branch", "weight", "landers", *words, "at rest on hard ground"), rows)
 
 
 def decides_table(landers: Answers) -> str:
@@ -155,19 +156,20 @@ def decides_table(landers: Answers) -> str:
                 for found in (one["time_s"], one["first_speed_ratio"])
             ]
             rows.append([name.capitalize(), INPUT_WORDS[one["input"]], halves, *ranks])
-    head = ("lander", "input", "at rest: lower, upper half", "time to rest", "first speed ratio")
+    correlations = (f"correlation with {output}" for output in ("time to rest", "first speed ratio"))
+    head = ("lander", "input", "at rest: lower, upper half", *correlations)
     return table(head, rows)
 
 
 def bin_words(name: str, number: int) -> str:
     """A bin in words."""
     if name == "end":
-        return f"it ends {END_WORDS[ENDS[number]]}"
+        return f"end: {END_WORDS[ENDS[number]]}"
     edges = BINS[name]
     if number == len(edges) - 1:
-        return f"{BIN_WORDS[name]}: {edges[number]:g} and more"
+        return f"{BIN_WORDS[name]}: {edges[number]:g} or more"
     if name == "first_speed_ratio" and number == 0:
-        return f"{BIN_WORDS[name]}: none, it stays at once"
+        return f"{BIN_WORDS[name]}: 0, it stays at the first contact"
     return f"{BIN_WORDS[name]}: {edges[number]:g} to {edges[number + 1]:g}"
 
 
@@ -200,14 +202,14 @@ def by_part(text: str) -> str:
 
 def first_line(landers: Answers) -> str:
     """The answer."""
-    said = [f"{name.capitalize()} with {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
+    said = [f"{name.capitalize()} {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
     hits = [
         f"{of['soil']['touched_down']['at_rest']} of {of['soil']['touched_down']['landers']} of {name.capitalize()}"
         for name, of in landers.items()
     ]
     return (
-        f"They come to rest on Dimorphos: {', '.join(said)} (90 % intervals). Of the simulated landers that touch down "
-        f"at all, {' and '.join(hits)} come to rest."
+        f"Probability of coming to rest on Dimorphos: {', '.join(said)} (90 % intervals). "
+        f"Of the simulated landers that touch down, {' and '.join(hits)} come to rest."
     )
 
 
@@ -220,7 +222,7 @@ def page(document: dict[str, Any], cost: str) -> str:
     )
     parts = [
         broken(ABOUT.format(made=document["made"], first=first_line(landers), counts=counts)),
-        ends_table(landers), "![Shares at rest by branch](forecast_hera_shares.png)",
+        ends_table(landers), "![Fraction at rest by branch](forecast_hera_shares.png)",
         broken(METHOD["numbers"]), numbers_table(landers),
         broken(METHOD["place"]), regions_table(landers), "![Places of rest](forecast_hera_map.png)",
         broken(METHOD["faces"]), faces_table(landers),

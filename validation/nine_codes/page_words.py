@@ -13,10 +13,10 @@ bed is 34 mm deep. The published curves were not accessible. MercuryDPM was ther
 here with the driver of that work (repository kuwt/MercuryDPM_fork, commit fb0ebf1d,
 `Drivers/Papers/OSBenchmark`). LAMMPS was run from the bed that was relaxed here.
 
-The criterion was set before the runs. The height z of the ball's centre is within 1 mm, half a
-grain, of MercuryDPM's at 10, 20, 50 and 100 ms, and within the range of five beds. No other beds
-were poured. The range is that of several impacts on the published bed instead: in the middle, at
-other points, and shifted by a billionth of a metre ("nudged").
+The criterion was set before the runs: at 10, 20, 50 and 100 ms, the height z of the ball's centre
+is within 1 mm (half a grain) of MercuryDPM's, and MercuryDPM's is within the range of impacts on
+five beds. No other beds were poured. Instead, the range here is that of several impacts on the
+published bed: in the middle, at other points, and shifted by a billionth of a metre ("nudged").
 
 ## Heights
 
@@ -43,8 +43,8 @@ CONDITIONS = """
   give these pairs exactly; each set of bodies has walls of its own (`impact_bed.py`).
 - **Contact laws.** All codes use the springs of Hertz and Mindlin. There are three differences from
   MercuryDPM. A tangential dashpot acts here and not there. A contact never pulls here, while
-  MercuryDPM's damping can pull as the contact ends. The damping ratio for a given restitution
-  follows from that (0.355 here, 0.280 there for 0.4).
+  MercuryDPM's damping can pull as the contact ends. Therefore the
+  damping ratio for a given restitution differs too (for 0.4, it is 0.355 here and 0.280 there).
 """
 MISSING = """
 ## Limits
@@ -52,12 +52,14 @@ MISSING = """
 - The nine published curves were not accessible, so their range is not shown.
 - The silo and the drum of the benchmark were not run:
     - **Silo** (100 000 spheres of 4 mm, outflow in 5 s): the four files of initial positions are
-      absent from the snapshot of the repository. The engine has no cone that ends at an orifice,
-      because its walls are half-spaces and triangle meshes are missing. It cannot remove bodies.
+      absent from the snapshot of the repository. The engine cannot model a cone that ends at an
+      orifice, because its walls are half-spaces and it has no triangle meshes. It cannot remove
+      bodies either.
     - **Drum** (38 000 spheres of two materials, 2 rad/s, 5 s): the engine's planes are static; a
-      wall that rotates or slides under its contacts is missing. So is a table of pairs: M1-M2 has
-      restitution 0.45 and friction 0.2, and no rule for two materials gives friction 0.2 from 0.3
-      and 0.4. The drum needs 6.25 million steps of 8e-7 s.
+      wall that rotates or slides under its contacts is missing. The properties of pairs of
+      materials cannot be given as a table either: M1-M2 has restitution 0.45 and friction 0.2, and
+      no rule for two materials gives friction 0.2 from 0.3 and 0.4. The drum needs 6.25 million
+      steps of 8e-7 s.
 
 ## Reproduce this page
 
@@ -73,18 +75,20 @@ Closed forms: the restitution as entered; Coulomb sliding from the start, with a
 a = g (1 - μ) and spin rate increasing by 5 μ g / 2R. Criterion: relative error below 1e-3.
 """
 PAIRS_AFTER = """
-Sliding agrees with both to 1e-3. The restitution does so from a fifth of the published step on. A
-contact begins and ends within a step, which is a fortieth of its duration, so the error is
-proportional to the step. MercuryDPM behaves in the same way: its 0.40108 becomes 0.39995 at a tenth
-of the step. Its damping force is not clipped and pulls as the contact ends.
+Sliding agrees with the closed forms and with MercuryDPM to 1e-3. The restitution agrees to 1e-3 for
+steps of a fifth of the published one or less. A contact begins and ends within a step, which is a
+fortieth of its duration, so the error is proportional to the step. MercuryDPM behaves in the same
+way: its 0.40108 becomes 0.39995 at a tenth of the step. Its damping force is not clipped and pulls
+as the contact ends.
 """
 RUNS_WORDS = """
 ## Simulations
 
-Here the bed relaxes with steps of 1e-6 s while the ball falls freely, to 20.5 ms. The step is then
-the published 5e-7 s until 32 ms, and 1e-6 s or 0.9 of the largest stable step after it. MercuryDPM
-takes 4e-6 s in free fall, 1e-6 s until 30 ms, 3e-6 s until 50 ms and 4e-6 s after it; its contact
-search has cells that fit both sizes of spheres. At the published step it would take some ten
-thousand CPU seconds. Runs end where the table says; those listed as "not run" have no rows. CPU
+In this engine, the bed relaxes with steps of 1e-6 s while the ball falls freely, until 20.5 ms. The
+step is then the published 5e-7 s until 32 ms, and after that 1e-6 s or 0.9 of the largest stable
+step. MercuryDPM has steps of 4e-6 s in free fall, 1e-6 s until 30 ms, 3e-6 s until 50 ms and 4e-6 s
+after that; its contact search has cells that fit both sizes of spheres. At the published step it
+would take some ten thousand CPU seconds. The table states the end of each run; "not run" marks runs
+that were planned only. CPU
 times were measured while other programs ran.
 """
