@@ -8,7 +8,7 @@ import pytest
 from blocks import ROOT
 
 
-@pytest.mark.parametrize("study", ["paper", "drawn_170", "drawn_700", "mission"])
+@pytest.mark.parametrize("study", ["paper", "drawn_170", "drawn_700", "first_bounce", "mission"])
 def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
     folder = ROOT / "showcase" / study
     results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
