@@ -64,7 +64,7 @@ def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     assert "amount to 1.4 × 10⁻⁵ m/s2 outward" in captions.outcomes(paper)
     large = results.regions[-1]
     assert large.share == 0.95
-    assert f"95 % of them has {area(large.area_m2)} and is {number(large.largest_extent_m, 2)} m across" in (
+    assert f"95 % of them covers {area(large.area_m2)} and is {number(large.largest_extent_m, 2)} m across" in (
         captions.impact_map(paper)
     )
 

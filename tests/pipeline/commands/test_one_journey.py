@@ -135,7 +135,7 @@ def test_what_is_changed_is_changed_in_every_touchdown_and_the_ground_goes_with_
 
 @pytest.mark.parametrize("key", ["journey", "touchdown", "journey.time_left", "surface.slope_deg"])
 def test_what_follows_from_the_journey_cannot_be_changed(key: str, study_file: Path) -> None:
-    with pytest.raises(ValueError, match=f"--set names '{key}', which no landing of this study reads"):
+    with pytest.raises(ValueError, match=f"--set names '{key}', which no landing of this study uses"):
         landing_inputs(read_study(study_file), [f"{key}=1"])
 
 

@@ -59,7 +59,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--set", "grain.colour=1"], "--set names 'grain.colour', which no landing of this study reads"),
+        (["--set", "grain.colour=1"], "--set names 'grain.colour', which no landing of this study uses"),
         (["--set", "impact.speed"], "--set is 'impact.speed'; allowed: KEY=VALUE"),
         (["--set", "impact.speed=fast"], "--set impact.speed is 'fast'; allowed: a number"),
         (["--set", "impact.speed=nan"], "--set impact.speed is nan; allowed: a finite number"),
