@@ -29,6 +29,7 @@ GLASS = Material(young_modulus=1e7, poisson_ratio=0.24, restitution=0.9, frictio
 PACE = 5e-4  # s between looks at the ball
 LIGHT, HEAVY, FALL = 2200.0, 15000.0, 0.1
 OURS, LOOSE, FINE = "3 mm, walls, dense", "5 mm, periodic, loose, deeper", "3 mm, periodic, loose, deeper"
+FINER = "2 mm, periodic, loose, deeper"
 DIAMETERS = (0.0127, 0.018, 0.036)
 SLOW = 0.6  # sqrt(g d), at which beads fall for a loose bed: the experiment's beds are loose
 SERIES = ("drops", "diameters", "walls", "causes", "sizes", "repose")
@@ -73,7 +74,14 @@ def grains() -> dict[str, Beads]:
     wide = {"width": 4.0 * BALL}
     return {
         "5 mm, as the one before, friction 0.6": bed_of(0.005, **wide, friction=0.6),
+        f"{LOOSE}, restitution 0.7": bed_of(0.005, **wide, restitution=0.7),
+        f"{LOOSE}, rolling friction 0.1": bed_of(0.005, **wide, rolling_friction=0.1),
+        f"{LOOSE}, poured at a third of the speed": bed_of(0.005, **wide, fall_speed=SLOW / 3.0),
+        f"{LOOSE}, Young's modulus 70 MPa": bed_of(0.005, **wide, young_modulus=7e7),
+        f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
+        f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),
+        FINER: bed_of(0.002),
     }
 
 
