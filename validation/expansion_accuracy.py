@@ -77,6 +77,7 @@ CELLS = [
     *cells("hulls 1.2", 3, "paper's", 4),
     *cells("hulls 1.2", 3, "ours", 4),
     sweep("hulls 10", steps=40),
+    Cell("hulls 10", 0, "two", "5 %", 4, 30),
     sweep("spheres 10"),
 ]  # fmt: skip
 KINDS = dict.fromkeys(("ground", "kept", "range", "design", "status"), str) | dict.fromkeys(("bed", "number"), int)

@@ -14,7 +14,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from ball_drop import Ball, dropped
+from ball_drop import DROP_STEPS, Ball, dropped
 from repose import angle_of_repose
 from result_rows import Row, note, options_of, read_rows
 from sphere_bed import Beads, bulk_density, kept
@@ -29,6 +29,7 @@ GLASS = Material(young_modulus=1e7, poisson_ratio=0.24, restitution=0.9, frictio
 PACE = 5e-4  # s between looks at the ball
 LIGHT, HEAVY, FALL = 2200.0, 15000.0, 0.1
 OURS, LOOSE, FINE = "3 mm, walls, dense", "5 mm, periodic, loose, deeper", "3 mm, periodic, loose, deeper"
+FINER = "2 mm, periodic, loose, deeper"
 DIAMETERS = (0.0127, 0.018, 0.036)
 SLOW = 0.6  # sqrt(g d), at which beads fall for a loose bed: the experiment's beds are loose
 SERIES = ("drops", "diameters", "walls", "causes", "sizes", "repose")
@@ -37,7 +38,7 @@ SERIES = ("drops", "diameters", "walls", "causes", "sizes", "repose")
 def bed_of(size: float, width: float = 3.0 * BALL, depth: float = 0.11, **other: float) -> Beads:
     """Return a loose bed of a mean bead size [m] on ground that repeats after three ball diameters, 4.3 deep.
 
-    other: width and depth [m], fall_speed, walls, tiles, or a value of the material.
+    other: width and depth [m], fall_speed, walls, tiles, least_steps, or a value of the material.
     """
     sizes = tuple(round(share * size, 7) for share in SPREAD)
     plain = Beads(
@@ -73,7 +74,14 @@ def grains() -> dict[str, Beads]:
     wide = {"width": 4.0 * BALL}
     return {
         "5 mm, as the one before, friction 0.6": bed_of(0.005, **wide, friction=0.6),
+        f"{LOOSE}, restitution 0.5": bed_of(0.005, **wide, restitution=0.5, least_steps=60.0),
+        f"{LOOSE}, rolling friction 0.1": bed_of(0.005, **wide, rolling_friction=0.1),
+        f"{LOOSE}, poured at a third of the speed": bed_of(0.005, **wide, fall_speed=SLOW / 3.0),
+        f"{LOOSE}, Young's modulus 70 MPa": bed_of(0.005, **wide, young_modulus=7e7),
+        f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
+        f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),
+        FINER: bed_of(0.002),
     }
 
 
@@ -106,7 +114,7 @@ def drop_row(work: Path, name: str, beads: Beads, ball: Ball, fall: float) -> Ro
     start = time.process_time()
     world = kept(beads, work)
     bulk = bulk_density(world, beads)
-    result, _ = dropped(world, ball, beads.material, fall, PACE)
+    result, _ = dropped(world, ball, beads.material, fall, PACE, steps=max(DROP_STEPS, beads.least_steps))
     return {
         "bed": name, "density": ball.density, "fall": fall, "diameter": ball.diameter,
         "bead_size": beads.mean_diameter, "beads": beads.count, "width": beads.width, "bed_depth": beads.depth,

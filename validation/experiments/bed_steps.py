@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from ball_into_beads import BALL, FALL, FINE, HEAVY, LIGHT, LOOSE, OURS
+from ball_into_beads import BALL, FALL, FINE, FINER, HEAVY, LIGHT, LOOSE, OURS
 from fits import below_first_touch, below_mean_surface, density_exponent, diameter_exponent, scale, stopping
 from result_rows import Row
 from sphere_bed import Floats
@@ -21,7 +21,6 @@ STEPS = [
     ("beads of 3 instead of 5 mm, loose bed", LOOSE, FINE),
     ("friction 0.6 instead of 0.3", LOOSE, "5 mm, as the one before, friction 0.6"),
 ]
-FINER = "2 mm, periodic, loose, deeper"
 
 
 def pairs(every: list[Row]) -> dict[str, tuple[Row, Row]]:

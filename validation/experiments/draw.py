@@ -74,7 +74,7 @@ def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
         axis.plot(found, at, "o", color=ink, mfc=face, label=text)
     axis.set_yticks(at, list(beds), fontsize=7)
     axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
-    axis.legend(fontsize=7)
+    axis.legend(fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:

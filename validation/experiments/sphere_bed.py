@@ -36,6 +36,7 @@ class Beads:
     seed: int
     fall_speed: float = 3.0  # sqrt(g d), the most at which beads fall while the bed is poured: slow makes it loose
     walls: bool = False
+    least_steps: float = 0.0  # in the shortest contact: damping in many contacts at once asks for more than POUR_STEPS
     tiles: int = 1  # along x and y: the bed is poured on a tile of width / tiles, and laid out so often
 
     @property
@@ -144,7 +145,7 @@ def come_to_rest(world: World, beads: Beads, hanging: int = 0) -> None:
     """
     fall = math.sqrt(2.0 * float(world.position[:, 2].max()) / beads.gravity)
     speed = 2.0 * beads.gravity / world.drag
-    world.time_step = world.shortest_contact(speed) / steps_for(beads.material, POUR_STEPS)
+    world.time_step = world.shortest_contact(speed) / steps_for(beads.material, max(POUR_STEPS, beads.least_steps))
     for look in range(PATIENCE * LOOKS):
         world.run(duration=fall / LOOKS)
         ratio = settling.kinetic_ratio(world, beads.mean_diameter, beads.gravity)
