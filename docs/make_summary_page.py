@@ -23,8 +23,8 @@ HEAD = """# The keys of summary.json, scores.json and the expansions
 This page explains every key of the results that a study writes. `*` stands for any name of an
 output, an input (by its dotted key), a design or an outcome. In a list of tables every table has
 the keys that are listed. Numbers are in SI units unless another unit is named; `null` means that
-there is no such number. In Python `lithobrake.open_study("DIR").results` has the same as attributes,
-with types; a key that is a Python keyword has an underscore there (`from_`).
+there is no such number. In Python `lithobrake.open_study("DIR").results` has the same as
+attributes, with types; a key that is a Python keyword has an underscore there (`from_`).
 
 ## `summary.json`
 

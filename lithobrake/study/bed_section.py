@@ -59,8 +59,8 @@ class PowerLaw(Section):
 
 
 class BoulderSection(Section):
-    """Boulders among the grains. They lie on a broad face and are placed before the grains are poured on and around
-    them; a part that would reach below the floor is cut off. They are of the same material."""
+    """Boulders among the grains, of the same material. They lie on a broad face, and grains are poured on and around
+    them. Parts that would reach below the floor are cut off."""
 
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "power_law", cumulative_exponent = 2.65, lower = 0.3, upper = 0.6 }']

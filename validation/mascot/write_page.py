@@ -63,15 +63,18 @@ def verdict(rows: list[Row]) -> str:
     )
     text += f" of {len(rows)} landers" + (f"; {outside} {NOT_INSIDE}. " if outside != NONE else ". ")
     if edge != NONE:
-        text += f"For {edge} more landers may change this: the interval of the fraction below it contains a limit. "
+        text += f"For {edge} this is not certain: the 90 % interval of the fraction below it contains 0.1 or 0.9. "
     if not agree["time_s"].agrees or agree["time_s"].is_open:
         seen = answer(column(rows, "settled_s"), OBSERVED["settled_s"])
         text += (
-            f"{percent(agree['time_s'].below)} of the landers come to rest within 663 s; {percent(seen.below)} stay "
+            f"{percent(agree['time_s'].below)} of the landers come to rest within 663 s; {percent(seen.below)} are "
             "within 0.1 m of their place of rest by then. "
         )
     text += f"{still} landers still move after four hours. " if still else "All come to rest. "
-    return text + f"{percent(farther(rows))} are farther from the median in all three numbers together."
+    return text + (
+        f"{percent(farther(rows))} are farther from the mean than MASCOT, by the Mahalanobis distance of the logarithms "
+        "of the three numbers."
+    )
 
 
 def listed(words: list[str]) -> str:
@@ -103,7 +106,7 @@ def table_of_bounces(settings: dict[str, list[Row]]) -> str:
     """The first contact of each setting, and what else the journeys were."""
     lines = [
         "| first contact | fraction that stays there | rebound / impact speed: median (80 %) | standard deviation "
-        "| rebound elevation [deg] | distance [m]: median (80 %) | mean landings | fraction under 105 min |",
+        "| rebound elevation [deg] | distance [m]: median (80 %) | mean landings | fraction at rest within 105 min |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for setting, rows in settings.items():
