@@ -15,7 +15,7 @@ PANELS = {
     "stop": "stops on the bed",
     "along": "goes along the ground farther than its length",
     "bounce": "bounces off where it came down",
-    "speed": "speed of those that leave / of impact (median, quartiles)",
+    "speed": "rebound / impact speed (median, quartiles)",
 }
 
 

@@ -122,7 +122,7 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
         beyond[expected] += 0.1 * (1.0 if expected else -1.0)
         ends = [froude(share, slow), froude(share, fast)]
         axes[0].plot(ends, [level, level], "|-", color=MEASURED, lw=2)
-        axes[0].text(ends[0], level + (0.015 if expected else -0.06), text.split(" (")[0], fontsize=7.5, color=MEASURED)
+        axes[0].text(ends[0], level + (0.025 if expected else -0.06), text.split(" (")[0], fontsize=7.5, color=MEASURED)
     marks = dict(zip(SHOWN, ("o", "s", "^", "D", "v", "P"), strict=True))
     for k, kind in enumerate(name for name in SHOWN if any(row["kind"] == name for row in rows)):
         numbers = sorted({row["froude"] for row in rows if row["kind"] == kind})
@@ -136,7 +136,7 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
         axes[1].errorbar(at, [o.mean() for o in out], [o.std() for o in out], fmt=marks[kind], color=ink, capsize=2)
     needed = np.geomspace(0.8, 400.0, 50)
     axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
-    axes[1].text(0.9, 0.3, "rises by 0.5 mm\nabove this line", fontsize=7.5, color=MEASURED)
+    axes[1].text(12.0, 0.2, "above the dotted line\nit rises by 0.5 mm", fontsize=7.5, color=MEASURED)
     axes[1].axhline(0.05, color=MEASURED, lw=2)
     axes[1].text(480.0, 0.053, "COLLIDE-1", fontsize=7.5, color=MEASURED, ha="right")
     axes[0].set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$", ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
