@@ -139,10 +139,10 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
     axes[1].text(12.0, 0.2, "above the dotted line\nit rises by 0.5 mm", fontsize=7.5, color=MEASURED)
     axes[1].axhline(0.05, color=MEASURED, lw=2)
     axes[1].text(480.0, 0.053, "COLLIDE-1", fontsize=7.5, color=MEASURED, ha="right")
-    axes[0].set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$", ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
-    axes[1].set(
-        xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$", ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4)
-    )
+    for axis in axes:
+        axis.set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$")
+    axes[0].set(ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
+    axes[1].set(ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4))
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.savefig(to)
     plt.close(figure)
