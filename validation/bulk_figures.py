@@ -28,8 +28,8 @@ PAGES = HERE.parent / "docs" / "validation"
 Rows = list[dict[str, Any]]
 # Outputs of the check of the bed's size: words and factor of the table. Impacts: speed, and angle from the normal.
 OUTPUTS = {
-    "speed_out": ("rebound speed [cm/s]", 100.0), "elevation_out": ("elevation [deg]", math.degrees(1.0)),
-    "spin_out": ("spin rate [rad/s]", 1.0),
+    "speed_out": ("rebound speed [cm/s]", 100.0), "elevation_out": ("rebound elevation [deg]", math.degrees(1.0)),
+    "spin_out": ("rebound spin rate [rad/s]", 1.0),
 }  # fmt: skip
 WAYS = {"steep": "0.4 m/s, 0 deg", "slanted": "0.4 m/s, 15 deg", "slow": "0.2 m/s, 30 deg"}
 

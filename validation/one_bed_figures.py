@@ -29,7 +29,8 @@ INPUTS = {
     "grain.poisson_ratio": "Poisson's ratio", "lander.restitution": "lander restitution",
 }  # fmt: skip
 OUTPUTS = {
-    "speed_out": "rebound speed", "elevation_out": "elevation", "spin_out": "spin rate", "returns": "return fraction"
+    "speed_out": "rebound speed", "elevation_out": "rebound elevation", "spin_out": "rebound spin rate",
+    "returns": "return fraction",
 }  # fmt: skip
 LANDER_EDGE = 0.1  # m, the short edges
 HEAD = """\
@@ -198,7 +199,7 @@ def _yes(true: bool) -> str:
 def place_table(studies: list[Entry]) -> list[str]:
     """Return a line a study of the paper method."""
     lines = [
-        "| seed | return fraction [%] | rebound speed [cm/s] | elevation [deg] | dominant input for the speed "
+        "| seed | return fraction [%] | rebound speed [cm/s] | rebound elevation [deg] | dominant input for the speed "
         "| its Sobol index | Q2 of the speed |",
         "|---" * 7 + "|",
     ]

@@ -29,7 +29,7 @@ HERE = Path(__file__).parent
 PAGES = HERE.parent / "docs" / "validation"
 SHOWCASE = HERE.parent / "showcase"
 SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
-SYMBOLS = {SPEED: "rebound speed", ELEVATION: "elevation", SPIN: "spin rate"}
+SYMBOLS = {SPEED: "rebound speed", ELEVATION: "rebound elevation", SPIN: "rebound spin rate"}
 # Factor and unit of the tables.
 UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
 PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
@@ -149,7 +149,7 @@ def draw_answers() -> None:
         axes[0].axvline(PAPER_SHARE, color=QUIET, ls="--", lw=0.8, zorder=0)
         axes[0].text(PAPER_SHARE + 0.5, 0.5 * len(studies), "the paper's 48.26 %", color=INK, rotation=90, va="center")
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
-        axes[0].set_xlabel("landers that come down again within 12 h [%]")
+        axes[0].set_xlabel("return fraction within 12 h [%]")
         axes[1].set_xlabel("rebound speed [cm/s]: mean, 5 to 95 %")
         figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
 
@@ -202,7 +202,7 @@ def error_table() -> list[str]:
         )
     angles = [float(from_normal(name).mean()) for name in ("refined", "test_kept", "test_all")]
     cells = " | ".join(f"{angle:.3g}" for angle in angles)
-    return [*lines, f"| elevation from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
+    return [*lines, f"| rebound elevation from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
 
 
 def fit_table() -> list[str]:

@@ -27,8 +27,8 @@ Entry = dict[str, Any]
 # What is drawn and tabulated of a landing: name, unit, and what an SI value is multiplied by.
 OUTPUTS = {
     "speed_out": ("rebound speed", "cm/s", 100.0),
-    "elevation_out": ("elevation", "deg", 180.0 / math.pi),
-    "spin_out": ("spin rate", "rad/s", 1.0),
+    "elevation_out": ("rebound elevation", "deg", 180.0 / math.pi),
+    "spin_out": ("rebound spin rate", "rad/s", 1.0),
     "penetration": ("penetration", "cm", 100.0),
 }
 WORDS = {"walls": "walls", "periodic": "period"}

@@ -48,7 +48,7 @@ class LogUniform(Uniform):
 
 @dataclass(frozen=True)
 class Beta(Limited):
-    """Beta, density proportional to (x - lower)**(alpha - 1) (upper - x)**(beta - 1) between the limits; Jacobi."""
+    """Beta, density proportional to `(x - lower)**(alpha - 1) (upper - x)**(beta - 1)` between the limits; Jacobi."""
 
     alpha: float
     beta: float

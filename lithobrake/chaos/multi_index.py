@@ -17,7 +17,7 @@ LOOKED_AT = 20_000_000
 def multi_index_set(
     input_count: int, degree: int, *, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
 ) -> Indices:
-    """Multi-indices with (sum i_r**q)**(1/q) <= degree, shape [term_count, input_count], ordered by total degree.
+    """Multi-indices with `(sum i_r**q)**(1/q) <= degree`, shape [term_count, input_count], ordered by total degree.
 
     q_norm: 1 is the total degree; smaller drops interactions. max_degrees: highest degree of each input, [input_count].
     Raises ValueError for a negative degree or q_norm outside (0, 1], and for more terms than a fit could ever have.

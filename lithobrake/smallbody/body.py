@@ -160,7 +160,7 @@ class Body:
     def jacobi(self, position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Jacobi constant [m2/s2] of body-fixed states: half the squared speeds' difference minus the potential.
 
-        It is v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential, kept in a flight.
+        It is `v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential`, kept in a flight.
         """
         p, v = self._checked(position), self._checked(velocity)
         turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)

@@ -50,7 +50,7 @@ def band_table(rows: list[Row], ground: str) -> list[str]:
     """Lines of the bands on the equator of a ground."""
     lines = [
         "| release [m] | "
-        + " | ".join(f"fraction >= {level:g}" for level in LEVELS)
+        + " | ".join(f"fraction ≥ {level:g}" for level in LEVELS)
         + " | highest fraction | at longitude [deg] |",
         "|---|" + "---|" * (len(LEVELS) + 2),
     ]

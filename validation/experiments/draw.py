@@ -21,8 +21,17 @@ from fits import (
 from matplotlib.axes import Axes
 from result_rows import Row
 
+from lithobrake.report.figures.style import STYLE
+
+plt.rcParams.update(STYLE)
 INK = ("#1b6ca8", "#d1495b", "#3a7d44", "#8d5fa8")
 MEASURED = "0.45"
+WIDTH = 9.2  # inch of every figure of three panels, so that the letters are those of the other figures
+
+
+def legend_below(axis: Axes) -> None:
+    """Put the legend of a panel where it hides no point."""
+    axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
 
 
 def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate, to: Path) -> None:
@@ -30,7 +39,7 @@ def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate,
 
     rows: drops into our beads. beds: a light and a heavy drop into each bed.
     """
-    figure, (left, middle, last) = plt.subplots(1, 3, figsize=(14, 4.2), layout="constrained")
+    figure, (left, middle, last) = plt.subplots(1, 3, figsize=(WIDTH, 4.4), layout="constrained")
     draw_depths(left, rows, 0.14 / slope.value)
     for density, ink in zip(sorted({row["density"] for row in rows}), INK, strict=False):
         own = [row for row in rows if row["density"] == density]
@@ -39,9 +48,9 @@ def of_drops(rows: list[Row], beds: dict[str, tuple[Row, Row]], slope: Estimate,
     far = np.array([0.0, middle.get_xlim()[1]])
     middle.plot(far, 3.0 * far, color=MEASURED, label="3 d/v, measured")
     middle.set(xlabel="depth / impact speed [ms]", ylabel="stopping time [ms]")
-    middle.legend(fontsize=8)
+    legend_below(middle)
     draw_exponents(last, beds)
-    figure.savefig(to, dpi=110)
+    figure.savefig(to)
     plt.close(figure)
 
 
@@ -58,8 +67,8 @@ def draw_depths(axis: Axes, rows: list[Row], prefactor: float) -> None:
         axis.plot(across, below_first_touch(own) * 100, "o", color=ink, mfc="none")
     axis.plot([], [], "o", color="0.3", mfc="none", label="below the first touch")
     axis.set(xlabel=r"$(0.14/\mu)\,(\rho/\rho_b)^{1/2} D^{2/3} H^{1/3}$ [cm]", ylabel="depth [cm]")
-    axis.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm", fontsize=10)
-    axis.legend(fontsize=8)
+    axis.set_title(f"beads of {1e3 * rows[0]['bead_size']:g} mm")
+    legend_below(axis)
 
 
 def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
@@ -74,12 +83,12 @@ def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
         axis.plot(found, at, "o", color=ink, mfc=face, label=text)
     axis.set_yticks(at, list(beds), fontsize=7)
     axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
-    axis.legend(fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False)
+    legend_below(axis)
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
     """Depth and settling time against gravity."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.8), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.0, 4.2), layout="constrained")
     share = column(rows, "share")
     reach = np.array([0.5 * share.min(), 2.0 * share.max()])
     depth = column(rows, "depth") / diameter
@@ -87,7 +96,7 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
     left.plot(share, depth, "o", color=INK[0], alpha=0.7, label="simulated")
     left.set(xscale="log", ylim=(0.0, 1.4 * depth.max()), xlabel="gravity / Earth's", ylabel="depth / diameter")
     left.axvspan(0.4, 1.2, color="0.9", zorder=0, label="gravities of the experiment")
-    left.legend(fontsize=8)
+    legend_below(left)
     for name, ink, text in (
         ("stopping_time", INK[1], "until it stops"),
         ("time_to_90", INK[2], "to 90 % of the depth"),
@@ -98,30 +107,29 @@ def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:
         right.plot(reach, middle * reach**-0.5, color=MEASURED)
     right.plot([], [], color=MEASURED, label="$g^{-1/2}$, measured")
     right.set(xscale="log", yscale="log", xlabel="gravity / Earth's", ylabel="time [s]")
-    right.legend(fontsize=8)
-    figure.savefig(to, dpi=110)
+    legend_below(right)
+    figure.savefig(to)
     plt.close(figure)
 
 
 def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
     """Speeds at which the grain leaves, how many others rise, and the mean speeds on each kind of bed."""
-    figure, (left, right, last) = plt.subplots(1, 3, figsize=(12, 3.9), layout="constrained")
+    figure, (left, right, last) = plt.subplots(1, 3, figsize=(WIDTH, 4.2), layout="constrained")
     base = kinds["basalt"]
     left.hist(speeds(base), bins=np.arange(0.0, 0.75, 0.04), color=INK[0], alpha=0.8, label="simulated")
     left.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0, label="measured mean, about 0.20 ± 0.05")
     left.axvline(np.mean(speeds(base)), color=INK[1], label="mean of all grains")
     left.axvline(np.mean(leaving(base)), color=INK[1], ls="--", label="mean of those that leave")
     left.set(xlabel="rebound speed / impact speed", ylabel="impacts")
-    left.set_ylim(0.0, 1.4 * left.get_ylim()[1])
-    left.legend(fontsize=8)
+    legend_below(left)
     counts = np.arange(0, 1 + int(column(base, "risen_0.1").max()))
     for rise, ink in (("0.1", INK[0]), ("0.5", INK[1]), ("1", INK[2])):
         risen = column(base, f"risen_{rise}")
         right.plot(counts, [(risen >= least).mean() for least in counts], color=ink, drawstyle="steps-post",
                    label=f"rise > {rise} diameters")  # fmt: skip
     right.axvline(10, color=MEASURED, label="measured: typically fewer than 10")
-    right.set(xlabel="grains ejected, at least", ylabel="fraction of impacts", ylim=(-0.05, 1.5))
-    right.legend(fontsize=8, loc="upper right")
+    right.set(xlabel="grains ejected, at least", ylabel="fraction of impacts", ylim=(-0.05, 1.05))
+    legend_below(right)
     last.axvspan(0.15, 0.25, color=MEASURED, alpha=0.25, lw=0)
     for shift, chosen, ink, text in ((0.1, speeds, INK[0], "all impacts"), (-0.1, leaving, INK[1], "those that leave")):
         means = [mean_of(chosen(rows)) for rows in kinds.values()]
@@ -129,8 +137,8 @@ def of_grains(kinds: dict[str, list[Row]], to: Path) -> None:
             [mean.value for mean in means], [shift - k for k in range(len(kinds))], xerr=[mean.half for mean in means],
             fmt="o", color=ink, capsize=3, label=text,
         )  # fmt: skip
-    last.set(xlabel="mean of rebound speed / impact speed", xlim=(0.0, None), ylim=(-len(kinds) - 0.3, 0.5))
+    last.set(xlabel="mean of rebound / impact speed", xlim=(0.0, None), ylim=(0.5 - len(kinds), 0.5))
     last.set_yticks([-k for k in range(len(kinds))], [name.replace("_", " ") for name in kinds])
-    last.legend(fontsize=8, loc="lower left")
-    figure.savefig(to, dpi=110)
+    legend_below(last)
+    figure.savefig(to)
     plt.close(figure)

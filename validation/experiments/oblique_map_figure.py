@@ -1,4 +1,4 @@
-"""The figure of the map of outcomes: shares with their intervals over speed and angle, a row for each lander."""
+"""The figure of the map of outcomes: shares with their intervals over speed and angle, a column for each lander."""
 
 from pathlib import Path
 from typing import Any
@@ -9,11 +9,13 @@ matplotlib.use("agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from lithobrake.report.figures.style import STYLE
+
 PANELS = {
     "stop": "stops on the bed",
-    "along": "goes along the ground\nfarther than its length",
+    "along": "goes along the ground farther than its length",
     "bounce": "bounces off where it came down",
-    "speed": "speed of those that leave / of impact\n(median, quartiles)",
+    "speed": "rebound / impact speed (median, quartiles)",
 }
 
 
@@ -34,11 +36,13 @@ def draw(cells: list[dict[str, Any]], path: Path) -> None:
     shapes = list(dict.fromkeys(entry["shape"] for entry in cells))
     speeds = sorted({entry["speed"] for entry in cells})
     angles = sorted({entry["incidence_deg"] for entry in cells})
+    plt.rcParams.update(STYLE)
     figure, axes = plt.subplots(
-        len(shapes), len(PANELS), figsize=(15.5, 3.9 * len(shapes)), squeeze=False, constrained_layout=True
-    )
-    for row, shape in enumerate(shapes):
-        for axis, (panel, title) in zip(axes[row], PANELS.items(), strict=True):
+        len(PANELS), len(shapes), figsize=(4.6 * len(shapes), 9.4), squeeze=False, layout="constrained",
+        sharex=True, sharey=True,
+    )  # fmt: skip
+    for column, shape in enumerate(shapes):
+        for axis, (panel, title) in zip(axes[:, column], PANELS.items(), strict=True):
             shown = np.full((len(speeds), len(angles)), np.nan)
             for entry in (entry for entry in cells if entry["shape"] == shape):
                 place = speeds.index(entry["speed"]), angles.index(entry["incidence_deg"])
@@ -48,7 +52,8 @@ def draw(cells: list[dict[str, Any]], path: Path) -> None:
             axis.imshow(shown, origin="lower", aspect="auto", cmap="Blues", vmin=0.0, vmax=1.0)
             axis.set_xticks(range(len(angles)), [f"{angle:g}" for angle in angles])
             axis.set_yticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
-            axis.set_title(f"{shape}: {title}", fontsize=10)
-            axis.set(xlabel="angle from the normal [deg]", ylabel="speed [m/s]")
-    figure.savefig(path, dpi=100)
+            axis.set_title(f"{shape}: {title}", fontsize=8.5)
+    figure.supxlabel("angle from the normal [deg]", fontsize=9)
+    figure.supylabel("speed [m/s]", fontsize=9)
+    figure.savefig(path)
     plt.close(figure)

@@ -40,14 +40,15 @@ of its fall?
 {lines_beads}
 
 Experiment [Uehara-2003], [Ambroso-2005]: a ball is dropped from rest into loose dry beads. Its
-depth d is proportional to density^(1/2) D^(2/3) H^(1/3), where D is the diameter and H the total
-drop distance (fall plus depth). It stops after 3 d/v, v being the impact speed. The prefactor
-0.14/mu is quoted from a secondary source; the original value could not be read ("unverified").
+depth $d$ is proportional to $\\rho^{{1/2}} D^{{2/3}} H^{{1/3}}$, with its density $\\rho$, diameter $D$ and
+total drop distance $H$ (fall plus depth). It stops after $3 d/v$, $v$ being the impact speed. The
+prefactor $0.14/\\mu$ is quoted from a secondary source; the original value could not be read
+("unverified").
 
 Set-up, after DEM-Engine's demonstration `DEMdemo_BallDrop.cpp`: a ball of 25.4 mm; beads of eleven
 sizes from 5/6 to 7/6 of 3 mm, density 2500 kg/m3, restitution 0.9, friction 0.3, no rolling
 resistance. Young's modulus is 1e7 Pa here and 7e7 Pa there. The bed is 110 mm deep and periodic
-with a period of three ball diameters. It is loose: beads fell at no more than 0.6 sqrt(g d). The
+with a period of three ball diameters. It is loose: beads fell at no more than $0.6\\sqrt{{gd}}$. The
 table above uses the twelve drops and the four diameters into this bed ("3 mm, periodic, loose,
 deeper").
 
@@ -70,7 +71,7 @@ time it takes?
 {lines_gravity}
 
 Experiment [Altshuler-2014]: a sphere sinks into a light granular bed. The depth does not depend on
-gravity, and the time is proportional to g^(-1/2). This was measured from 0.4 to 1.2 of Earth's
+gravity, and the time is proportional to $g^{{-1/2}}$. This was measured from 0.4 to 1.2 of Earth's
 gravity and simulated far beyond.
 
 Set-up (the source's grains and sphere could not be read): a sphere of 10.5 mm and 8000 kg/m3 on
@@ -156,7 +157,7 @@ Experiment [Keulen-2026]: grains settled in a drop tower. Glass beads of 0.75 to
 0.15 m/s2).
 
 Set-up: spheres of these sizes fall as a loose column in a box nine grains wide. A drag limits their
-speed to 3 sqrt(g d). Young's modulus is 2e4 times density, gravity and size. By similarity, such
+speed to $3\\sqrt{{gd}}$. Young's modulus is 2e4 times density, gravity and size. By similarity, such
 beds differ only in the ratio of the pull-off force to the weight of a grain, so one curve holds for
 every gravity.
 

@@ -115,12 +115,14 @@ def cells(rows: list[Row]) -> str:
 
 def of_rebounds(rows: list[Row], to: Path) -> None:
     """Share that rebounds and speed out over in, over the Froude number."""
-    figure, axes = plt.subplots(1, 2, figsize=(12, 4.4), layout="constrained")
-    for k, (text, (share, slow, fast, expected)) in enumerate(SAID.items()):
-        level = expected + (0.05 + 0.03 * k) * (1.0 if expected else -1.0)
+    figure, axes = plt.subplots(1, 2, figsize=(8.6, 4.8), layout="constrained")
+    beyond = {0.0: -0.07, 1.0: 1.07}
+    for text, (share, slow, fast, expected) in SAID.items():
+        level = beyond[expected]
+        beyond[expected] += 0.1 * (1.0 if expected else -1.0)
         ends = [froude(share, slow), froude(share, fast)]
         axes[0].plot(ends, [level, level], "|-", color=MEASURED, lw=2)
-        axes[0].text(ends[0], level + (0.01 if expected else -0.045), text.split(" (")[0], fontsize=7, color=MEASURED)
+        axes[0].text(ends[0], level + (0.025 if expected else -0.06), text.split(" (")[0], fontsize=7.5, color=MEASURED)
     marks = dict(zip(SHOWN, ("o", "s", "^", "D", "v", "P"), strict=True))
     for k, kind in enumerate(name for name in SHOWN if any(row["kind"] == name for row in rows)):
         numbers = sorted({row["froude"] for row in rows if row["kind"] == kind})
@@ -134,13 +136,13 @@ def of_rebounds(rows: list[Row], to: Path) -> None:
         axes[1].errorbar(at, [o.mean() for o in out], [o.std() for o in out], fmt=marks[kind], color=ink, capsize=2)
     needed = np.geomspace(0.8, 400.0, 50)
     axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
-    axes[1].text(0.9, 0.3, "rises by 0.5 mm\nabove this line", fontsize=7, color=MEASURED)
+    axes[1].text(12.0, 0.2, "above the dotted line\nit rises by 0.5 mm", fontsize=7.5, color=MEASURED)
     axes[1].axhline(0.05, color=MEASURED, lw=2)
-    axes[1].text(100.0, 0.053, "COLLIDE-1: about 0.05", fontsize=7, color=MEASURED)
-    axes[0].set(xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="fraction that rebounds", ylim=(-0.25, 1.25))
-    axes[1].set(
-        xscale="log", xlabel="Froude number v / sqrt(g D)", ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4)
-    )
-    axes[1].legend(*axes[0].get_legend_handles_labels(), fontsize=7, loc="upper right")
-    figure.savefig(to, dpi=110)
+    axes[1].text(480.0, 0.053, "COLLIDE-1", fontsize=7.5, color=MEASURED, ha="right")
+    for axis in axes:
+        axis.set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$")
+    axes[0].set(ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
+    axes[1].set(ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.savefig(to)
     plt.close(figure)

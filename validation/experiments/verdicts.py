@@ -62,7 +62,7 @@ def beads() -> str:
         "A light (2200 kg/m3) and a heavy ball (15000 kg/m3) were dropped from 0.1 m into beds that differ in one "
         'respect at a time. "Walls" is a box three balls wide and 85 mm deep. "Periodic" beds have no walls. They are '
         "four balls wide, those of 3 mm and smaller beads three, unless named otherwise. "
-        '"Dense" beds were poured at up to 3 sqrt(g d), "loose" ones at up to 0.6 sqrt(g d). "Deeper" is 110 mm.',
+        '"Dense" beds were poured at up to $3\\sqrt{gd}$, "loose" ones at up to $0.6\\sqrt{gd}$. "Deeper" is 110 mm.',
         step_table(every),
         bed_table(every),
         f"Measured from the mean surface, these changes move the exponent by more than {STEP:g}: "

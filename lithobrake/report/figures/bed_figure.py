@@ -44,7 +44,7 @@ def bed_figure(shown: Scene, surface_height: float) -> Figure:
         paint(axes, shown.bodies, position[frame], orientation[frame], camera, surface_height)
         draw_box(axes, shown.box, 1.25 * surface_height, camera, front=True)
         frame_axes(axes, *_extent(position[list(scale)], shown, camera))
-        axes.set_anchor("S" if camera is far else "C")
+        axes.set_anchor("S")
         middle = place[0] + 0.5 * place[2]
         figure.text(
             middle,

@@ -62,10 +62,10 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
             draw_bar(axes, 2.08 * reach)
     mark = Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11})
     figure.legend(handles=[mark], loc="lower left", bbox_to_anchor=(0.01, 0.01), borderpad=0.0)
-    bar = figure.colorbar(ScalarMappable(norm, COLOURS), cax=figure.add_axes((0.925, 0.14, 0.013, 0.68)), format="%g")
+    bar = figure.colorbar(ScalarMappable(norm, COLOURS), cax=figure.add_axes((0.915, 0.14, 0.013, 0.68)), format="%g")
     # Next to a single decade the ticks between would be named too, and push the label off the figure.
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
-    bar.set_label("impacts per hectare")
+    bar.set_label("impacts per hectare", labelpad=2.0)
     outline: Any = bar.outline
     outline.set_visible(False)
     return figure
