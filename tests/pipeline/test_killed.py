@@ -1,4 +1,4 @@
-"""Kill -9 of the coordinator, of a worker, of both, at a random moment of each stage: the study ends with the same bits."""
+"""Kill -9 of the coordinator, of a worker, of both, once in each stage: the study ends with the same bits."""
 
 import json
 import random
@@ -40,8 +40,9 @@ count = 10
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
 MOMENTS = (
-    "bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "rest", "summary", "report",
-)
+    "bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "rest", "summary",
+    "report",
+)  # fmt: skip
 AT_ONCE = {"screen", "refine", "test"}
 MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
 LEDGER = ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")

@@ -52,9 +52,7 @@ def beads() -> str:
     nearer = all(cause_of_diameter(every, depth_of) != NOT_SHOWN for depth_of in SURFACES.values())
     size = "It approaches the measured 2/3 as the ball spans more beads." if nearer else "No trend to 2/3 is seen."
     pours = [name for name in beds if name == LOOSE or name.endswith(" pour")]
-    by_pour = {
-        text: [density_exponent(*beds[name], depth_of) for name in pours] for text, depth_of in SURFACES.items()
-    }
+    by_pour = {text: [density_exponent(*beds[name], depth_of) for name in pours] for text, depth_of in SURFACES.items()}
     poured = " and ".join(f"{min(found):.2f} to {max(found):.2f} from {text}" for text, found in by_pour.items())
     stops = stopping([row for row in every if (row["bed"], row["diameter"]) == (FINE, BALL)])
     return "\n\n".join((
@@ -69,9 +67,9 @@ def beads() -> str:
         f"{'; '.join(large) or 'none'}. The others move it by less: {'; '.join(small) or 'none'}. The exponent is "
         f"within the tolerance {held}. The last column of the first table names the changes to the bed compared (3 mm, "
         "periodic, loose, deeper), or to the same bed of 5 mm beads, that bring the exponent within the tolerance.",
-        f"{len(pours)} pours of the same loose bed of 5 mm give exponents of {poured}. One bed therefore determines the "
-        "exponent less well than the intervals of the first table say, which hold for drops into one bed; a change "
-        "that moves it by less than the pours differ is not detected by two drops.",
+        f"The exponents of {len(pours)} pours of the same loose bed of 5 mm are {poured}. One bed therefore determines "
+        "the exponent less well than the intervals of the first table say, which hold for drops into one bed; a "
+        "change that moves it by less than the pours differ is not detected by two drops.",
         f"On the loose bed of 3 mm the mean prefactor of the two balls is {mean_prefactor(beds[FINE]):.2f}, on the "
         f"dense one {mean_prefactor(beds[OURS]):.2f}. The stopping time agrees in the mean only: single drops take "
         f"from {min(stops):.1f} to {max(stops):.1f} d/v.",
