@@ -72,8 +72,8 @@ def verdict(rows: list[Row]) -> str:
         )
     text += f"{still} landers still move after four hours. " if still else "All come to rest. "
     return text + (
-        f"{percent(farther(rows))} are farther from the mean than MASCOT, by the Mahalanobis distance of the logarithms "
-        "of the three numbers."
+        f"{percent(farther(rows))} are farther from the mean than MASCOT, by the Mahalanobis distance of the "
+        "logarithms of the three numbers."
     )
 
 
