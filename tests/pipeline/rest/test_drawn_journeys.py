@@ -49,7 +49,7 @@ def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: Stud
     hard = found["hard"]
     assert hard["settled"]["lower"] <= hard["settled"]["share"] <= hard["settled"]["upper"]
     assert (hard["level"], hard["why"]) == (0.9, None)
-    assert "no soil, bed or emulator" in hard["of"]
+    assert "without soil, bed or emulator" in hard["of"]
     several = journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"]
     assert several.max() > 2
 
@@ -95,7 +95,7 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
     ("changes", "words"),
     [
         ({"bed": {"bed_count": 1}}, "All runs landed on one bed."),
-        ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs came down at one place."),
+        ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs landed at one impact point."),
     ],
     ids=["one bed", "one place"],
 )
