@@ -61,7 +61,7 @@ def page_table() -> str:
     """What was made, as a table in Markdown: a line a number of places and ratio of axes."""
     made = {(row["places"], row["axes"], row["share"]): row for row in read_rows(TABLE, {"places": int})}
     lines = [
-        "| places | axes of the cloud | area, 50 % | inside | area, 95 % | inside |",
+        "| places | ratio of the axes of the cloud | area of 50 % / exact | inside | area of 95 % / exact | inside |",
         "|---|---|---|---|---|---|",
     ]
     for count, axes in product(COUNTS, AXES):
