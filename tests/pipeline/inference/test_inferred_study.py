@@ -148,8 +148,8 @@ def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Pat
     said = CliRunner().invoke(app, ["infer", str(folder), "--bounce", str(bounces(tmp_path, SEEN))])
     assert said.exit_code == 0, said.output
     lines = " ".join(said.output.split())
-    assert lines.index("Of bounces whose speed_out, elevation_out, spin_out are seen") < lines.index("Posterior:")
-    assert "grain.friction: one leaves" in lines
+    assert lines.index("Bounces with observed speed_out, elevation_out, spin_out") < lines.index("Posterior:")
+    assert "grain.friction: one bounce leaves" in lines
     # Of two bounces on one bed one has no outputs, and says nothing of it.
     assert "The 2 bounces count as on beds of their own" in lines
     assert InferredStudy.open(folder).of_each_bounce == []

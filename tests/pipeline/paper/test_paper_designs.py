@@ -143,7 +143,7 @@ def test_points_run_twice_tell_the_scatter(out: Path) -> None:
     assert 0.8 < fit["rmse_estimate"] / fit["noise_std"] < 4.0
     page = (out / "report" / "index.html").read_text()
     assert "takes 40 runs (20 points, 2 times each) of a Sobol sequence" in page
-    assert "scatter between equal runs" in page
+    assert "scatter between repeated runs" in page
 
 
 def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
@@ -184,7 +184,7 @@ def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Pat
     refined = results["refined"]["sobol_total"]["speed_out"]
     main = max(refined, key=lambda name: refined[name])
     (said,) = (one for one in results["headline"] if "truncation error" in one)
-    assert f" {main} " in said
+    assert f" {main}, " in said
     assert f"{refined[main]:.2f}" in said
     total, bounds = (results["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
     assert all(bounds[name][0] <= total[name] <= bounds[name][1] for name in total)
