@@ -67,8 +67,9 @@ def test_a_truncated_hdf5_file_and_one_without_a_dataset_are_one_sentence(tmp_pa
     path = tmp_path / "samples.h5"
     with h5py.File(path, "w") as file:
         file["outputs"] = list(range(1000))
-    with pytest.raises(DamagedFileError, match=r"samples\.h5 cannot be read \(.*inputs"), reading(path, "run again"):
-        h5py.File(path)["inputs"]
+    lacks = pytest.raises(DamagedFileError, match=r"samples\.h5 cannot be read \(.*inputs")
+    with lacks, reading(path, "run again"), h5py.File(path) as file:
+        file["inputs"]
     path.write_bytes(path.read_bytes()[:2000])
     with pytest.raises(DamagedFileError, match=r"samples\.h5 cannot be read \(.*truncated"), reading(path, "run again"):
         h5py.File(path)
