@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.hashing import hashed_seed
+from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
 from lithobrake.study.correlated_keys import drawn_together
@@ -61,6 +62,25 @@ class Site:
     def medians(self) -> dict[str, float]:
         """The same with uncertain numbers at their median."""
         return {key: median(value) for key, value in self.values.items()}
+
+    @property
+    def aim(self) -> tuple[float, float]:
+        """Latitude and longitude of the aim point [deg]."""
+        return self.medians["latitude_deg"], self.medians["longitude_deg"]
+
+    @cached_property
+    def aim_radius(self) -> float:
+        """Radius of the body at the aim point [m]."""
+        return float((self.body.shape.surface_point(*self.aim) ** 2).sum() ** 0.5)
+
+    def ways_from_aim(self, places: np.ndarray) -> np.ndarray:
+        """Ways over the ground from the aim point [m], as if the body were a ball of the radius there; [...].
+
+        places: on the ground or above it, fixed to the body [m], [..., 3].
+        """
+        there = directions(*self.body.shape.latitude_longitude(places))
+        ways: np.ndarray = self.aim_radius * angles(directions(*self.aim), there)
+        return ways
 
     @cached_property
     def distributions(self) -> "dict[str, Distribution]":

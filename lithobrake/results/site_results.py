@@ -97,6 +97,11 @@ class SiteResults:
     __repr__ = short_repr
 
     @property
+    def sentences(self) -> list[str]:
+        """How the body rotates, and why the site does not hold landers at rest; empty where there is neither."""
+        return [said for said in (self.rotation, self.warning) if said]
+
+    @property
     def holds(self) -> bool:
         """Whether the ground holds what lies there."""
         return self.effective_acceleration_outward < 0.0

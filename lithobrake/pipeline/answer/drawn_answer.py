@@ -35,7 +35,7 @@ def drawn_answer(study: Study, results: DrawnResults) -> list[str]:
         *(one.statement for one in results.limit_states.values()),
         *([results.emulated.statement] if results.emulated and results.emulated.statement else []),
         *([results.aim.statement] if results.aim else []),
-        *(said for said in (results.site.rotation, results.site.warning) if said),
+        *results.site.sentences,
     ]
 
 

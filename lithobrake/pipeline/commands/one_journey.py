@@ -38,7 +38,7 @@ class OneJourney:
         """Where the lander went, and how it ended."""
         model, facts = self.journey.model, map(_facts, self.journey.touchdowns, self.landings)
         row = dict(zip(JOURNEY, journey_row(self.journey), strict=True))
-        return JourneyTrack(row, tuple(facts), model.aim, model.aim_radius, model.body.shape.vertices)
+        return JourneyTrack(row, tuple(facts), model.site.aim, model.site.aim_radius, model.body.shape.vertices)
 
     def motion(self) -> JourneyMotion:
         """The hulls of each touchdown and how they moved."""
@@ -103,7 +103,7 @@ def _line(journey: Journey, landing: OneLanding) -> str:
     if journey.end is None:
         latitude, longitude = journey.model.body.shape.latitude_longitude(journey.origin)
         there = float(latitude), float(longitude)
-    return facts.line(facts.to_next(there, journey.model.aim_radius, journey.end))
+    return facts.line(facts.to_next(there, journey.model.site.aim_radius, journey.end))
 
 
 def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:

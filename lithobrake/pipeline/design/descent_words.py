@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 
-from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.geometry.great_circle import directions
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.site import Site
 from lithobrake.vocabulary.outcomes import FlightStatus
@@ -29,17 +29,12 @@ def descents_in_words(descents: Descents) -> str:
 
 def _places(descents: Descents) -> str:
     """Where the first touchdowns lie about the aim point, whose distance is an arc of the radius there."""
-    site = Site(descents.study)
-    aim = site.medians["latitude_deg"], site.medians["longitude_deg"]
-    shape, places = site.body.shape, descents.flights.position[descents.touches_down]
-    out = directions(*shape.latitude_longitude(places))
-    away = float(np.linalg.norm(shape.surface_point(*aim))) * angles(directions(*aim), out)
-    near, middle, far = np.quantile(away, (0.05, 0.5, 0.95))
-    centre = out.mean(axis=0)
-    latitude = np.degrees(np.arctan2(centre[2], np.hypot(centre[0], centre[1])))
-    longitude = np.degrees(np.arctan2(centre[1], centre[0]))
+    site, places = Site(descents.study), descents.flights.position[descents.touches_down]
+    near, middle, far = np.quantile(site.ways_from_aim(places), (0.05, 0.5, 0.95))
+    shape = site.body.shape
+    latitude, longitude = shape.latitude_longitude(directions(*shape.latitude_longitude(places)).mean(axis=0))
     return (
         f" First touchdowns lie {middle:.3g} m from the aim point in the median (5 to 95 %: {near:.3g} to {far:.3g} "
-        f"m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {aim[0]:.1f}, "
-        f"{aim[1]:.1f}."
+        f"m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {site.aim[0]:.1f}, "
+        f"{site.aim[1]:.1f}."
     )

@@ -34,16 +34,6 @@ class JourneyModel:
         return self.site.body
 
     @property
-    def aim(self) -> tuple[float, float]:
-        """Latitude and longitude of the aim point [deg]."""
-        return self.site.medians["latitude_deg"], self.site.medians["longitude_deg"]
-
-    @cached_property
-    def aim_radius(self) -> float:
-        """Radius of the body at the aim point [m]."""
-        return float((self.body.shape.surface_point(*self.aim) ** 2).sum() ** 0.5)
-
-    @property
     def seed(self) -> int:
         """Of the study."""
         return self.design.study.seed

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from lithobrake.geometry.great_circle import angles, directions
 from lithobrake.pipeline.fly.flights import write_table
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.journeys.journey import Journey
@@ -43,16 +42,9 @@ def journey_row(journey: Journey) -> list[Any]:
     place: list[Any] = ["", "", "", "", "", ""]
     if journey.end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and journey.is_on_ground:
         latitude, longitude = (float(one) for one in journey.model.body.shape.latitude_longitude(journey.origin))
-        place = [latitude, longitude, *journey.origin.tolist(), _distance(journey)]
+        place = [latitude, longitude, *journey.origin.tolist(), float(journey.model.site.ways_from_aim(journey.origin))]
     side, tilt = ("", "") if journey.lies is None else (journey.lies[0], math.degrees(journey.lies[1]))
     attitude = [""] * 4 if journey.attitude is None else journey.attitude.as_quat(scalar_first=True).tolist()
     counts = [journey.contacts, len(journey.touchdowns), journey.path_length]
     bed = int(journey.row["bed"])
     return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, *attitude, journey.reason]
-
-
-def _distance(journey: Journey) -> float:
-    """Way over the ground from the aim point [m], as if the body were a ball of the radius there."""
-    model = journey.model
-    there = directions(*model.body.shape.latitude_longitude(journey.origin))
-    return model.aim_radius * float(angles(directions(*model.aim), there))

@@ -35,7 +35,7 @@ def answer(study: Study, results: PaperResults) -> list[str]:
             f"{percent(outcomes['missing'].share, 1)} of the samples have no outcome ({', '.join(lost)}): the return "
             f"fraction is {low} if none of these return and {high} if all do."
         )
-    return [*sentences, *([site.warning] if site.warning else [])]
+    return [*sentences, *site.sentences]
 
 
 def headline(study: Study, results: PaperResults) -> list[str]:
