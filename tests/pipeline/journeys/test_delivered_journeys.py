@@ -123,6 +123,9 @@ def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     told = re.search(r"lie ([\d.e+]+) m from the aim point", line)
     assert told
     assert float(told[1]) == pytest.approx(median, rel=6e-3)
+    x, y, z = (places / np.linalg.norm(places, axis=1)[:, None]).mean(axis=0)
+    north, east = np.degrees(np.arctan2(z, np.hypot(x, y))), np.degrees(np.arctan2(y, x))
+    assert f"about latitude {north:.1f} deg, longitude {east:.1f} deg" in line
     latitude, longitude = Site(study).medians["latitude_deg"], Site(study).medians["longitude_deg"]
     assert f"the aim point is at {latitude:.1f}, {longitude:.1f}." in line
     assert plan.made["journeys to rest"][1] == len(DrawnDesign(study).rows)
