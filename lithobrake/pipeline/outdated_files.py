@@ -36,9 +36,9 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
 def make(job: Job, until: str, note: Callable[..., None]) -> None:
     """Make every missing or outdated file of the stages up to and including `until`.
 
-    note: notes for other processes which stage is being made.
+    Stages that write nothing of this study do not count. note: notes for other processes which stage is being made.
     """
-    keys, stages = stage_keys(job.study), stages_until(job.study, until)
+    keys, stages = stage_keys(job.study), [one for one in stages_until(job.study, until) if one.files(job.study)]
     kept: list[str] = []
     for number, stage in enumerate(stages, start=1):
         of_stage = partial(note, stage=stage.title, number=number, count=len(stages))
@@ -47,7 +47,7 @@ def make(job: Job, until: str, note: Callable[..., None]) -> None:
         files = stage.files(job.study)
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
         if not wanted:
-            kept += [stage.title] if files else []
+            kept.append(stage.title)
             continue
         if kept:
             job.say(f"still good, and kept: {', '.join(kept)}")

@@ -52,9 +52,10 @@ def read_state(path: Path) -> FolderState:
         unknown = f"{path / NAME} {reason}, so it is unknown which files belong together; restore it with: {command}"
         return FolderState(notes, [], unknown, command, None)
     stages = [StageState(0, "", "study file", {STUDY_FILE: _state_of_copy(path, notes.study["sha256"])})]
-    for number, (name, stage) in enumerate(notes.stages.items(), start=1):
+    writing = {name: stage for name, stage in notes.stages.items() if stage["files"]}
+    for number, (name, stage) in enumerate(writing.items(), start=1):
         files = {file: file_state(path, notes, file, stage["key"]) for file in stage["files"]}
-        stages += [StageState(number, name, stage["title"], files)] if files else []
+        stages.append(StageState(number, name, stage["title"], files))
     edited = study if study and _differs(study, notes.study["sha256"]) else None
     return FolderState(notes, stages, "", command, edited)
 

@@ -135,12 +135,12 @@ def test_while_a_study_is_at_work_what_is_not_current_is_still_to_come(home: Pat
     (home / "out" / "samples.h5").unlink()
     (home / "out" / "flights.csv").write_text("half")
     with locked(home / "out" / ".lock", "busy") as note:
-        note(stage="samples", number=9, count=13)
+        note(stage="samples", number=7, count=11)
         lines = said_by("status", home).splitlines()
         assert "another lithobrake is at work" in said_by("report", home, code=2)
         (home / "out" / ".lock").write_text("{")
         assert f"{home / 'out' / '.lock'} cannot be read (" in said_by("status", home, code=2)
-    assert ": stage 9 of 13, samples (process " in lines[0]
+    assert ": stage 7 of 11, samples (process " in lines[0]
     assert lines[2] == "to come: samples, flights"
 
 
