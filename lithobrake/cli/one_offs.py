@@ -38,7 +38,7 @@ def land(
     change: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a study parameter.")
     ] = None,
-    number: Annotated[int, typer.Option("--number", metavar="N", help="Number of the run or journey, from 1.")] = 1,
+    number: Annotated[int, typer.Option("--number", metavar="N", help="Number of the run or journey, from 0.")] = 0,
     out: Annotated[
         Path | None,
         typer.Option(

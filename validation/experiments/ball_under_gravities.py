@@ -39,7 +39,8 @@ BED = Beads(
     diameters=tuple(round(0.01 * share, 6) for share in SPREAD), material=GLASS, gravity=EARTH, width=0.26, depth=0.14,
     seed=1, walls=True,
 )  # fmt: skip
-STIFF = replace(BED, material=replace(GLASS, young_modulus=3e7), walls=False, tiles=2)
+STIFFER = replace(GLASS, young_modulus=3e7)
+STIFF = replace(BED, material=STIFFER, walls=False, tiles=2)
 STEPS = 24.0  # in the shortest contact: a ball that lies in the bed has stiffer contacts than one that meets it
 PACE = 0.01  # sqrt(D / g) between looks
 PULL = 300.0  # Pa, of a contact over the square of a bead's diameter
@@ -57,7 +58,8 @@ class Kind(NamedTuple):
 
 KINDS = {
     "plain": Kind(BED, tuple(itertools.product(SHARES, FROUDE))),
-    "stiffer": Kind(STIFF, ((1.0, 2.5), (1.0, 6.0))),
+    "stiffer": Kind(replace(BED, material=STIFFER), tuple((1.0, froude) for froude in FROUDE)),
+    "stiffer, periodic": Kind(STIFF, ((1.0, 2.5), (1.0, 6.0))),
     # 0.157 and 0.626 m/s under both.
     "pulling": Kind(PULLING, ((0.1, 0.5), (0.1, 2.0), (0.025, 4.0), (0.025, 1.0)), eased=True),
 }

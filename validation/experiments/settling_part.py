@@ -15,11 +15,11 @@ def settling_part() -> tuple[Lines, str]:
     """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "settling_in_other_gravities.csv")
     rows = [row for row in every if row["young_modulus"] == GRAINS.young_modulus]
-    found, cause = gravity_exponents(rows), "ten times stiffer grains"
+    found = gravity_exponents(rows)
     lines = [
-        line("exponent of depth over gravity", 0.0, found["depth"], BAR, "0", cause),
-        line("exponent of the time until it stops, over gravity", -0.5, found["stopping_time"], BAR, "-1/2", cause),
-        line("exponent of the time to 90 % of the depth, over gravity", -0.5, found["time_to_90"], BAR, "-1/2", cause),
+        line("exponent of depth over gravity", 0.0, found["depth"], BAR, "0"),
+        line("exponent of the time until it stops, over gravity", -0.5, found["stopping_time"], BAR, "-1/2"),
+        line("exponent of the time to 90 % of the depth, over gravity", -0.5, found["time_to_90"], BAR, "-1/2"),
     ]
     of_gravities(rows, DIAMETER, FIGURES / "settling_in_other_gravities.png")
     heads = ("Young's modulus [Pa]", "gravity / Earth's", "simulations", "depth / diameter, mean +- standard deviation",

@@ -15,6 +15,7 @@ from page_text import TEXT
 from plate_part import plate_part
 from rebounds_part import rebounds_part
 from settling_part import settling_part
+from stopping_part import stopping_part
 from table_lines import HERE, NOT_SHOWN, PAGES, Lines, table
 
 PAGE = PAGES / "experiments.md"
@@ -23,6 +24,7 @@ SUMMARY = ("experiment", "quantities", "agree", "disagree, cause shown", "disagr
 # Sections by their keys in the text: name in the summary, and the table of simulations behind them.
 SECTIONS = {
     "beads": ("ball dropped into beads", "ball_into_beads"),
+    "stopping": ("force that stops a ball in beads", "stopping_force"),
     "gravity": ("sphere settling under other gravities", "settling_in_other_gravities"),
     "grains": ("grain impact on a bed of its own kind", "grain_on_its_own_kind"),
     "plate": ("spacecraft plate on loose grains", "plate_into_loose_grains"),
@@ -64,6 +66,7 @@ def main() -> None:
     """Write the page."""
     lines: dict[str, Lines] = {}
     lines["beads"], drops = beads_part()
+    lines["stopping"], stopping = stopping_part()
     lines["gravity"], settled = settling_part()
     lines["grains"], impacts = grains_part()
     lines["plate"], plate = plate_part()
@@ -76,7 +79,8 @@ def main() -> None:
         first=f"{agree} of {every} quantities agree.", summary=summary(lines),
         **{f"lines_{key}": table(HEADS, (one.cells() for one in own)) for key, own in lines.items()},
         **{f"verdict_{key}": wrapped(text) for key, text in verdicts.every().items()},
-        drops=drops, settled=settled, impacts=impacts, plate=plate, packing=packing, ball=ball, rebound=rebound,
+        drops=drops, stopping=stopping, settled=settled, impacts=impacts, plate=plate, packing=packing, ball=ball,
+        rebound=rebound,
         **{f"from_{key}": wrapped(came_from(name)) for key, (_, name) in SECTIONS.items()},
     )  # fmt: skip
     PAGE.write_text(page)

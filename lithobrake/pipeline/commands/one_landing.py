@@ -74,8 +74,8 @@ class OneLanding:
         self.outcome.save_frames(path, self.bed, self.lander, self.landing)
 
 
-def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -> dict[str, float]:
-    """What the run of a number reads, counted from 1, but for changes such as "grain.friction=0.4".
+def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> dict[str, float]:
+    """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
 
     By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
     number. Raises ValueError for a change of what a landing does not read or the study file may not have, a study
@@ -105,7 +105,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 1) -
     if study.journey is None:
         return values | changed
     # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
-    return on_local_ground(study, [values | changed], number - 1)[0]
+    return on_local_ground(study, [values | changed], number)[0]
 
 
 def land_one(
@@ -151,10 +151,10 @@ def _values(study: Study, number: int) -> dict[str, float]:
     """What the run of a number reads."""
     if study.design.method == "paper":
         return draw(study, DrawnDesign(study).medians, study.seed)
-    last = study.design.most_runs
-    if not 1 <= number <= last:
-        raise ValueError(f"the number of a run is {number}; allowed: 1 to {last}, the runs of the study")
-    return DrawnDesign(study).row(number - 1)
+    last = study.design.most_runs - 1
+    if not 0 <= number <= last:
+        raise ValueError(f"the number of a run is {number}; allowed: 0 to {last}, the runs of the study")
+    return DrawnDesign(study).row(number)
 
 
 def _refuse(study: Study, values: Mapping[str, float]) -> None:

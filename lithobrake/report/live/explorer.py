@@ -1,7 +1,6 @@
 """The explorer of the page: the coefficients of the emulator or expansion and the flown starts, for a browser."""
 
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
 from lithobrake.report.words.captions import action, input_words, listing, thousands
 from lithobrake.report.words.drawn_warnings import has_interval
 from lithobrake.report.words.labels import output
-from lithobrake.report.words.numbers import raised_units
+from lithobrake.report.words.numbers import in_html, raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
@@ -56,7 +55,7 @@ def explorer_section(
     numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
     html = f"""<section id="explorer">
 <h3>Explorer</h3>
-<p class="note">{escape(raised_units(note))}Grey lines: the whole input distribution.</p>
+<p class="note">{in_html(note)}Grey lines: the whole input distribution.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>

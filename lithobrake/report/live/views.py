@@ -15,7 +15,7 @@ from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import RULE
 from lithobrake.report.live.packed import deflated, script_data
 from lithobrake.report.page_data import PageData
-from lithobrake.report.words.numbers import number, raised_units
+from lithobrake.report.words.numbers import in_html, number
 
 Array = NDArray[np.float64]
 SCRIPTS = ("live/overlay.js", "live/view3d.js", "live/moving.js", "live/ways.js", "live/start3d.js")
@@ -179,7 +179,7 @@ def section(
 <h3>{escape(title)}</h3>
 <canvas tabindex="0" role="img" aria-label="{escape(title, quote=True)}"></canvas>
 {f'<p class="keys">{keys}</p>' if keys else ""}<div class="tools"></div>
-<p class="note">{escape(raised_units(words))} {hint}</p>
+<p class="note">{in_html(words)} {hint}</p>
 </section>
 {script_data(f"{name}-data", {**facts, "arrays": deflated(arrays)})}"""
     return LiveSection(html, SCRIPTS)

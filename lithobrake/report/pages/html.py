@@ -7,7 +7,7 @@ from html import escape
 from importlib.resources import files
 
 from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Tile
-from lithobrake.report.words.numbers import raised_units
+from lithobrake.report.words.numbers import in_html
 from lithobrake.vocabulary.fate_colours import OUTCOME_COLOURS
 
 # More rows or lines than this do not fit on a screen of a phone.
@@ -128,7 +128,7 @@ def _live(sections: Sequence[LiveSection]) -> str:
 
 def _unbroken(words: str) -> str:
     """Words of the page: units with raised powers, and no line that breaks before a sign of per cent."""
-    return escape(raised_units(words)).replace(" %", "&nbsp;%")
+    return in_html(words).replace(" %", "&nbsp;%")
 
 
 def _tile(tile: Tile) -> str:
@@ -151,9 +151,7 @@ def _panel(number: int | None, panel: Panel) -> str:
 
 def _table(table: PageTable) -> str:
     kinds = [' class="number"' if name in table.numbers else "" for name in table.columns]
-    head = "".join(
-        f"<th{kind}>{escape(raised_units(name))}</th>" for name, kind in zip(table.columns, kinds, strict=True)
-    )
+    head = "".join(f"<th{kind}>{in_html(name)}</th>" for name, kind in zip(table.columns, kinds, strict=True))
     body = "".join(
         "<tr>"
         + "".join(f"<td{kind}>{_cell(cell, table.links)}</td>" for cell, kind in zip(row, kinds, strict=True))
@@ -176,7 +174,7 @@ def _is_long(table: PageTable) -> bool:
 
 
 def _cell(cell: str, links: Mapping[str, str]) -> str:
-    words = escape(raised_units(cell))
+    words = in_html(cell)
     return f'<a href="{escape(links[cell], quote=True)}">{words}</a>' if cell in links else words
 
 

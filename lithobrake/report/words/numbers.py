@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from html import escape
 
 from lithobrake.results.expansions import OutputErrors
 
@@ -80,6 +81,11 @@ def number(value: float, digits: int = 3, *, zeros: bool = False, scale: float =
 def raised_units(words: str) -> str:
     """Words in which powers of units are raised: m² and m/s² for m2 and m/s2."""
     return POWER.sub(lambda found: found[1] + found[2].translate(RAISED), words)
+
+
+def in_html(words: str) -> str:
+    """Words as text of a page: powers of units raised, and no sign that HTML would read."""
+    return escape(raised_units(words))
 
 
 def area(square_metres: float) -> str:

@@ -30,8 +30,8 @@ def study_file(tmp_path: Path) -> Path:
 
 def test_the_landing_of_a_number_is_that_run_but_for_what_is_changed(study_file: Path) -> None:
     study = read_study(study_file)
-    plain = land_one(study, landing_inputs(study, number=2))
-    changed = land_one(study, landing_inputs(study, ["grain.friction=0.55", "impact.speed = 0.3"], 2))
+    plain = land_one(study, landing_inputs(study, number=1))
+    changed = land_one(study, landing_inputs(study, ["grain.friction=0.55", "impact.speed = 0.3"], 1))
     row = DrawnDesign(study).rows[1]
     assert plain.values == row
     assert changed.values == {**row, "grain.friction": 0.55, "impact.speed": 0.3}
@@ -76,8 +76,8 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
         (["--set", f"grain.friction={'9' * 5000}"], "--set grain.friction is inf; allowed: a finite number"),
         (["--set", "bed=0.5"], "--set bed is 0.5; allowed: a whole number from 0 to 4294967295"),
         (["--set", "bed=1e300"], "--set bed is 1e+300; allowed: a whole number from 0 to 4294967295"),
-        (["--number", "0"], "the number of a run is 0; allowed: 1 to 240, the runs of the study"),
-        (["--number", "1000000000"], "the number of a run is 1000000000; allowed: 1 to 240, the runs of the study"),
+        (["--number", "-1"], "the number of a run is -1; allowed: 0 to 239, the runs of the study"),
+        (["--number", "1000000000"], "the number of a run is 1000000000; allowed: 0 to 239, the runs of the study"),
     ],
 )
 def test_what_cannot_be_landed_is_one_sentence(options: list[str], said: str, study_file: Path) -> None:
