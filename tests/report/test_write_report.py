@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 
+from lithobrake.pipeline.paper.paper_statements import answer
 from lithobrake.report import write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.figures.hulls import scene
@@ -23,6 +24,7 @@ from lithobrake.report.words.numbers import area, number
 from lithobrake.results import MovingBodies
 from lithobrake.results.expansions import SampledOutput
 from lithobrake.results.shares import CountedShare
+from lithobrake.study import read_study
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
@@ -47,6 +49,14 @@ def test_page_has_the_ten_figures_inside_and_nothing_outside(paper_page: str, st
     assert not re.search(r"https?://", paper_page)
     pictures = {path.name.split("_")[1] for path in (study_folder / "report").glob("*.png")}
     assert pictures == {str(number) for number in range(1, 11)}
+
+
+def test_the_answer_of_a_paper_study_says_how_its_body_turns(paper: PaperPage, study_folder: Path) -> None:
+    site = replace(paper.results.site, rotation="Dimorphos librates by 8 deg.")
+    assert site.warning
+    said = answer(read_study(study_folder / "study.toml"), replace(paper.results, site=site))
+    assert said == [*paper.results.answer[:-1], "Dimorphos librates by 8 deg.", site.warning]
+    assert paper.results.answer[-1] == site.warning
 
 
 def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
