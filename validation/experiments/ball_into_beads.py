@@ -78,6 +78,9 @@ def grains() -> dict[str, Beads]:
         f"{LOOSE}, rolling friction 0.1": bed_of(0.005, **wide, rolling_friction=0.1),
         f"{LOOSE}, poured at a third of the speed": bed_of(0.005, **wide, fall_speed=SLOW / 3.0),
         f"{LOOSE}, Young's modulus 70 MPa": bed_of(0.005, **wide, young_modulus=7e7),
+        f"{LOOSE}, rolling friction 0.1 and Young's modulus 70 MPa": bed_of(
+            0.005, **wide, rolling_friction=0.1, young_modulus=7e7
+        ),
         f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
         f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),

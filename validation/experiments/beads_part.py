@@ -18,7 +18,7 @@ from fits import (
 )
 from result_rows import Row, read_rows
 from sphere_bed import Floats
-from stopping_part import measured_prefactor, of_one_force
+from stopping_part import measured_prefactor
 from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
 
 SURFACES = {"the mean surface": below_mean_surface, "the first touch": below_first_touch}
@@ -61,20 +61,13 @@ def surface_lines(
     prefactor = mean_of(list(depth_of(drops) / scale(drops)))
     return [
         line(f"exponent of density, depth below {where}", 0.5, density, 0.05, "1/2",
-             one_force_cause(drops, depth_of) or cause_of_density(every, depth_of)),
+             cause_of_density(every, depth_of)),
         line(f"exponent of the total drop distance, depth below {where}", 1 / 3, total, 0.05, "1/3"),
         line(f"prefactor, depth below {where}", law, prefactor, 0.25 * law,
              f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", prefactor_cause(law)),
         line(f"exponent of diameter, depth below {where}", 2 / 3, diameter_exponent(sized, depth_of(sized)), 0.05,
              "2/3", cause_of_diameter(every, depth_of)),
     ]  # fmt: skip
-
-
-def one_force_cause(drops: list[Row], depth_of: Callable[[list[Row]], Floats]) -> str:
-    """Return that one force for all densities is the cause, where its depths do not have the exponent either."""
-    by_force, _ = of_one_force(drops)
-    density, _ = drop_exponents(by_force, depth_of(by_force))
-    return "one force for all densities" if abs(density.value - 0.5) > 0.05 else ""
 
 
 def prefactor_cause(law: float) -> str:

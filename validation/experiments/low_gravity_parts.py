@@ -65,18 +65,22 @@ def packing_part() -> tuple[Lines, str]:
     return lines, table(heads, cells) + "\n\n" + "\n".join(textwrap.wrap(" ".join(said), 98))
 
 
+def compared(every: list[Row]) -> list[Row]:
+    """Return the drops that are held against the sources: under Earth's gravity those on stiffer beads."""
+    return [row for row in every if row["kind"] == ("stiffer" if row["share"] == 1.0 else "plain")]
+
+
 def balls_part() -> tuple[Lines, str]:
     """Rows and a table of the ball on beads under several gravities."""
     every = read_rows(HERE / "ball_under_gravities.csv")
-    rows = [row for row in every if row["kind"] == "plain"]
+    rows = compared(every)
     reach = column(rows, "depth") + column(rows, "touch_height")
     of_gravity = powers(reach, column(rows, "froude"), column(rows, "share"))[1]
     by_speed, by_gravity = powers(reach, column(rows, "speed"), column(rows, "share"))
     of_time = powers(column(rows, "duration_in_units"), column(rows, "share"))[0]
     lines = [
         line("exponent of depth over gravity at one Froude number (Sunday)", 0.0, of_gravity, 0.05, "0"),
-        line("exponent of duration in sqrt(D/g) over gravity (Sunday)", 0.0, of_time, 0.05, "0",
-             "stiffer beads"),
+        line("exponent of duration in sqrt(D/g) over gravity (Sunday)", 0.0, of_time, 0.05, "0"),
         line("exponent of depth over gravity at one speed (Murdoch)", 0.0, by_gravity, 0.05, "0",
              "cohesive beads (4 drops)"),
         line("exponent of depth over speed at one gravity (Murdoch)", 1.0, by_speed, 0.05, "1",

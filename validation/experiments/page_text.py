@@ -75,13 +75,17 @@ deceleration is $v^2 / d_1 + (k / m) z - g$, with its speed $v$ and depth $z$: a
 a friction that grows with depth. The faster the ball, the sooner it stops. The numbers are quoted
 from the documentation of another code.
 
-Set-up: the loose bed of 3 mm beads of the section before, a tenth of the experiment's beads across
-the ball, with the same solid fraction and slope of a heap. Nothing was chosen anew. Steel balls
-fall from 0.02 to 0.4 m (0.6 to 2.8 m/s), and a lighter and a heavier ball from 0.05 to 0.2 m. The
-two coefficients are fitted to the decelerations along all paths of a density, by least squares;
-intervals leave out one drop at a time. Depth is measured from the mean surface.
+Set-up: the loose bed of 3 mm beads of the section before, with the source's solid fraction and
+slope of a heap, but beads ten times as large. Nothing was chosen anew. Steel balls fall from 0.02
+to 0.4 m (0.6 to 2.8 m/s), a lighter and a heavier ball from 0.05 to 0.2 m. As in the source, the
+two coefficients come from the deceleration of balls of different speed at equal depths, here in
+intervals of a bead from the depth of a radius on. Intervals leave out one drop at a time. A ball
+has stopped when it is slower than 2 % of its impact speed. Depth is measured from the mean surface.
+[Katsuragi-2013] found that for balls of several densities the drag does not depend on the density
+of the ball, and that the friction grows with its square root; these two exponents are fitted along
+whole paths.
 
-![Speed and force over depth](experiments/stopping_force.png)
+![Speed and friction over depth](experiments/stopping_force.png)
 
 {stopping}
 
@@ -207,12 +211,14 @@ Froude number, from 9.81 to 0.001 m/s2. [Murdoch-2017] finds on sand, at 0.2 to 
 is proportional to speed and independent of gravity.
 
 Set-up: a ball of 10 cm and 2700 kg/m3 on beads of eleven sizes around 1 cm, in a box of 26 by 26 by
-14 cm. Beads have density 2500 kg/m3, friction 0.4, restitution 0.8 and Young's modulus 3e6 Pa under
-every gravity. Each bed settles under its own gravity. Two further beds are periodic with a period
-of 26 cm and ten times as stiff. The "stiffer" one repeats two drops. In the "cohesive" one the
-pull-off force of a contact is 300 Pa times the square of a bead's diameter; it settled under
-Earth's gravity, which was then reduced. Depth is measured from the first touch. Exponents come from
-a fit of a product of powers.
+14 cm. Beads have density 2500 kg/m3, friction 0.4, restitution 0.8 and Young's modulus 3e6 Pa
+("plain"), under Earth's gravity 3e7 Pa ("stiffer"): it is at least 1e5 times density, gravity and
+diameter of a bead. Each bed settles under its own gravity. The table of drops also holds those
+under Earth's gravity on plain beads, and two beds with a period of 26 cm instead of walls. One is
+as stiff as the stiffer. In the "cohesive" one, as stiff as the plain, the pull-off force of a
+contact is 300 Pa times the square of a bead's diameter; it settled under Earth's gravity, which was
+then reduced. Depth is measured from the first touch. Exponents come from a fit of a product of
+powers.
 
 ![Depth and duration by Froude number and by speed](experiments/ball_under_gravities.png)
 

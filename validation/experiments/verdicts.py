@@ -12,7 +12,6 @@ from fits import (
     below_mean_surface,
     column,
     density_exponent,
-    drop_exponents,
     gravity_exponents,
     leaving,
     mean_of,
@@ -20,12 +19,13 @@ from fits import (
     speeds,
     stopping,
 )
+from low_gravity_parts import compared
 from plate_into_loose_grains import SPEED
 from plate_part import COHESION, RESISTS, force_exponent
 from rebounds_part import FINEST, JSC, PULLING, rebounds
 from result_rows import Row, read_rows
 from settling_in_other_gravities import DIAMETER, EARTH, GRAINS, SHARES, SOFT
-from stopping_part import measured_prefactor, of_one_force, stopping_words
+from stopping_part import measured_prefactor, stopping_words
 from table_lines import HERE, NOT_SHOWN, said
 
 
@@ -71,7 +71,6 @@ def beads() -> str:
         f"The exponents of {len(pours)} pours of the same loose bed of 5 mm are {poured}. One bed therefore determines "
         "the exponent less well than the intervals of the first table say, which hold for drops into one bed; a "
         "change that moves it by less than the pours differ is not detected by two drops.",
-        one_force_words([row for row in every if (row["bed"], row["diameter"]) == (FINE, BALL)]),
         prefactor_words(),
         f"On the loose bed of 3 mm the mean prefactor of the two balls is {mean_prefactor(beds[FINE]):.2f}, on the "
         f"dense one {mean_prefactor(beds[OURS]):.2f}. The stopping time agrees in the mean only: single drops take "
@@ -82,22 +81,6 @@ def beads() -> str:
         f"surface and {larger[1]} from the first touch. {size} [Nelson-2008] measured that walls hold a ball up as "
         "well.",
     ))  # fmt: skip
-
-
-def one_force_words(rows: list[Row]) -> str:
-    """Say what one force for all densities makes of the exponents."""
-    by_force, words = of_one_force(rows)
-    there = [[f"{one.value:.2f}" for one in drop_exponents(by_force, of(by_force))] for of in SURFACES.values()]
-    here = [[f"{one.value:.2f}" for one in drop_exponents(rows, of(rows))] for of in SURFACES.values()]
-    return (
-        f"**Cause: the force does not depend on the ball's density.** {words} Its depths have exponents of density of "
-        f"{there[0][0]} from the mean surface and {there[1][0]} from the first touch (simulated: {here[0][0]} and "
-        f"{here[1][0]}), and of the total drop distance of {there[0][1]} and {there[1][1]} ({here[0][1]} and "
-        f"{here[1][1]}). An exponent of 1/2 needs a force that grows with the density of the ball, as "
-        "[Katsuragi-2013] measured for the friction: with its square root, which hydrostatic pressure and Coulomb "
-        "friction, the law of the contacts here, do not explain. [Carvalho-2023], also discrete elements, attributes "
-        "different published exponents to the packing."
-    )
 
 
 def prefactor_words() -> str:
@@ -195,22 +178,24 @@ def packing() -> str:
 def balls() -> str:
     """Ball under several gravities: stiffness, and a contradiction."""
     every = rows_of("ball_under_gravities")
-    rows, stiff = of_kind(every, "plain"), of_kind(every, "stiffer")
+    rows, soft = compared(every), of_kind(every, "plain")
     by_speed, by_gravity = reach_powers([row for row in rows if row["froude"] < 3.0])
-    swapped = [
-        next((other for other in stiff if (other["share"], other["froude"]) == (row["share"], row["froude"])), row)
-        for row in rows
-    ]  # fmt: skip
-    found = powers(column(swapped, "duration_in_units"), column(swapped, "share"))[0]
+    found, before = (powers(column(own, "duration_in_units"), column(own, "share"))[0] for own in (rows, soft))
+    stiffer = [row for row in rows if row["share"] == 1.0]
     return (
         "Depth follows the Froude number, as [Sunday-2022] found. At one speed the ball therefore goes deeper under "
         "less gravity, against [Murdoch-2017]. For one material without cohesion the two rules exclude each other. "
         "The range of speeds is not the reason: Murdoch's Froude numbers are 0.06 to 2.8, and the drops here below 3 "
         f"give an exponent of {said(by_gravity)} for gravity and {said(by_speed)} for speed.\n\n{pulling(every)}\n\n"
-        "Why the duration disagrees: under Earth's gravity the beads are too soft for the fast balls, which bounce. "
-        f"With the two drops on ten times stiffer beads instead, the exponent of duration is {said(found)}: its value "
-        "lies within the tolerance of 0.05."
+        "Under Earth's gravity the beads must be stiffer, or fast balls bounce: on plain beads the durations are "
+        f"{durations(soft)} sqrt(D/g), on those ten times stiffer {durations(stiffer)}, for the four Froude numbers. "
+        f"The exponent of duration is {said(before)} with the former and {said(found)} with the latter."
     )
+
+
+def durations(rows: list[Row]) -> str:
+    """Return the durations of drops under Earth's gravity, in sqrt(D/g)."""
+    return ", ".join(f"{row['duration_in_units']:.2f}" for row in rows if row["share"] == 1.0)
 
 
 def reach_powers(rows: list[Row]) -> list[Estimate]:
@@ -227,14 +212,14 @@ def pulling(every: list[Row]) -> str:
         (row for row in rows if row["speed"] > column(rows, "speed").mean()), key=lambda row: row["share"], reverse=True
     )
     deep = [100.0 * (row["depth"] + row["touch_height"]) for row in fast]
-    plain = reach_powers(of_kind(every, "plain"))[1].value
+    plain = reach_powers(compared(every))[1].value
     deeper = 100.0 * ((fast[1]["share"] / fast[0]["share"]) ** plain - 1.0)
     return (
         f"Cohesive beads come nearer to Murdoch's rule. At {fast[0]['speed']:.2f} m/s the ball goes {deep[0]:.2f} cm "
-        f"deep at {fast[0]['share']:g} of Earth's gravity and {deep[1]:.2f} cm at {fast[1]['share']:g}; on the plain "
-        f"beads the fitted exponent would make it {deeper:.0f} % deeper. The depth of the slow balls is only that of "
-        f"one bead. {len(rows)} drops are too few for the exponents: {said(by_gravity)} for gravity and "
-        f"{said(by_speed)} for speed."
+        f"deep at {fast[0]['share']:g} of Earth's gravity and {deep[1]:.2f} cm at {fast[1]['share']:g}; on the beads "
+        f"without cohesion the fitted exponent would make it {deeper:.0f} % deeper. The depth of the slow balls "
+        f"is only that of one bead. {len(rows)} drops are too few for the exponents: {said(by_gravity)} for gravity "
+        f"and {said(by_speed)} for speed."
     )
 
 

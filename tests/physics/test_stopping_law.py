@@ -1,0 +1,93 @@
+"""The force law that is fitted to paths of balls in beads: paths made by a law give it back."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
+GRAVITY = 9.81
+
+
+@pytest.fixture(autouse=True)
+def experiments_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The scripts of the experiments import each other by name."""
+    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), *sys.path])
+
+
+def path_of(fall: float, length: float, friction: float) -> np.ndarray:
+    """Return time, depth and speed until a ball stops, integrated numerically; shape [looks, 3]."""
+
+    def change(_: float, state: np.ndarray) -> list[float]:
+        return [state[1], GRAVITY - state[1] ** 2 / length - friction * state[0]]
+
+    def stopped(_: float, state: np.ndarray) -> float:
+        return float(state[1])
+
+    stopped.terminal, stopped.direction = True, -1.0  # type: ignore[attr-defined]
+    start = [0.0, max((2.0 * GRAVITY * fall) ** 0.5, 1e-9)]
+    done = solve_ivp(change, (0.0, 1.0), start, events=stopped, rtol=1e-10, atol=1e-12, max_step=1e-3)
+    return np.stack([done.t, *done.y], axis=1)
+
+
+def rows_of(fall: float, length: float, friction: float) -> list[dict[str, float]]:
+    return [
+        {"density": 8070.0, "fall": fall, "time": time, "depth": depth, "speed": speed,
+         "deceleration": speed**2 / length + friction * depth - GRAVITY}
+        for time, depth, speed in path_of(fall, length, friction).tolist()
+    ]  # fmt: skip
+
+
+def test_paths_made_by_a_law_give_it_back() -> None:
+    from stopping_law import along_paths, with_intervals
+
+    looks = [row for fall in (0.05, 0.1, 0.2) for row in rows_of(fall, 0.087, 1040.0)]
+    assert along_paths(looks) == pytest.approx((0.087, 1040.0))
+    length, friction = with_intervals(looks, along_paths)
+    assert (length.rows, length.half, friction.half) == (3, pytest.approx(0.0, abs=1e-9), pytest.approx(0.0, abs=1e-6))
+
+
+def test_equal_depths_give_the_drag_whatever_the_friction_is() -> None:
+    """Friction that does not grow with depth, and drops of which the slow ones stop early."""
+    from stopping_law import GRAVITY, at_depths
+
+    looks = [row for fall in (0.02, 0.05, 0.1, 0.2) for row in rows_of(fall, 0.087, 1040.0)]
+    law, friction = at_depths(looks, first=0.01, step=0.003)
+    assert law == pytest.approx((0.087, 1040.0), rel=0.02)
+    np.testing.assert_allclose(friction[:, 1], 1040.0 * friction[:, 0], rtol=0.02)
+    assert 0.01 < friction[0, 0] < 0.013
+    assert friction[-1, 0] < 0.05, "at least three drops move"
+    even = [row | {"deceleration": row["speed"] ** 2 / 0.05 + 20.0 - GRAVITY} for row in looks]
+    law, friction = at_depths(even, first=0.01, step=0.003)
+    assert law.length == pytest.approx(0.05)
+    np.testing.assert_allclose(friction[:, 1], 20.0)
+
+
+def test_an_interval_covers_what_single_drops_differ_by() -> None:
+    from stopping_law import along_paths, with_intervals
+
+    lengths = {0.05: 0.08, 0.1: 0.087, 0.2: 0.094}
+    looks = [row for fall, length in lengths.items() for row in rows_of(fall, length, 1040.0)]
+    length, _ = with_intervals(looks, along_paths)
+    assert length.half > 0.007
+
+
+@pytest.mark.parametrize("fall", [0.0, 0.02, 0.2, 0.8])
+def test_the_depth_of_a_law_is_where_its_integration_stops(fall: float) -> None:
+    from stopping_law import Law, law_depth, squared_speed
+
+    law = Law(0.087, 1040.0)
+    path = path_of(fall, *law)
+    assert law_depth(fall, law) == pytest.approx(path[-1, 1], rel=1e-6)
+    np.testing.assert_allclose(squared_speed(path[:, 1], fall, law), path[:, 2] ** 2, atol=1e-6)
+
+
+def test_the_prefactor_of_a_law_counts_the_drop_distance_down_to_its_depth() -> None:
+    """By hand: steel in beads of 1520 kg/m3, 4 cm deep from 10 cm."""
+    from stopping_part import law_prefactor
+
+    row = {"density": 8070.0, "diameter": 0.0254, "fall": 0.1, "deepest": 1.0, "bulk_density": 1.0}
+    by_hand = 0.04 / ((8070.0 / 1520.0) ** 0.5 * 0.0254 ** (2 / 3) * 0.14 ** (1 / 3))
+    assert law_prefactor(row, 0.04) == pytest.approx(by_hand)

@@ -1,0 +1,66 @@
+"""The force that stops a ball in loose beads: paths of steel balls, and of a lighter and a heavier one.
+
+    python validation/experiments/stopping_force.py --work FOLDER --out FOLDER [--beds NAME ...]
+
+The beds are those of ball_into_beads.py. Their beads are coarser than the experiment's, with the packing and the slope
+of a heap that the experiment states. The bed of 3 mm is compared; others show what the size and the modulus of the
+beads do. Writes a row for each drop, and the looks at its path. Rows that stand in the table are not run again.
+
+Source: [Katsuragi-2007].
+"""
+
+import time
+from pathlib import Path
+
+from ball_drop import Ball, dropped
+from ball_into_beads import BALL, HEAVY, LIGHT, PACE, bed_of
+from harness import add_row
+from result_rows import Row, note, options_of, read_rows
+from sphere_bed import bulk_density, kept
+
+NAME, PATHS = "stopping_force.csv", "stopping_force_paths.csv"
+STEEL = 8070.0  # kg/m3
+FALLS = (0.05, 0.1, 0.2)  # m
+COMPARED, COARSE, STIFF = "3 mm", "5 mm", "5 mm, 70 MPa"
+BEDS = {
+    COMPARED: bed_of(0.003),
+    COARSE: bed_of(0.005, width=4.0 * BALL),
+    STIFF: bed_of(0.005, width=4.0 * BALL, young_modulus=7e7),
+}
+# Falls [m] of balls by bed and density; the experiment's are 0 to 0.8 m.
+DROPS = {
+    (COMPARED, STEEL): (0.02, *FALLS, 0.4),
+    (COMPARED, LIGHT): FALLS,
+    (COMPARED, HEAVY): FALLS,
+    (COARSE, STEEL): (*FALLS, 0.4),
+    (STIFF, STEEL): (*FALLS, 0.4),
+}
+LOOK = ("time", "depth", "speed", "deceleration")
+
+
+def drop(work: Path, out: Path, bed: str, density: float, fall: float) -> Row:
+    """Drop a ball, keep its path, and return its row."""
+    start, beads = time.process_time(), BEDS[bed]
+    world = kept(beads, work)
+    bulk = bulk_density(world, beads)
+    result, path = dropped(world, Ball(BALL, density), beads.material, fall, PACE)
+    for look in path.tolist():
+        add_row(out / PATHS, {"bed": bed, "density": density, "fall": fall, **dict(zip(LOOK, look, strict=True))}, 6)
+    return {
+        "bed": bed, "density": density, "fall": fall, "diameter": BALL, "beads": beads.count, "bulk_density": bulk,
+        **result, "cpu_s": time.process_time() - start,
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Drop what has no row."""
+    given = options_of(__doc__, beds=tuple(BEDS))
+    ran = {(row["bed"], row["density"], row["fall"]) for row in read_rows(given.out / NAME)}
+    for (bed, density), falls in DROPS.items():
+        for fall in falls:
+            if bed in given.beds and (bed, density, fall) not in ran:
+                note(given.out / NAME, drop(given.work, given.out, bed, density, fall))
+
+
+if __name__ == "__main__":
+    main()
