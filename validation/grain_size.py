@@ -74,7 +74,6 @@ GROUNDS = {
     "hulls 5": Ground("hull", 5.0, 0.15, 4, {"steep": 24, "flat": 12}),
     "hulls 10": Ground("hull", 10.0, 0.1, 4, {"steep": 12}, paired=8),
     "spheres 10": Ground("sphere", 10.0, 0.15, 6, {"steep": 12}, paired=4),
-    "spheres 20": Ground("sphere", 20.0, 0.1, 2, {"steep": 4}, paired=4),
     "hulls 20": Ground("hull", 20.0, 0.06, 2, {"steep": 1}, paired=1),
 }
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "penetration")

@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.dem import Material, Sphere, World
 from lithobrake.touchdown import Bed, BedRecipe, pouring, settling
 from lithobrake.touchdown.bed import ContactModel, boxed_world
-from lithobrake.touchdown.outcome import picture
+from lithobrake.touchdown.outcome import hull_about_centroid
 
 
 class SphereBed(Bed):
@@ -61,5 +61,5 @@ def pour_spheres(recipe: BedRecipe) -> SphereBed:
     pouring.lower(world, recorder, recipe, silent)
     pouring.settle(world, recorder, recipe, True, silent)
     assert recorder.at_rest, settling.restless(world)
-    image = picture(balls[0])
+    image = hull_about_centroid(balls[0])
     return SphereBed.of(pouring.finished(world, recorder, recipe, [image] * len(balls), diameter))

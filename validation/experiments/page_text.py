@@ -15,16 +15,18 @@ a cause that further simulations on this page show.
 
 ## How the comparison works
 
-The sources were read as abstracts. [Experiments: what their sources say](experiments_sources.md)
-lists what was read and what was not; [references](../references.md) has the full citations.
+The sources were read as abstracts, one of them also as quoted elsewhere. [Experiments: what their
+sources say](experiments_sources.md) lists what was read and what was not;
+[references](../references.md) has the full citations.
 
 - **Interval.** "+-" in the first table of each section is the half-width of the 95 % confidence
   interval; brackets behind a fraction hold the interval itself. It covers only the scatter between
   the simulations, not the error of the measurement.
 - **Agreement.** A quantity agrees if the simulated value lies within a fixed tolerance of the
-  measured one. The tolerance is 0.05 for exponents of depth, duration and size, 0.03 for the
+  measured one. The tolerance is 0.05 for exponents of depth, duration, size and force, 0.03 for the
   exponents of the settling sphere, and 0.05 for the speed ratio of a single grain. It is 25 % for
-  the prefactor, times, depths, speeds and densities, and 50 % for the speed ratio of COLLIDE-1.
+  the prefactor, the coefficients of a force, times, depths, speeds and densities, and 50 % for the
+  speed ratio of COLLIDE-1.
 - **Single observations.** MASCOT was observed once. The observation agrees if it lies within the
   central 80 % of the simulated landers.
 - **Outcomes.** "Rebounds" or "stays" agrees if more than half of the simulated drops do so.

@@ -34,8 +34,10 @@ Lines = list[Line]
 
 
 def said(estimate: Estimate) -> str:
-    """Return a value with its interval."""
-    return f"{estimate.value:.3f} +- {estimate.half:.3f}" if math.isfinite(estimate.half) else f"{estimate.value:.3f}"
+    """Return a value with its interval, to a thousandth, or to three digits where it is 10 or more."""
+    digits = max(0, 3 - len(f"{abs(estimate.value):.0f}")) if abs(estimate.value) >= 10.0 else 3
+    value = f"{estimate.value:.{digits}f}"
+    return f"{value} +- {estimate.half:.{digits}f}" if math.isfinite(estimate.half) else value
 
 
 def line(
