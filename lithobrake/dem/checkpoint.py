@@ -12,6 +12,7 @@ from lithobrake.dem.bodies.arrays import Period, Step
 from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.rigid_body import Part, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
+from lithobrake.dem.law.material_pair import contact_options
 from lithobrake.dem.stepping.assembly import material_numbers, materials_of, part_starts, parts_of
 from lithobrake.dem.stepping.engine import MOVING, Engine
 from lithobrake.dem.world_state import WorldState
@@ -81,7 +82,7 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
         data: dict[str, Any] = {}
         file.visititems(lambda name, item: data.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
         attributes = dict(file.attrs)
-    state = WorldState(json.loads(attributes["options"]), Period(*attributes["period"].tolist()))
+    state = WorldState(contact_options(**json.loads(attributes["options"])), Period(*attributes["period"].tolist()))
     _add_members(state, data, attributes)
     state.watched, state.watch_record = int(attributes["watched"]), data["watch_record"]
     state.motion = {name: data[f"body/{name}"].copy() for name in state.motion}

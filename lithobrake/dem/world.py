@@ -35,9 +35,10 @@ class World(Observables):
     gravity [m/s2], shape [3]. time_step [s]; None: a fiftieth of the shortest contact that the speeds at hand can
     make. shear_modulus_rule "mindlin" or "paper" ([Landings-PCE], Eq 8 as printed); damping_mass "contact" (the mass
     seen at the contact point) or "paper" (the reduced mass); pair_rule "smaller", "mean" or "geometric" for
-    restitution, frictions and cohesion of two materials. period [m], along x and y: what happens at a place happens at
-    every image of it, one period on; positions are not wrapped, and planes are level. None: the world does not repeat.
-    What is read of a world: observables.py.
+    restitution, frictions and cohesion of two materials; tangential_dashpot "mindlin" (2 sqrt(G* / E*) times that along
+    the normal) or "none", as in codes that damp along the normal alone. period [m], along x and y: what happens at a
+    place happens at every image of it, one period on; positions are not wrapped, and planes are level. None: the world
+    does not repeat. What is read of a world: observables.py.
     """
 
     def __init__(
@@ -48,9 +49,10 @@ class World(Observables):
         shear_modulus_rule: str = "mindlin",
         damping_mass: str = "contact",
         pair_rule: str = "smaller",
+        tangential_dashpot: str = "mindlin",
         period: Sequence[float] | None = None,
     ) -> None:
-        options = contact_options(shear_modulus_rule, damping_mass, pair_rule)
+        options = contact_options(shear_modulus_rule, damping_mass, pair_rule, tangential_dashpot)
         if time_step is not None:
             checked_step(time_step, "a finite value above 0, or None")
         super().__init__(WorldState(options, period_of(period)), gravity)

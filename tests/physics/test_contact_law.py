@@ -204,3 +204,37 @@ def test_tangential_spring_gives_back_no_more_than_it_got_on_random_paths(poisso
             most = max(most, given)
             assert given - 0.5 * float(np.dot(spring, spring)) / stiffness > -1e-12 * most
             assert np.linalg.norm(spring) <= limit * (1.0 + 1e-12)
+
+
+def swinging(dashpot: str) -> World:
+    """A ball at rest on a plane, held by friction, that is pushed to the side: its spring swings some twenty times."""
+    stuff, radius, gravity = material(0.5, 50.0), 0.05, 10.0
+    mass, modulus = 2500.0 * Sphere(radius).volume, 1e7 / (1.0 - 0.25**2) / 2.0
+    sunk = (mass * gravity / (4.0 / 3.0 * modulus * math.sqrt(radius))) ** (2.0 / 3.0)
+    world = World((0, 0, -gravity), 1e-6, tangential_dashpot=dashpot)
+    world.add_body(Sphere(radius), stuff, (0, 0, radius - sunk), velocity=(1e-4, 0, 0))
+    world.add_plane((0, 0, 0), (0, 0, 1), stuff)
+    world.run(duration=0.05)
+    return world
+
+
+def test_without_a_tangential_dashpot_a_spring_across_the_normal_swings_on() -> None:
+    """Energy of the push, kinetic and elastic: all of it is left without the dashpot, a part with it."""
+    pushed = 0.5 * 2500.0 * Sphere(0.05).volume * 1e-8
+    kept, lost = swinging("none"), swinging("mindlin")
+    assert kept.energy()["damping"] == pytest.approx(0.0, abs=1e-4 * pushed)
+    # The ball goes on rolling, which holds 5/7 of it; the rest swings.
+    assert lost.energy()["damping"] == pytest.approx(2.0 / 7.0 * pushed, rel=0.05)
+    assert lost.spin[0, 1] == pytest.approx(5.0 / 7.0 * 1e-4 / 0.05, rel=0.02)
+
+
+def test_a_world_keeps_its_tangential_dashpot_in_a_file(tmp_path) -> None:
+    world = swinging("none")
+    world.save(tmp_path / "world.h5")
+    again = World.load(tmp_path / "world.h5")
+    for one in (world, again):
+        one.run(duration=0.01)
+    np.testing.assert_array_equal(again.velocity, world.velocity)
+    assert again.energy()["damping"] == pytest.approx(0.0, abs=1e-12)
+    with pytest.raises(ValueError, match="World tangential_dashpot is 'half'; allowed are mindlin, none: choose one"):
+        World(tangential_dashpot="half")

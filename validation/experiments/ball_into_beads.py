@@ -84,6 +84,8 @@ def grains() -> dict[str, Beads]:
         f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
         f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),
+        f"{FINE}, second pour": bed_of(0.003, seed=2),
+        f"{FINE}, third pour": bed_of(0.003, seed=3),
         FINER: bed_of(0.002),
     }
 

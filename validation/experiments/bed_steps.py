@@ -35,9 +35,17 @@ def pairs(every: list[Row]) -> dict[str, tuple[Row, Row]]:
 def steps(beds: Iterable[str]) -> list[tuple[str, str, str]]:
     """Return what changes, the bed before and the bed after, of the steps whose beds are there."""
     beds = list(beds)
-    others = [(name.removeprefix(f"{LOOSE}, "), LOOSE, name) for name in beds if name.startswith(f"{LOOSE}, ")]
     finer = [("beads of 2 instead of 3 mm, loose bed", FINE, FINER)]
+    others = [
+        (name.removeprefix(f"{before}, ") + ("" if before == LOOSE else ", 3 mm"), before, name)
+        for before in (LOOSE, FINE) for name in beds if name.startswith(f"{before}, ")
+    ]  # fmt: skip
     return [step for step in [*STEPS, *others, *finer] if step[1] in beds and step[2] in beds]
+
+
+def pours(beds: Iterable[str], bed: str) -> list[str]:
+    """Return the names of a bed and of its other pours."""
+    return [name for name in beds if name == bed or (name.startswith(f"{bed}, ") and name.endswith(" pour"))]
 
 
 def agrees(drops: tuple[Row, Row], depth_of: DepthOf) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 from ball_into_beads import BALL, FINE, LOOSE, OURS
 from beads_part import SURFACES, cause_of_diameter, steps_of_diameter
 from bed_steps import BAR as STEP
-from bed_steps import agrees, bed_table, diameter_table, mean_prefactor, pairs, step_table, steps
+from bed_steps import agrees, bed_table, diameter_table, mean_prefactor, pairs, pours, step_table, steps
 from fits import (
     Estimate,
     below_mean_surface,
@@ -52,9 +52,6 @@ def beads() -> str:
     larger = [", ".join(f"{one:.2f}" for one in steps_of_diameter(every, depth_of)) for depth_of in SURFACES.values()]
     nearer = all(cause_of_diameter(every, depth_of) != NOT_SHOWN for depth_of in SURFACES.values())
     size = "It approaches the measured 2/3 as the ball spans more beads." if nearer else "No trend to 2/3 is seen."
-    pours = [name for name in beds if name == LOOSE or name.endswith(" pour")]
-    by_pour = {text: [density_exponent(*beds[name], depth_of) for name in pours] for text, depth_of in SURFACES.items()}
-    poured = " and ".join(f"{min(found):.2f} to {max(found):.2f} from {text}" for text, found in by_pour.items())
     stops = stopping([row for row in every if (row["bed"], row["diameter"]) == (FINE, BALL)])
     return "\n\n".join((
         "### Why the exponent of density disagrees",
@@ -68,9 +65,7 @@ def beads() -> str:
         f"{'; '.join(large) or 'none'}. The others move it by less: {'; '.join(small) or 'none'}. The exponent is "
         f"within the tolerance {held}. The last column of the first table names the changes to the bed compared (3 mm, "
         "periodic, loose, deeper), or to the same bed of 5 mm beads, that bring the exponent within the tolerance.",
-        f"The exponents of {len(pours)} pours of the same loose bed of 5 mm are {poured}. One bed therefore determines "
-        "the exponent less well than the intervals of the first table say, which hold for drops into one bed; a "
-        "change that moves it by less than the pours differ is not detected by two drops.",
+        pour_words(beds),
         prefactor_words(),
         f"On the loose bed of 3 mm the mean prefactor of the two balls is {mean_prefactor(beds[FINE]):.2f}, on the "
         f"dense one {mean_prefactor(beds[OURS]):.2f}. The stopping time agrees in the mean only: single drops take "
@@ -81,6 +76,22 @@ def beads() -> str:
         f"surface and {larger[1]} from the first touch. {size} [Nelson-2008] measured that walls hold a ball up as "
         "well.",
     ))  # fmt: skip
+
+
+def pour_words(beds: dict[str, tuple[Row, Row]]) -> str:
+    """Say how far the exponents of several pours of one bed are apart."""
+    said = []
+    for bed, size in ((LOOSE, "5 mm"), (FINE, "3 mm")):
+        own = pours(beds, bed)
+        if len(own) > 1:
+            found = {text: [density_exponent(*beds[name], of) for name in own] for text, of in SURFACES.items()}
+            spread = " and ".join(f"{min(ones):.2f} to {max(ones):.2f} from {text}" for text, ones in found.items())
+            said.append(f"The exponents of {len(own)} pours of the loose bed of {size} are {spread}.")
+    return (
+        f"{' '.join(said)} One bed therefore determines the exponent less well than the intervals of the first table "
+        "say, which hold for drops into one bed; a change that moves it by less than the pours differ is not detected "
+        "by two drops."
+    )
 
 
 def prefactor_words() -> str:

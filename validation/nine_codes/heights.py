@@ -21,7 +21,8 @@ FREE, LAST = 0.1, 4
 ROUNDING = 1e-6  # m, of heights in free fall, which are alike
 PLACES = ("east", "north", "west", "south")  # impacts to a side
 IMPACTS = ("published", *PLACES, "nudged")
-UNDAMPED = ("mercury", "lammps_no_dashpot", "no_dashpot")  # runs without a dashpot across the normal
+# Runs without a dashpot across the normal.
+UNDAMPED = ("mercury", "lammps_no_dashpot", "no_dashpot", "no_dashpot_later")
 Curve = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 

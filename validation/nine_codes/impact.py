@@ -56,9 +56,11 @@ RUNS = (
     Impact("south", 0.0, -0.005, 5e-7, 0.032, 0.05),
     Impact("nudged", 1e-9, 0.0, 5e-7, 0.032, 0.05),
     Impact("no_dashpot", 0.0, 0.0, 5e-7, 0.032, 0.05),
+    Impact("no_dashpot_later", 0.0, 0.0, 5e-7, 0.032, 0.05),
     Impact("half_step", 0.0, 0.0, 2.5e-7, 0.032, 0.05),
 )
-WITHOUT_DASHPOT = "no_dashpot"  # the run without a dashpot across the normal
+# Without a dashpot across the normal: from the start, and from when the ball comes near.
+FROM_START, LATER = "no_dashpot", "no_dashpot_later"
 # Of the largest step that the contacts allow; it is looked at anew after so many.
 SHARE, STEPS = 0.9, 50
 
@@ -69,15 +71,19 @@ def in_blocks(positions: Floats) -> Floats:
     return positions[np.lexsort(block.T)]
 
 
-def relaxed_bed(positions: Path, work: Path) -> World:
-    """Return the bed as it is when the ball has come near, from the work folder, made if it is not there."""
-    path = work / f"bed_{BED_STEP:g}_{MEETS:g}.h5"
+def relaxed_bed(positions: Path, work: Path, run: str = "published") -> World:
+    """Return the bed of a run as it is when the ball has come near, from the work folder, made if it is not there."""
+    dashpot = "none" if run == FROM_START else "mindlin"
+    path = work / f"bed_{BED_STEP:g}_{MEETS:g}{'' if dashpot == 'mindlin' else '_no_dashpot'}.h5"
     if not path.exists():
         work.mkdir(parents=True, exist_ok=True)
-        world = world_of(in_blocks(published_positions(positions)), BED_STEP)
+        world = world_of(in_blocks(published_positions(positions)), BED_STEP, dashpot)
         advance(world, MEETS, BED_STEP)
         world.save(path)
-    return World.load(path)
+    world = World.load(path)
+    if run == LATER:
+        world._state.options["tangential_dashpot"] = "none"
+    return world
 
 
 def advance(world: World, until: float, longest: float) -> int:
@@ -96,8 +102,6 @@ def advance(world: World, until: float, longest: float) -> int:
 def follow(world: World, impact: Impact, path: Path) -> int:
     """Let the ball fall on until the run ends, write its height and its speed as it goes, and return the steps."""
     ball, taken = add_ball(world, (impact.x, impact.y)), 0
-    if impact.run == WITHOUT_DASHPOT:
-        without_dashpot(world)
     looks = round((impact.until - MEETS) / LOOK)
     with table(path, ("time", "z", "v_z", "steps")) as add:
         for look in range(1, looks + 1):
@@ -106,12 +110,6 @@ def follow(world: World, impact: Impact, path: Path) -> int:
             z, speed = float(world.position[ball, 2]), float(world.velocity[ball, 2])
             add({"time": f"{world.time:.7g}", "z": f"{z:.9g}", "v_z": f"{speed:.6g}", "steps": taken})
     return taken
-
-
-def without_dashpot(world: World) -> None:
-    """Take the dashpot across the normal out of all contacts, which no option of a world does."""
-    engine = world._state.stepping_together(world._step(0.0))
-    engine.laws.shear_damping[:] = 0.0
 
 
 def measured(path: Path) -> dict[str, float]:
@@ -135,7 +133,8 @@ def main() -> None:
         if named.run in done or named.run not in options.only:
             continue
         impact = replace(named, until=min(named.until, options.until))
-        world, curve = relaxed_bed(options.positions, options.work), options.out / f"impact_{impact.run}.csv"
+        world = relaxed_bed(options.positions, options.work, impact.run)
+        curve = options.out / f"impact_{impact.run}.csv"
         steps, seconds = timed(lambda world=world, impact=impact, curve=curve: follow(world, impact, curve))
         add_row(out, asdict(impact) | measured(curve) | {"steps": steps, "cpu_s": seconds}, digits=7)
     rows = read_rows(out, {"run": str})

@@ -41,9 +41,9 @@ def published_positions(path: Path) -> Floats:
     return rows[:, 1:]
 
 
-def world_of(positions: Floats, step: float | None) -> World:
-    """Return the bed at rest in its box, under a time step [s]."""
-    world = World((0.0, 0.0, -GRAVITY), step, pair_rule="mean")
+def world_of(positions: Floats, step: float | None, dashpot: str = "mindlin") -> World:
+    """Return the bed at rest in its box, under a time step [s]; dashpot: the tangential one of World."""
+    world = World((0.0, 0.0, -GRAVITY), step, pair_rule="mean", tangential_dashpot=dashpot)
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(positions), 1))
     grains = world.add_bodies([Sphere(GRAIN_RADIUS)] * len(positions), M1, positions, upright)
     add_walls(world, STEEL_OF_GRAINS, grains)

@@ -11,6 +11,7 @@ from lithobrake.dem.law.restitution import damping_ratio_of
 SHEAR_MODULUS_RULES = ("mindlin", "paper")
 PAIR_RULES = ("smaller", "mean", "geometric")
 DAMPING_MASSES = ("contact", "paper")
+TANGENTIAL_DASHPOTS = ("mindlin", "none")
 
 
 class PairLaw(NamedTuple):
@@ -27,10 +28,16 @@ class PairLaw(NamedTuple):
     cohesion_line: float  # N/m, to be multiplied by the contact radius
 
 
-def contact_options(shear_modulus_rule: str, damping_mass: str, pair_rule: str) -> dict[str, str]:
+def contact_options(
+    shear_modulus_rule: str, damping_mass: str, pair_rule: str, tangential_dashpot: str = "mindlin"
+) -> dict[str, str]:
     """Return the options of a world's contacts by name. Raises ValueError for a value that is not allowed."""
-    options = {"shear_modulus_rule": shear_modulus_rule, "damping_mass": damping_mass, "pair_rule": pair_rule}
-    for (name, value), allowed in zip(options.items(), (SHEAR_MODULUS_RULES, DAMPING_MASSES, PAIR_RULES), strict=True):
+    options = {
+        "shear_modulus_rule": shear_modulus_rule, "damping_mass": damping_mass, "pair_rule": pair_rule,
+        "tangential_dashpot": tangential_dashpot,
+    }  # fmt: skip
+    every = (SHEAR_MODULUS_RULES, DAMPING_MASSES, PAIR_RULES, TANGENTIAL_DASHPOTS)
+    for (name, value), allowed in zip(options.items(), every, strict=True):
         if value not in allowed:
             raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
     return options

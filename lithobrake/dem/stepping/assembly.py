@@ -82,10 +82,14 @@ def placed(core: Polyhedron, offset: Offset) -> Polyhedron:
     return replace(core, vertices=core.vertices + way, face_offsets=core.face_offsets + core.face_normals @ way)
 
 
-def laws_of(materials: list[Material], shear_modulus_rule: str, pair_rule: str) -> Laws:
-    """Return the laws of all pairs of materials."""
-    table = np.array([[pair_law(a, b, shear_modulus_rule, pair_rule) for b in materials] for a in materials])
-    return Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(table.shape[2])))
+def laws_of(materials: list[Material], options: dict[str, str]) -> Laws:
+    """Return the laws of all pairs of materials under the options of a world's contacts."""
+    rules = options["shear_modulus_rule"], options["pair_rule"]
+    table = np.array([[pair_law(a, b, *rules) for b in materials] for a in materials])
+    laws = Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(table.shape[2])))
+    if options["tangential_dashpot"] == "none":
+        laws.shear_damping[:] = 0.0
+    return laws
 
 
 def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -> Planes:

@@ -53,7 +53,7 @@ class Engine:
         parts = parts_of(bodies)
         shapes, materials = shapes_of(parts), materials_of(parts, planes)
         self.cores: Cores = cores_of(shapes)
-        self.laws: Laws = laws_of(materials, options["shear_modulus_rule"], options["pair_rule"])
+        self.laws: Laws = laws_of(materials, options)
         self.planes: Planes = planes_of(planes, materials, len(bodies))
         self.bodies: Bodies = bodies_of(bodies, parts, shapes, materials, motion, period)
         self.pairs: Pairs
