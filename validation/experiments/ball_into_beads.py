@@ -30,6 +30,7 @@ PACE = 5e-4  # s between looks at the ball
 LIGHT, HEAVY, FALL = 2200.0, 15000.0, 0.1
 OURS, LOOSE, FINE = "3 mm, walls, dense", "5 mm, periodic, loose, deeper", "3 mm, periodic, loose, deeper"
 FINER = "2 mm, periodic, loose, deeper"
+BOTH = f"{LOOSE}, rolling friction 0.1 and Young's modulus 70 MPa"
 DIAMETERS = (0.0127, 0.018, 0.036)
 SLOW = 0.6  # sqrt(g d), at which beads fall for a loose bed: the experiment's beds are loose
 SERIES = ("drops", "diameters", "walls", "causes", "sizes", "repose")
@@ -78,9 +79,7 @@ def grains() -> dict[str, Beads]:
         f"{LOOSE}, rolling friction 0.1": bed_of(0.005, **wide, rolling_friction=0.1),
         f"{LOOSE}, poured at a third of the speed": bed_of(0.005, **wide, fall_speed=SLOW / 3.0),
         f"{LOOSE}, Young's modulus 70 MPa": bed_of(0.005, **wide, young_modulus=7e7),
-        f"{LOOSE}, rolling friction 0.1 and Young's modulus 70 MPa": bed_of(
-            0.005, **wide, rolling_friction=0.1, young_modulus=7e7
-        ),
+        BOTH: bed_of(0.005, **wide, rolling_friction=0.1, young_modulus=7e7),
         f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
         f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),

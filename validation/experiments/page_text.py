@@ -188,10 +188,10 @@ Experiment [Keulen-2026]: grains settled in a drop tower. Glass beads of 0.75 to
 4.25 % more volume than on Earth (at 0.25 m/s2), broken basalt of 2 to 5 mm up to 12.2 % (at
 0.15 m/s2).
 
-Set-up: spheres of these sizes fall as a loose column in a box nine grains wide. A drag limits their
-speed to $3\\sqrt{{gd}}$. Young's modulus is 2e4 times density, gravity and size. By similarity, such
-beds differ only in the ratio of the pull-off force to the weight of a grain, so one curve holds for
-every gravity.
+Set-up: grains of these sizes, spheres for glass and convex hulls for basalt, fall as a loose column
+in a box nine grains wide. A drag limits their speed to $3\\sqrt{{gd}}$. Young's modulus is 2e4 times
+density, gravity and size. By similarity, such beds differ only in the ratio of the pull-off force to
+the weight of a grain, so one curve holds for every gravity.
 
 ![Solid fraction by pull-off force](experiments/packing_and_cohesion.png)
 
@@ -281,7 +281,7 @@ the landers whose first contact is over a buried boulder or on grains alone.
   are mostly unknown, and the measurement error is not part of the comparison.
 - Most beds are of spheres. The sand, basalt and rock of several sources are not.
 - Intervals cover the scatter between simulations only. Several rows rest on fewer than eight drops.
-- Coarse basalt [Keulen-2026] and the effect of OSIRIS-REx's gas are not simulated.
+- The effect of OSIRIS-REx's gas is not simulated.
 
 ## Reproduce this page
 

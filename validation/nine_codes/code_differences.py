@@ -6,6 +6,7 @@ from heights import (
     BOTTOM,
     CRITERION,
     IMPACTS,
+    OURS,
     PLACES,
     ROUNDING,
     UNDAMPED,
@@ -22,14 +23,14 @@ from impact_bed import BALL_RADIUS, FLOOR, in_free_fall
 
 def largest_gap(found: dict[str, Curve]) -> float:
     """Return the largest difference [m] of height between both codes before the ball reaches the bottom."""
-    mercury, ours = found["mercury"], found["published"]
+    mercury, ours = found["mercury"], found[OURS]
     down = ours[0] <= BOTTOM
     return float(np.abs(np.interp(ours[0][down], *ours[:2]) - np.interp(ours[0][down], *mercury[:2])).max())
 
 
 def answer(found: dict[str, Curve]) -> str:
     """Return the answer of the page: how far the codes are apart in the bed and after it, and what rounding does."""
-    gaps = {time: None if (a := height(found["published"], time)) is None or (b := height(found["mercury"], time))
+    gaps = {time: None if (a := height(found[OURS], time)) is None or (b := height(found["mercury"], time))
             is None else abs(a - b) for time in ASKED}  # fmt: skip
     held = [time for time, gap in gaps.items() if gap is not None and gap <= CRITERION]
     failed = [f"{mm(gap)} mm at {1000.0 * time:g} ms" for time, gap in gaps.items() if gap and gap > CRITERION]
@@ -43,13 +44,13 @@ def answer(found: dict[str, Curve]) -> str:
     shift = [mm(moved(found, "nudged", time)) for time in ASKED[2:]]
     if "nudged" in found:
         words += (
-            " After the turn, a shift of the impact point by a billionth of a metre alone changes the height by "
+            " After the turn, a shift of the impact point by a billionth of a metre changes the height by "
             f"{shift[0]} mm at {1000.0 * ASKED[2]:g} ms and by {shift[1]} mm at {1000.0 * ASKED[3]:g} ms."
         )
     inside = [within_impacts(found, time) for time in ASKED]
     words += (
-        f" At {sum(inside)} of the {len(ASKED)} times MercuryDPM lies within the range of the impacts here, in the "
-        "middle and to the sides."
+        f" At {sum(inside)} of the {len(ASKED)} times MercuryDPM lies within the range of the impacts here with a "
+        "tangential dashpot, in the middle and to the sides."
     )
     return "\n" + paragraph(words)
 
@@ -71,13 +72,13 @@ def moved(found: dict[str, Curve], name: str, time: float) -> float | None:
 
 def between_codes(found: dict[str, Curve]) -> str:
     """Return how far both codes are apart before the ball reaches the bottom."""
-    ours = found["published"]
-    lowest = {name: float(found[name][1].min()) - FLOOR - BALL_RADIUS for name in ("published", "mercury")}
+    ours = found[OURS]
+    lowest = {name: float(found[name][1].min()) - FLOOR - BALL_RADIUS for name in (OURS, "mercury")}
     way = mm(in_free_fall(MEETS)[0] - float(ours[1][ours[0] <= BOTTOM][-1]), 0)
     return paragraph(
         f"In the bed, from {1000.0 * MEETS:g} to {1000.0 * BOTTOM:g} ms in steps of 0.25 ms, the two heights differ by "
         f"at most {mm(largest_gap(found))} mm, while the ball moves by {way} mm. The ball then meets the last grains "
-        f"above the floor. Its lowest point is {mm(lowest['published'])} mm above the floor here and "
+        f"above the floor. Its lowest point is {mm(lowest[OURS])} mm above the floor here and "
         f"{mm(lowest['mercury'])} mm in MercuryDPM, less than a grain. It leaves upwards in free flight."
     )
 

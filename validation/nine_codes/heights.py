@@ -20,6 +20,7 @@ BOTTOM = 0.02925  # s: just before the ball meets the layer on the floor
 FREE, LAST = 0.1, 4
 ROUNDING = 1e-6  # m, of heights in free fall, which are alike
 PLACES = ("east", "north", "west", "south")  # impacts to a side
+OURS = "no_dashpot"  # the run of the benchmark's law, which is compared
 IMPACTS = ("published", *PLACES, "nudged")
 # Runs without a dashpot across the normal.
 UNDAMPED = ("mercury", "lammps_no_dashpot", "no_dashpot", "no_dashpot_later")

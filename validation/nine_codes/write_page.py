@@ -21,6 +21,7 @@ from heights import (
     CRITERION,
     HERE,
     IMPACTS,
+    OURS,
     PAGES,
     Curve,
     curves,
@@ -30,7 +31,7 @@ from heights import (
     paragraph,
     read_rows,
 )
-from impact import RUNS
+from impact import LATER, RUNS
 from impact_bed import BALL_RADIUS, FLOOR
 from lammps_impact import TIMED_AT
 from page_words import CONDITIONS, FREE_FALL, HEAD, MISSING, PAIRS, PAIRS_AFTER, RUNS_WORDS, SOURCE
@@ -48,7 +49,7 @@ def cell(curve: Curve, time: float) -> str:
 
 def at_a_time(found: dict[str, Curve], time: float) -> str:
     """Return the line of a time [s]: both codes, their difference, the range of impacts, and whether they agree."""
-    ours, theirs = (height(found[name], time) for name in ("published", "mercury"))
+    ours, theirs = (height(found[name], time) for name in (OURS, "mercury"))
     verdict, difference = "not run", None if ours is None or theirs is None else ours - theirs
     if difference is not None:
         verdict = "yes" if abs(difference) <= CRITERION else "**no**"
@@ -58,24 +59,25 @@ def at_a_time(found: dict[str, Curve], time: float) -> str:
         spread = f"{mm(min(places))} to {mm(max(places))} ({len(places)})"
         if theirs is not None:
             inside = "yes" if within_impacts(found, time) else "**no**"
-    cells = (cell(found["published"], time), cell(found["mercury"], time), mm(difference), verdict, spread, inside)
+    cells = (*(cell(found[name], time) for name in (OURS, "mercury")), mm(difference), verdict,
+             *(cell(found[name], time) for name in (LATER, "published")), spread, inside)  # fmt: skip
     return f"| {1000.0 * time:g} | " + " | ".join(cells) + " |"
 
 
 def comparison(found: dict[str, Curve]) -> list[str]:
     """Return the table of heights against time."""
     head = (
-        "| time [ms] | z here [mm] | z MercuryDPM [mm] | difference [mm] | within 1 mm | range of impacts here [mm] "
-        "(number) | MercuryDPM in this range |"
+        "| time [ms] | z here [mm] | z MercuryDPM [mm] | difference [mm] | within 1 mm | z here, dashpot until 20.5 ms "
+        "[mm] | z here, with dashpot [mm] | range of impacts here with it [mm] (number) | MercuryDPM in this range |"
     )
-    return [head, "|---" * 7 + "|", *(at_a_time(found, time) for time in sorted(ASKED + ADDED))]
+    return [head, "|---" * 9 + "|", *(at_a_time(found, time) for time in sorted(ASKED + ADDED))]
 
 
 def draw(found: dict[str, Curve]) -> None:
     """Height of the ball against time, and what the other runs differ from the published impact."""
     with plt.rc_context(STYLE):
         figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.9), constrained_layout=True)
-        drawn = {"published": ("here", TRAINING, "-"), "mercury": ("MercuryDPM", SITE, "--")}
+        drawn = {OURS: ("here", TRAINING, "-"), "mercury": ("MercuryDPM", SITE, "--")}
         for name, (label, colour, line) in drawn.items():
             time, z, _ = found[name]
             left.plot(1000.0 * time, 1000.0 * z, line, color=colour, lw=1.8, label=label)
@@ -83,8 +85,8 @@ def draw(found: dict[str, Curve]) -> None:
         left.set(xlabel="time [ms]", ylabel="height of the ball's centre [mm]", xlim=(15.0, None), ylim=(-82.0, -10.0))
         left.set_title("Height")
         left.legend(fontsize=8)
-        reference = found["published"]
-        others = [name for name in found if name not in ("published", "mercury")]
+        reference = found[OURS]
+        others = [name for name in found if name not in (OURS, "mercury")]
         colours = dict(zip(others, (*INPUT_COLOURS[1:3], *INPUT_COLOURS[4:]), strict=False)) | {"mercury": SITE}
         for name in ("mercury", *others):
             time = reference[0][reference[0] <= found[name][0][-1] + 1e-6]
@@ -92,7 +94,7 @@ def draw(found: dict[str, Curve]) -> None:
             right.plot(1000.0 * time, 1000.0 * gap, "--" if name == "mercury" else "-", color=colours[name], lw=1.6,
                        label="MercuryDPM" if name == "mercury" else named(name))  # fmt: skip
         right.axhspan(-1.0, 1.0, color=QUIET, alpha=0.15, lw=0, label="criterion")
-        right.set(xlabel="time [ms]", ylabel="less that of the published impact here [mm]")
+        right.set(xlabel="time [ms]", ylabel="less that here [mm]")
         right.set_title("Differences of height")
         right.legend(fontsize=8)
         figure.savefig(PAGES / "nine_codes.png", dpi=150)
