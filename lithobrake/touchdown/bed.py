@@ -29,6 +29,7 @@ HOLDING = 2.0
 class ContactModel:
     """Options of the contact law, see `dem.World`, and how contacts are stepped in a landing.
 
+    A landing always has the tangential dashpot.
     steps_per_contact: in each ("local", see World.run_locally), or in the shortest that the impact can make.
     stepping: "local", steps of its own for each contact, or "global", the same for all.
     resolved_speed: collisions slower than this share of the lander take fewer steps, in proportion, but at least five.

@@ -65,13 +65,42 @@ def test_equal_depths_give_the_drag_whatever_the_friction_is() -> None:
     np.testing.assert_allclose(friction[:, 1], 20.0)
 
 
-def test_an_interval_covers_what_single_drops_differ_by() -> None:
-    from stopping_law import along_paths, with_intervals
+def test_the_interval_is_that_of_the_jackknife_over_drops() -> None:
+    """Without one of three drops a mean is that of the other two: the jackknife gives the standard error of a mean."""
+    from scipy.stats import t as student
+    from stopping_law import Law, with_intervals
 
-    lengths = {0.05: 0.08, 0.1: 0.087, 0.2: 0.094}
-    looks = [row for fall, length in lengths.items() for row in rows_of(fall, length, 1040.0)]
-    length, _ = with_intervals(looks, along_paths)
-    assert length.half > 0.007
+    values = {0.05: 0.08, 0.1: 0.087, 0.2: 0.103}
+    looks = [{"fall": fall} for fall in values]
+    length, friction = with_intervals(looks, lambda rows: Law(np.mean([values[row["fall"]] for row in rows]), 1.0))
+    error = np.std(list(values.values()), ddof=1) / 3**0.5
+    assert length.value == pytest.approx(0.09)
+    assert length.half == pytest.approx(student.ppf(0.975, 2) * error)
+    assert friction.half == 0.0
+
+
+def test_the_coefficients_of_equal_depths_have_intervals() -> None:
+    from functools import partial
+
+    from stopping_law import at_depths, with_intervals
+
+    looks = [row for fall in (0.02, 0.05, 0.1, 0.2) for row in rows_of(fall, 0.087, 1040.0)]
+    length, friction = with_intervals(looks, lambda rows: partial(at_depths, first=0.01, step=0.003)(rows)[0])
+    assert length.value == pytest.approx(0.087, rel=0.02)
+    assert friction.value == pytest.approx(1040.0, rel=0.02)
+    assert length.half < 0.1 * length.value
+    assert friction.half < 0.1 * friction.value
+
+
+@pytest.mark.parametrize("fall", [0.02, 0.2])
+def test_the_time_of_a_law_is_when_its_integration_is_slow(fall: float) -> None:
+    from stopping_law import Law, law_time
+
+    path = path_of(fall, 0.087, 1040.0)
+    still = 0.02 * (2.0 * GRAVITY * fall) ** 0.5
+    slow = np.argmax(path[:, 2] < still)
+    at = np.interp(-still, -path[slow - 1 : slow + 1, 2], path[slow - 1 : slow + 1, 0])
+    assert law_time(fall, Law(0.087, 1040.0), 0.02) == pytest.approx(at, rel=1e-3)
 
 
 @pytest.mark.parametrize("fall", [0.0, 0.02, 0.2, 0.8])
@@ -91,3 +120,19 @@ def test_the_prefactor_of_a_law_counts_the_drop_distance_down_to_its_depth() -> 
     row = {"density": 8070.0, "diameter": 0.0254, "fall": 0.1, "deepest": 1.0, "bulk_density": 1.0}
     by_hand = 0.04 / ((8070.0 / 1520.0) ** 0.5 * 0.0254 ** (2 / 3) * 0.14 ** (1 / 3))
     assert law_prefactor(row, 0.04) == pytest.approx(by_hand)
+
+
+def test_a_ball_has_stopped_when_it_is_slower_than_a_part_of_its_impact_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    import stopping_part
+
+    rows = [{"fall": fall, "impact_speed": (2.0 * GRAVITY * fall) ** 0.5} for fall in (0.02, 0.2)]
+    monkeypatch.setattr(stopping_part, "steel", lambda bed: rows)
+    looks = [row for fall in (0.02, 0.2) for row in rows_of(fall, 0.087, 1040.0)]
+    monkeypatch.setattr(stopping_part, "looks", lambda density, bed: looks)
+    slow, fast = stopping_part.stopping_times("3 mm")
+    assert fast < slow, "as by the measured law"
+    for time, fall in ((slow, 0.02), (fast, 0.2)):
+        path = path_of(fall, 0.087, 1040.0)
+        limit = 0.02 * (2.0 * GRAVITY * fall) ** 0.5
+        assert np.interp(time, path[:, 0], path[:, 2]) < limit
+        assert path[path[:, 0] < time - 1e-12, 2].min() >= limit

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 
 from ball_into_beads import BALL, FALL, FINE, LIGHT
-from bed_steps import cause_of_density, pairs
+from bed_steps import cause_of_density, cause_of_prefactor, pairs
 from draw import of_drops
 from fits import (
     below_first_touch,
@@ -18,7 +18,6 @@ from fits import (
 )
 from result_rows import Row, read_rows
 from sphere_bed import Floats
-from stopping_part import measured_prefactor
 from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
 
 SURFACES = {"the mean surface": below_mean_surface, "the first touch": below_first_touch}
@@ -64,16 +63,10 @@ def surface_lines(
              cause_of_density(every, depth_of)),
         line(f"exponent of the total drop distance, depth below {where}", 1 / 3, total, 0.05, "1/3"),
         line(f"prefactor, depth below {where}", law, prefactor, 0.25 * law,
-             f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", prefactor_cause(law)),
+             f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", cause_of_prefactor(every, law)),
         line(f"exponent of diameter, depth below {where}", 2 / 3, diameter_exponent(sized, depth_of(sized)), 0.05,
              "2/3", cause_of_diameter(every, depth_of)),
     ]  # fmt: skip
-
-
-def prefactor_cause(law: float) -> str:
-    """Return that the force measured in such beads is the cause, where its depths do not have the prefactor either."""
-    away = abs(measured_prefactor().value - law) > 0.25 * law
-    return "depths by the measured force" if away else NOT_SHOWN
 
 
 def drop_table(every: list[Row]) -> str:

@@ -10,6 +10,7 @@ from table_lines import NOT_SHOWN, said, table
 
 DepthOf = Callable[[list[Row]], Floats]
 DENSITY, BAR = 0.5, 0.05  # measured exponent of the density, and the tolerance
+SHARE = 0.25  # of the measured prefactor: the tolerance
 # What changes from one bed to the next; beds that have no rows are left out.
 STEPS = [
     ("beads of 5 instead of 8 mm", "8 mm, walls, dense", "5 mm, walls, dense"),
@@ -59,6 +60,18 @@ def cause_of_density(every: list[Row], depth_of: DepthOf) -> str:
     shown = [
         words for words, before, after in steps(beds)
         if before in (LOOSE, FINE) and not agrees(beds[before], depth_of) and agrees(beds[after], depth_of)
+        and not after.endswith(" pour")
+    ]  # fmt: skip
+    return "; ".join(shown) or NOT_SHOWN
+
+
+def cause_of_prefactor(every: list[Row], law: float) -> str:
+    """Return the changes of the bed compared that bring the mean prefactor of its two drops within the tolerance."""
+    beds = pairs(every)
+    away = {name: abs(mean_prefactor(two) - law) / law for name, two in beds.items()}
+    shown = [
+        words for words, before, after in steps(beds)
+        if before == FINE and away[before] > SHARE >= away[after] and not after.endswith(" pour")
     ]  # fmt: skip
     return "; ".join(shown) or NOT_SHOWN
 

@@ -14,10 +14,10 @@ from sphere_bed import Floats
 from stopping_law import Law, squared_speed
 
 
-def of_forces(looks: list[Row], friction: Floats, measured: Law, to: Path) -> None:
+def of_forces(looks: list[Row], friction: Floats, measured: Law, share: float, to: Path) -> None:
     """Speed of steel balls over depth, and friction over mass by depth, beside the measured law.
 
-    friction: depth [m] and friction over mass [m/s2], shape [intervals, 2].
+    friction: depth [m] and friction over mass [m/s2], shape [intervals, 2]. share: the tolerance of a measured value.
     """
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 4.4), layout="constrained")
     for fall, ink in zip(sorted({row["fall"] for row in looks}), [*INK, "0.2"], strict=False):
@@ -31,8 +31,10 @@ def of_forces(looks: list[Row], friction: Floats, measured: Law, to: Path) -> No
     legend_below(left)
     reach = np.array([0.0, 1.1 * friction[:, 0].max()])
     right.plot(100.0 * reach, measured.friction * reach, color=MEASURED, label="measured")
-    right.fill_between(100.0 * reach, 0.75 * measured.friction * reach, 1.25 * measured.friction * reach,
-                       color=MEASURED, alpha=0.2, lw=0, label="±25 %")  # fmt: skip
+    low, high = ((1.0 + sign * share) * measured.friction * reach for sign in (-1.0, 1.0))
+    right.fill_between(
+        100.0 * reach, low, high, color=MEASURED, alpha=0.2, lw=0, label=f"±{100.0 * share:.0f} %"
+    )  # fmt: skip
     right.plot(100.0 * friction[:, 0], friction[:, 1], "o", color=INK[0], label="simulated, steel balls")
     right.set(xlabel="depth [cm]", ylabel="friction / mass [m/s$^2$]", xlim=(0.0, None), ylim=(0.0, None))
     legend_below(right)

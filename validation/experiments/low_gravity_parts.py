@@ -4,10 +4,11 @@ import math
 import textwrap
 
 import numpy as np
+from ball_under_gravities import KINDS
 from draw_low_gravity import of_balls, of_packing
 from fits import Estimate, column, powers
 from result_rows import Row, read_rows
-from table_lines import FIGURES, HERE, Lines, line, table
+from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
 
 # Excess volume over that under Earth's gravity, in parts of it, and the gravity over Earth's.
 KEULEN = {"glass": (0.0425, 0.25 / 9.81), "coarse basalt": (0.122, 0.15 / 9.81)}
@@ -39,8 +40,9 @@ def packing_part() -> tuple[Lines, str]:
         count = sum(row["kind"] == kind for row in rows)
         # By similarity, whatever the gravity.
         none = Estimate(0.0, math.nan, count)
+        cause = f"{kind} with cohesion" if found.max() >= measured else NOT_SHOWN
         lines.append(line(f"{kind}: volume in excess of that on Earth, no cohesion", measured, none, 0.25 * measured,
-                          cause=f"{kind} with cohesion"))  # fmt: skip
+                          cause=cause))  # fmt: skip
         if found.max() >= measured:
             pull = float(tried[int(np.argmax(found >= measured))])
             said.append(
@@ -94,6 +96,6 @@ def balls_part() -> tuple[Lines, str]:
          f"{row['speed']:.3g}",
          f"{100 * (row['depth'] + row['touch_height']):.2f}", f"{row['duration_in_units']:.2f}",
          f"{row['peak_deceleration_in_g']:.1f}", f"{row['speed_out']:.3f}")
-        for row in every
+        for row in sorted(every, key=lambda row: list(KINDS).index(str(row["kind"])))
     )  # fmt: skip
     return lines, table(heads, cells)

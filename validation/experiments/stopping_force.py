@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ball_drop import Ball, dropped
 from ball_into_beads import BALL, HEAVY, LIGHT, PACE, bed_of
-from harness import add_row
+from harness import write_rows
 from result_rows import Row, note, options_of, read_rows
 from sphere_bed import bulk_density, kept
 
@@ -44,8 +44,11 @@ def drop(work: Path, out: Path, bed: str, density: float, fall: float) -> Row:
     world = kept(beads, work)
     bulk = bulk_density(world, beads)
     result, path = dropped(world, Ball(BALL, density), beads.material, fall, PACE)
-    for look in path.tolist():
-        add_row(out / PATHS, {"bed": bed, "density": density, "fall": fall, **dict(zip(LOOK, look, strict=True))}, 6)
+    told = {"bed": bed, "density": density, "fall": fall}
+    # A drop that was broken off before its row was written has left looks.
+    rows = [row for row in read_rows(out / PATHS) if {key: row[key] for key in told} != told]
+    rows += [told | {name: float(f"{value:.6g}") for name, value in zip(LOOK, look, strict=True)} for look in path]
+    write_rows(out / PATHS, rows[0], rows)
     return {
         "bed": bed, "density": density, "fall": fall, "diameter": BALL, "beads": beads.count, "bulk_density": bulk,
         **result, "cpu_s": time.process_time() - start,

@@ -90,6 +90,18 @@ def squared_speed(depth: float | Floats, fall: float, law: Law) -> Floats:
     return (2.0 * GRAVITY * fall - level) * np.exp(-2.0 * np.asarray(depth) / law.length) + level + slope * depth
 
 
+def law_time(fall: float, law: Law, still: float) -> float:
+    """Return the time [s] from the surface until a ball is slower than a part of its impact speed."""
+    least, deepest = still * (2.0 * GRAVITY * fall) ** 0.5, law_depth(fall, law)
+    end = float(brentq(lambda depth: float(squared_speed(depth, fall, law)) - least**2, 0.5 * deepest, deepest))
+    # In the root of the way that is left, the time is smooth where the ball is slow.
+    root = np.linspace(0.0, (deepest**0.5), 20_001)
+    depth = deepest - root**2
+    inside = depth <= end
+    speed = np.sqrt(np.maximum(squared_speed(depth[inside], fall, law), 1e-300))
+    return float(np.trapezoid(2.0 * root[inside] / speed, root[inside]))
+
+
 def law_depth(fall: float, law: Law) -> float:
     """Return the depth [m] at which a ball stops that falls from a height [m] above the surface."""
     deep = 0.01 * law.length

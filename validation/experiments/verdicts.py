@@ -25,6 +25,7 @@ from plate_part import COHESION, RESISTS, force_exponent
 from rebounds_part import FINEST, JSC, PULLING, rebounds
 from result_rows import Row, read_rows
 from settling_in_other_gravities import DIAMETER, EARTH, GRAINS, SHARES, SOFT
+from stopping_force import FALLS
 from stopping_part import measured_prefactor, stopping_words
 from table_lines import HERE, NOT_SHOWN, said
 
@@ -64,7 +65,9 @@ def beads() -> str:
         f"Measured from the mean surface, these changes move the exponent by more than {STEP:g}: "
         f"{'; '.join(large) or 'none'}. The others move it by less: {'; '.join(small) or 'none'}. The exponent is "
         f"within the tolerance {held}. The last column of the first table names the changes to the bed compared (3 mm, "
-        "periodic, loose, deeper), or to the same bed of 5 mm beads, that bring the exponent within the tolerance.",
+        "periodic, loose, deeper), or to the same bed of 5 mm beads, that bring the exponent within the tolerance. "
+        "Packing matters in other simulations too: [Carvalho-2023] attributes the variety of published scaling laws to "
+        "it.",
         pour_words(beds),
         size_words(beds),
         prefactor_words(),
@@ -81,17 +84,17 @@ def beads() -> str:
 
 def pour_words(beds: dict[str, tuple[Row, Row]]) -> str:
     """Say how far the exponents of several pours of one bed are apart."""
-    said = []
+    spreads = []
     for bed, size in ((LOOSE, "5 mm"), (FINE, "3 mm")):
         own = pours(beds, bed)
         if len(own) > 1:
             found = {text: [density_exponent(*beds[name], of) for name in own] for text, of in SURFACES.items()}
             spread = " and ".join(f"{min(ones):.2f} to {max(ones):.2f} from {text}" for text, ones in found.items())
-            said.append(f"The exponents of {len(own)} pours of the loose bed of {size} are {spread}.")
+            spreads.append(f"The exponents of {len(own)} pours of the loose bed of {size} are {spread}.")
     return (
-        f"{' '.join(said)} One bed therefore determines the exponent less well than the intervals of the first table "
-        "say, which hold for drops into one bed; a change that moves it by less than the pours differ is not detected "
-        "by two drops."
+        f"{' '.join(spreads)} One bed therefore determines the exponent less well than the intervals of the first "
+        "table say, which hold for drops into one bed; a change that moves it by less than the pours differ is not "
+        "detected by two drops."
     )
 
 
@@ -104,19 +107,18 @@ def size_words(beds: dict[str, tuple[Row, Row]]) -> str:
             for before, after in zip(beds[LOOSE], beds[BOTH], strict=True)]  # fmt: skip
     return (
         "Depths have not converged with the size of the beads: in beads of 5, 3 and 2 mm the light ball sinks by "
-        f"{depths[0]} cm and the heavy one by {depths[1]} cm. The exponent of density hardly changes. Rolling friction "
-        f"and stiffer beads together take {less[0]:.0f} and {less[1]:.0f} % off these depths in beads of 5 mm; measured "
-        "beads have both."
+        f"{depths[0]} cm and the heavy one by {depths[1]} cm. Rolling friction and stiffer beads together take "
+        f"{less[0]:.0f} and {less[1]:.0f} % off these depths in beads of 5 mm."
     )
 
 
 def prefactor_words() -> str:
-    """Say why the prefactor disagrees."""
-    found = measured_prefactor()
+    """Set the prefactor beside that of the measured force."""
+    heights = ", ".join(f"{fall:g}" for fall in FALLS)
     return (
-        "**The prefactor** of the secondary source disagrees with the force that the same laboratory measured later: "
-        f"by that force, steel balls from 0.05, 0.1 and 0.2 m stop at depths whose prefactor is {found.value:.2f} "
-        f"(last column of the table in the next section)."
+        "The prefactor is that of a secondary source. By the force that the same laboratory measured later, steel "
+        f"balls from {heights} m stop at depths with a mean prefactor of {measured_prefactor().value:.2f} (next "
+        "section), nearer to the one here."
     )
 
 
@@ -132,12 +134,13 @@ def gravity() -> str:
     hard, least = gravity_exponents(rows), GRAINS.young_modulus / (GRAINS.density * EARTH * DIAMETER)
     found = gravity_exponents(soft)
     return (
-        "The modulus must be large enough for the largest gravity. Here it is at least "
-        f"{least:.0f} times density x gravity x diameter of the sphere. On grains ten times softer the sphere sinks by "
-        f"{deep(soft, 1.0)} diameters under Earth's gravity and by {deep(soft, SHARES[-1])} under a tenth of it, where "
-        f"the ratio is the same as on the stiffer grains under Earth's gravity ({deep(rows, 1.0)}); the exponents are "
-        f"{said(found['depth'])} for the depth and {said(found['stopping_time'])} for the time until it stops, instead "
-        f"of {said(hard['depth'])} and {said(hard['stopping_time'])}."
+        "The modulus must be large enough under every gravity. Here it is at least "
+        f"{least:.2g} times density x gravity x diameter of the sphere. On grains ten times softer the sphere sinks by "
+        f"{deep(soft, 1.0)} diameters under Earth's gravity, and the exponents are {said(found['depth'])} for the "
+        f"depth and {said(found['stopping_time'])} for the time until it stops, instead of {said(hard['depth'])} and "
+        f"{said(hard['stopping_time'])}. Soft grains under a tenth of Earth's gravity are as stiff, by that ratio, as "
+        f"stiff ones under Earth's: the sphere sinks by {deep(soft, SHARES[-1])} and {deep(rows, 1.0)} diameters. That "
+        "difference is the scatter of beds."
     )
 
 
@@ -215,7 +218,7 @@ def balls() -> str:
         "less gravity, against [Murdoch-2017]. For one material without cohesion the two rules exclude each other. "
         "The range of speeds is not the reason: Murdoch's Froude numbers are 0.06 to 2.8, and the drops here below 3 "
         f"give an exponent of {said(by_gravity)} for gravity and {said(by_speed)} for speed.\n\n{pulling(every)}\n\n"
-        "Under Earth's gravity the beads must be stiffer, or fast balls bounce: on plain beads the durations are "
+        "Under Earth's gravity plain beads are too soft and the durations differ: on plain beads they are "
         f"{durations(soft)} sqrt(D/g), on those ten times stiffer {durations(stiffer)}, for the four Froude numbers. "
         f"The exponent of duration is {said(before)} with the former and {said(found)} with the latter."
     )

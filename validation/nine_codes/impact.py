@@ -82,6 +82,7 @@ def relaxed_bed(positions: Path, work: Path, run: str = "published") -> World:
         world.save(path)
     world = World.load(path)
     if run == LATER:
+        # The engine of the world is made anew when the ball is added.
         world._state.options["tangential_dashpot"] = "none"
     return world
 

@@ -18,10 +18,10 @@ is within 1 mm (half a grain) of MercuryDPM's, and MercuryDPM's is within the ra
 five beds. No other beds were poured. Instead, the range here is that of several impacts on the
 published bed: in the middle, at other points, and shifted by a billionth of a metre ("nudged").
 
-The benchmark's contacts have no tangential dashpot. The engine has one; the run that is compared
-leaves it out (`World(tangential_dashpot="none")`). The impacts of the range have it, and so has
-"published", the same impact with it. In a further run the bed relaxes with the dashpot, and the
-ball falls without it.
+MercuryDPM's driver sets no tangential dashpot. The engine has one; the run that is compared ("no
+dashpot") leaves it out (`World(tangential_dashpot="none")`). "Published" is the same impact with the
+dashpot, as are the others of the range: for the compared law there is no range. In "no dashpot
+later" the bed relaxes with the dashpot, and the ball falls without it; LAMMPS starts from that bed.
 
 ## Heights
 
@@ -47,8 +47,8 @@ CONDITIONS = """
   this engine a pair takes a value from its two materials. With `pair_rule="mean"`, three materials
   give these pairs exactly; each set of bodies has walls of its own (`impact_bed.py`).
 - **Contact laws.** All codes use the springs of Hertz and Mindlin. Without the tangential dashpot,
-  one difference from MercuryDPM is left: a contact never pulls here, while MercuryDPM's damping can
-  pull as the contact ends. Therefore the damping ratio for a given restitution differs too (for
+  two differences from MercuryDPM are left. A contact never pulls here, while MercuryDPM's damping
+  can pull as the contact ends. Therefore the damping ratio for a given restitution differs too (for
   0.4, it is 0.355 here and 0.280 there).
 """
 MISSING = """

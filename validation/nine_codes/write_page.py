@@ -6,6 +6,7 @@ Reads the tables beside it, those of runs that were stopped as well; writes nine
 docs/validation.
 """
 
+import itertools
 import json
 import statistics
 
@@ -74,7 +75,7 @@ def comparison(found: dict[str, Curve]) -> list[str]:
 
 
 def draw(found: dict[str, Curve]) -> None:
-    """Height of the ball against time, and what the other runs differ from the published impact."""
+    """Height of the ball against time, and what the other runs differ from the compared one."""
     with plt.rc_context(STYLE):
         figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.9), constrained_layout=True)
         drawn = {OURS: ("here", TRAINING, "-"), "mercury": ("MercuryDPM", SITE, "--")}
@@ -87,14 +88,16 @@ def draw(found: dict[str, Curve]) -> None:
         left.legend(fontsize=8)
         reference = found[OURS]
         others = [name for name in found if name not in (OURS, "mercury")]
-        colours = dict(zip(others, (*INPUT_COLOURS[1:3], *INPUT_COLOURS[4:]), strict=False)) | {"mercury": SITE}
+        inks = itertools.cycle((*INPUT_COLOURS[1:3], *INPUT_COLOURS[4:]))
+        colours = {name: next(inks) for name in others} | {"mercury": SITE}
         for name in ("mercury", *others):
             time = reference[0][reference[0] <= found[name][0][-1] + 1e-6]
             gap = np.interp(time, *found[name][:2]) - np.interp(time, *reference[:2])
-            right.plot(1000.0 * time, 1000.0 * gap, "--" if name == "mercury" else "-", color=colours[name], lw=1.6,
+            style = "--" if name == "mercury" else ":" if "lammps" in name else "-"
+            right.plot(1000.0 * time, 1000.0 * gap, style, color=colours[name], lw=1.6,
                        label="MercuryDPM" if name == "mercury" else named(name))  # fmt: skip
         right.axhspan(-1.0, 1.0, color=QUIET, alpha=0.15, lw=0, label="criterion")
-        right.set(xlabel="time [ms]", ylabel="less that here [mm]")
+        right.set(xlabel="time [ms]", ylabel="height minus that of the compared run [mm]")
         right.set_title("Differences of height")
         right.legend(fontsize=8)
         figure.savefig(PAGES / "nine_codes.png", dpi=150)
