@@ -28,6 +28,16 @@ def largest_gap(found: dict[str, Curve]) -> float:
     return float(np.abs(np.interp(ours[0][down], *ours[:2]) - np.interp(ours[0][down], *mercury[:2])).max())
 
 
+def within_until(found: dict[str, Curve]) -> float:
+    """Return until when [s] the two heights stay within the criterion, MercuryDPM's as carried on in free flight."""
+    times = found[OURS][0]
+    apart = [
+        abs((height(found["mercury"], float(time)) or np.inf) - z) for time, z in zip(*found[OURS][:2], strict=True)
+    ]
+    outside = np.array(apart) > CRITERION
+    return float(times[np.argmax(outside) - 1] if outside.any() else times[-1])
+
+
 def answer(found: dict[str, Curve]) -> str:
     """Return the answer of the page: how far the codes are apart in the bed and after it, and what rounding does."""
     gaps = {time: None if (a := height(found[OURS], time)) is None or (b := height(found["mercury"], time))
@@ -41,6 +51,7 @@ def answer(found: dict[str, Curve]) -> str:
         f"{mm(CRITERION, 0)} mm. The criterion holds at {len(held)} of the {len(ASKED)} times set before the runs"
     )
     words += f" and fails after the ball turns ({' and '.join(failed)})." if failed else "."
+    words += f" The heights stay within it until {1000.0 * within_until(found):.0f} ms."
     shift = [mm(moved(found, "nudged", time)) for time in ASKED[2:]]
     if "nudged" in found:
         words += (
