@@ -84,7 +84,9 @@ def grains() -> dict[str, Beads]:
         f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),
         f"{FINE}, second pour": bed_of(0.003, seed=2),
-        f"{FINE}, third pour": bed_of(0.003, seed=3),
+        f"{FINE}, rolling friction 0.1 and Young's modulus 70 MPa": bed_of(
+            0.003, rolling_friction=0.1, young_modulus=7e7
+        ),
         FINER: bed_of(0.002),
     }
 
