@@ -81,9 +81,16 @@ def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
     ):
         found = [density_exponent(light, heavy, depth_of) for light, heavy in beds.values()]
         axis.plot(found, at, "o", color=ink, mfc=face, label=text)
-    axis.set_yticks(at, list(beds), fontsize=7)
+    axis.set_yticks(at, [short(name) for name in beds], fontsize=7)
     axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
     legend_below(axis)
+
+
+def short(bed: str) -> str:
+    """Return the name of a bed without what the loose, deep beds have in common."""
+    for long, brief in ((", periodic, loose, deeper", ""), ("Young's modulus ", ""), ("rolling friction", "rolling")):
+        bed = bed.replace(long, brief)
+    return bed
 
 
 def of_gravities(rows: list[Row], diameter: float, to: Path) -> None:

@@ -1,6 +1,6 @@
 """How much looser grains that pull on each other lie: volumes settled under less gravity (X4).
 
-    python validation/experiments/packing_and_cohesion.py --work FOLDER --out FOLDER [--kinds glass ...]
+    python validation/experiments/packing_and_cohesion.py --work FOLDER --out FOLDER [--kinds NAME ...]
 
 By similarity only the pull of a contact over a grain's weight tells beds of one kind apart, as long as they are stiff:
 so one curve of volume against that ratio stands for every gravity, and gives the pull that a measured volume asks for.
@@ -46,6 +46,7 @@ class Kind:
     hulls: bool
     restitution: float
     friction: float
+    pulls: tuple[float, ...] = PULLS
 
     @property
     def mean(self) -> float:
@@ -56,7 +57,7 @@ class Kind:
 # Sizes are the source's; the rest is ours. Glass is beads, basalt is broken.
 KINDS = {
     "glass": Kind((0.75e-3, 1e-3), 2500.0, False, 0.8, 0.4),
-    "coarse basalt": Kind((2e-3, 5e-3), 2900.0, True, 0.6, 0.6),
+    "coarse basalt": Kind((2e-3, 5e-3), 2900.0, True, 0.6, 0.6, PULLS[:-1]),
 }
 SEEDS = (1,)
 
@@ -134,14 +135,13 @@ def solid_fraction(world: World, volumes: Floats, kind: Kind) -> float:
 def missing(kinds: list[str], table: Path) -> Iterator[tuple[str, float, int]]:
     """Yield kind, pull and seed of what has no row."""
     ran = {(row["kind"], row["pull"], row["seed"]) for row in read_rows(table)}
-    for seed, name, pull in itertools.product(SEEDS, kinds, PULLS):
-        if (name, pull, seed) not in ran:
-            yield name, pull, seed
+    for seed, name in itertools.product(SEEDS, kinds):
+        yield from ((name, pull, seed) for pull in KINDS[name].pulls if (name, pull, seed) not in ran)
 
 
 def main() -> None:
     """Run what has no row yet."""
-    given = options_of(__doc__, kinds=("glass",))
+    given = options_of(__doc__, kinds=tuple(KINDS))
     for name, pull, seed in missing(given.kinds, given.out / NAME):
         start = time.process_time()
         world, volumes = filled(KINDS[name], pull, seed)

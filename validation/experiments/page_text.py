@@ -61,6 +61,8 @@ topmost points of the beads ("mean surface"), and the point of first touch.
 
 ![Depths, stopping times and exponents of density](experiments/ball_into_beads.png)
 
+In the right panel, beds named by the size of the beads and a change are loose, deep and periodic.
+
 {drops}
 
 {verdict_beads}

@@ -108,8 +108,8 @@ def size_words(beds: dict[str, tuple[Row, Row]]) -> str:
     return (
         "Depths have not converged with the size of the beads: in beads of 5, 3 and 2 mm the light ball sinks by "
         f"{depths[0]} cm and the heavy one by {depths[1]} cm. Rolling friction and stiffer beads together take "
-        f"{less[0]:.0f} and {less[1]:.0f} % off these depths in beads of 5 mm. The slope of a heap of such beads was not "
-        "measured; a steeper one makes the measured law smaller too."
+        f"{less[0]:.0f} and {less[1]:.0f} % off these depths in beads of 5 mm. The slope of a heap of such beads was "
+        "not measured; a steeper one makes the measured law smaller too."
     )
 
 
