@@ -19,9 +19,10 @@ five beds. No other beds were poured. Instead, the range here is that of several
 published bed: in the middle, at other points, and shifted by a billionth of a metre ("nudged").
 
 MercuryDPM's driver sets no tangential dashpot. The engine has one; the run that is compared ("no
-dashpot") leaves it out (`World(tangential_dashpot="none")`). "Published" is the same impact with the
-dashpot, as are the others of the range: for the compared law there is no range. In "no dashpot
-later" the bed relaxes with the dashpot, and the ball falls without it; LAMMPS starts from that bed.
+dashpot") leaves it out (`World(tangential_dashpot="none")`). "Published" is the same impact with
+the dashpot, as are the others of the range: for the compared law there is no range. In "no
+dashpot later" the bed relaxes with the dashpot, and the ball falls without it; LAMMPS starts from
+that bed.
 
 ## Heights
 
