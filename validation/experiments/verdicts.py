@@ -136,7 +136,7 @@ def gravity() -> str:
     found = gravity_exponents(soft)
     return (
         "The modulus must be large enough under every gravity. Here it is at least "
-        f"{least:.2g} times density x gravity x diameter of the sphere. On grains ten times softer the sphere sinks by "
+        f"{1e3 * round(1e-3 * least):.0f} times density x gravity x diameter of the sphere. On grains ten times softer the sphere sinks by "
         f"{deep(soft, 1.0)} diameters under Earth's gravity, and the exponents are {said(found['depth'])} for the "
         f"depth and {said(found['stopping_time'])} for the time until it stops, instead of {said(hard['depth'])} and "
         f"{said(hard['stopping_time'])}. Soft grains under a tenth of Earth's gravity are as stiff, by that ratio, as "
@@ -219,7 +219,7 @@ def balls() -> str:
         "less gravity, against [Murdoch-2017]. For one material without cohesion the two rules exclude each other. "
         "The range of speeds is not the reason: Murdoch's Froude numbers are 0.06 to 2.8, and the drops here below 3 "
         f"give an exponent of {said(by_gravity)} for gravity and {said(by_speed)} for speed.\n\n{pulling(every)}\n\n"
-        "Under Earth's gravity plain beads are too soft and the durations differ: on plain beads they are "
+        "Plain beads are too soft under Earth's gravity: the durations there are "
         f"{durations(soft)} sqrt(D/g), on those ten times stiffer {durations(stiffer)}, for the four Froude numbers. "
         f"The exponent of duration is {said(before)} with the former and {said(found)} with the latter."
     )
