@@ -136,7 +136,8 @@ def gravity() -> str:
     found = gravity_exponents(soft)
     return (
         "The modulus must be large enough under every gravity. Here it is at least "
-        f"{1e3 * round(1e-3 * least):.0f} times density x gravity x diameter of the sphere. On grains ten times softer the sphere sinks by "
+        f"{1e3 * round(1e-3 * least):.0f} times density x gravity x diameter of the "
+        "sphere. On grains ten times softer the sphere sinks by "
         f"{deep(soft, 1.0)} diameters under Earth's gravity, and the exponents are {said(found['depth'])} for the "
         f"depth and {said(found['stopping_time'])} for the time until it stops, instead of {said(hard['depth'])} and "
         f"{said(hard['stopping_time'])}. Soft grains under a tenth of Earth's gravity are as stiff, by that ratio, as "
