@@ -63,7 +63,7 @@ def surface_lines(
              cause_of_density(every, depth_of)),
         line(f"exponent of the total drop distance, depth below {where}", 1 / 3, total, 0.05, "1/3"),
         line(f"prefactor, depth below {where}", law, prefactor, 0.25 * law,
-             f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", cause_of_prefactor(every, law)),
+             f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", cause_of_prefactor(every, law, depth_of)),
         line(f"exponent of diameter, depth below {where}", 2 / 3, diameter_exponent(sized, depth_of(sized)), 0.05,
              "2/3", cause_of_diameter(every, depth_of)),
     ]  # fmt: skip

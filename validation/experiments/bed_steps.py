@@ -65,10 +65,10 @@ def cause_of_density(every: list[Row], depth_of: DepthOf) -> str:
     return "; ".join(shown) or NOT_SHOWN
 
 
-def cause_of_prefactor(every: list[Row], law: float) -> str:
+def cause_of_prefactor(every: list[Row], law: float, depth_of: DepthOf) -> str:
     """Return the changes of the bed compared that bring the mean prefactor of its two drops within the tolerance."""
     beds = pairs(every)
-    away = {name: abs(mean_prefactor(two) - law) / law for name, two in beds.items()}
+    away = {name: abs(mean_prefactor(two, depth_of) - law) / law for name, two in beds.items()}
     shown = [
         words for words, before, after in steps(beds)
         if before == FINE and away[before] > SHARE >= away[after] and not after.endswith(" pour")
@@ -110,6 +110,6 @@ def diameter_table(every: list[Row]) -> str:
     return table(heads, cells)
 
 
-def mean_prefactor(drops: tuple[Row, Row]) -> float:
-    """Return the mean prefactor of two drops, from the mean surface."""
-    return float((below_mean_surface(list(drops)) / scale(list(drops))).mean())
+def mean_prefactor(drops: tuple[Row, Row], depth_of: DepthOf = below_mean_surface) -> float:
+    """Return the mean prefactor of two drops, by default from the mean surface."""
+    return float((depth_of(list(drops)) / scale(list(drops))).mean())
