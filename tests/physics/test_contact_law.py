@@ -1,9 +1,11 @@
 """What the contact law must do beyond published cases: never make energy, bounce as entered wherever it is hit."""
 
 import copy
+import json
 import math
 import re
 
+import h5py
 import numpy as np
 import pytest
 
@@ -236,5 +238,13 @@ def test_a_world_keeps_its_tangential_dashpot_in_a_file(tmp_path) -> None:
         one.run(duration=0.01)
     np.testing.assert_array_equal(again.velocity, world.velocity)
     assert again.energy()["damping"] == pytest.approx(0.0, abs=1e-12)
+    # Files of before have no such option, and the dashpot.
+    with h5py.File(tmp_path / "world.h5", "r+") as file:
+        options = json.loads(file.attrs["options"])
+        assert options.pop("tangential_dashpot") == "none"
+        file.attrs["options"] = json.dumps(options)
+    older = World.load(tmp_path / "world.h5")
+    older.run(duration=0.01)
+    assert older.energy()["damping"] > 0.0
     with pytest.raises(ValueError, match="World tangential_dashpot is 'half'; allowed are mindlin, none: choose one"):
         World(tangential_dashpot="half")

@@ -30,7 +30,8 @@ PACE = 5e-4  # s between looks at the ball
 LIGHT, HEAVY, FALL = 2200.0, 15000.0, 0.1
 OURS, LOOSE, FINE = "3 mm, walls, dense", "5 mm, periodic, loose, deeper", "3 mm, periodic, loose, deeper"
 FINER = "2 mm, periodic, loose, deeper"
-BOTH = f"{LOOSE}, rolling friction 0.1 and Young's modulus 70 MPa"
+STIFF = "Young's modulus 70 MPa"
+ROLLING_STIFF = f"rolling friction 0.1 and {STIFF}"
 DIAMETERS = (0.0127, 0.018, 0.036)
 SLOW = 0.6  # sqrt(g d), at which beads fall for a loose bed: the experiment's beds are loose
 SERIES = ("drops", "diameters", "walls", "causes", "sizes", "repose")
@@ -72,21 +73,19 @@ def causes() -> dict[str, Beads]:
 
 def grains() -> dict[str, Beads]:
     """Return beds that differ from the last of the causes in the law of their contacts, or in the size of the beads."""
-    wide = {"width": 4.0 * BALL}
+    wide, both = {"width": 4.0 * BALL}, {"rolling_friction": 0.1, "young_modulus": 7e7}
     return {
         "5 mm, as the one before, friction 0.6": bed_of(0.005, **wide, friction=0.6),
         f"{LOOSE}, restitution 0.5": bed_of(0.005, **wide, restitution=0.5, least_steps=60.0),
         f"{LOOSE}, rolling friction 0.1": bed_of(0.005, **wide, rolling_friction=0.1),
         f"{LOOSE}, poured at a third of the speed": bed_of(0.005, **wide, fall_speed=SLOW / 3.0),
-        f"{LOOSE}, Young's modulus 70 MPa": bed_of(0.005, **wide, young_modulus=7e7),
-        BOTH: bed_of(0.005, **wide, rolling_friction=0.1, young_modulus=7e7),
+        f"{LOOSE}, {STIFF}": bed_of(0.005, **wide, young_modulus=7e7),
+        f"{LOOSE}, {ROLLING_STIFF}": bed_of(0.005, **wide, **both),
         f"{LOOSE}, second pour": bed_of(0.005, **wide, seed=2),
         f"{LOOSE}, third pour": bed_of(0.005, **wide, seed=3),
         FINE: bed_of(0.003),
         f"{FINE}, second pour": bed_of(0.003, seed=2),
-        f"{FINE}, rolling friction 0.1 and Young's modulus 70 MPa": bed_of(
-            0.003, rolling_friction=0.1, young_modulus=7e7
-        ),
+        f"{FINE}, {ROLLING_STIFF}": bed_of(0.003, **both),
         FINER: bed_of(0.002),
     }
 

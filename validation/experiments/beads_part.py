@@ -18,7 +18,7 @@ from fits import (
 )
 from result_rows import Row, read_rows
 from sphere_bed import Floats
-from table_lines import FIGURES, HERE, NOT_SHOWN, Lines, line, table
+from table_lines import FIGURES, HERE, NOT_SHOWN, SHARE, Lines, line, table
 
 SURFACES = {"the mean surface": below_mean_surface, "the first touch": below_first_touch}
 
@@ -59,10 +59,9 @@ def surface_lines(
     density, total = drop_exponents(drops, depth_of(drops))
     prefactor = mean_of(list(depth_of(drops) / scale(drops)))
     return [
-        line(f"exponent of density, depth below {where}", 0.5, density, 0.05, "1/2",
-             cause_of_density(every, depth_of)),
+        line(f"exponent of density, depth below {where}", 0.5, density, 0.05, "1/2", cause_of_density(every, depth_of)),
         line(f"exponent of the total drop distance, depth below {where}", 1 / 3, total, 0.05, "1/3"),
-        line(f"prefactor, depth below {where}", law, prefactor, 0.25 * law,
+        line(f"prefactor, depth below {where}", law, prefactor, SHARE * law,
              f"0.14 / {0.14 / law:.2f} = {law:.3f}, unverified", cause_of_prefactor(every, law, depth_of)),
         line(f"exponent of diameter, depth below {where}", 2 / 3, diameter_exponent(sized, depth_of(sized)), 0.05,
              "2/3", cause_of_diameter(every, depth_of)),

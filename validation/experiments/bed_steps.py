@@ -6,11 +6,10 @@ from ball_into_beads import BALL, FALL, FINE, FINER, HEAVY, LIGHT, LOOSE, OURS
 from fits import below_first_touch, below_mean_surface, density_exponent, diameter_exponent, scale, stopping
 from result_rows import Row
 from sphere_bed import Floats
-from table_lines import NOT_SHOWN, said, table
+from table_lines import NOT_SHOWN, SHARE, said, table
 
 DepthOf = Callable[[list[Row]], Floats]
 DENSITY, BAR = 0.5, 0.05  # measured exponent of the density, and the tolerance
-SHARE = 0.25  # of the measured prefactor: the tolerance
 # What changes from one bed to the next; beds that have no rows are left out.
 STEPS = [
     ("beads of 5 instead of 8 mm", "8 mm, walls, dense", "5 mm, walls, dense"),
@@ -44,9 +43,14 @@ def steps(beds: Iterable[str]) -> list[tuple[str, str, str]]:
     return [step for step in [*STEPS, *others, *finer] if step[1] in beds and step[2] in beds]
 
 
+def is_pour(bed: str) -> bool:
+    """Whether a bed is but another pour, which is no cause."""
+    return bed.endswith(" pour")
+
+
 def pours(beds: Iterable[str], bed: str) -> list[str]:
     """Return the names of a bed and of its other pours."""
-    return [name for name in beds if name == bed or (name.startswith(f"{bed}, ") and name.endswith(" pour"))]
+    return [name for name in beds if name == bed or (name.startswith(f"{bed}, ") and is_pour(name))]
 
 
 def agrees(drops: tuple[Row, Row], depth_of: DepthOf) -> bool:
@@ -60,7 +64,7 @@ def cause_of_density(every: list[Row], depth_of: DepthOf) -> str:
     shown = [
         words for words, before, after in steps(beds)
         if before in (LOOSE, FINE) and not agrees(beds[before], depth_of) and agrees(beds[after], depth_of)
-        and not after.endswith(" pour")
+        and not is_pour(after)
     ]  # fmt: skip
     return "; ".join(shown) or NOT_SHOWN
 
@@ -71,7 +75,7 @@ def cause_of_prefactor(every: list[Row], law: float, depth_of: DepthOf) -> str:
     away = {name: abs(mean_prefactor(two, depth_of) - law) / law for name, two in beds.items()}
     shown = [
         words for words, before, after in steps(beds)
-        if before == FINE and away[before] > SHARE >= away[after] and not after.endswith(" pour")
+        if before == FINE and away[before] > SHARE >= away[after] and not is_pour(after)
     ]  # fmt: skip
     return "; ".join(shown) or NOT_SHOWN
 

@@ -13,7 +13,8 @@ import time
 from pathlib import Path
 
 from ball_drop import Ball, dropped
-from ball_into_beads import BALL, HEAVY, LIGHT, PACE, bed_of
+from ball_into_beads import BALL, FINE, HEAVY, LIGHT, LOOSE, PACE, causes, grains
+from ball_into_beads import STIFF as STIFF_BEADS
 from harness import write_rows
 from result_rows import Row, note, options_of, read_rows
 from sphere_bed import bulk_density, kept
@@ -22,11 +23,8 @@ NAME, PATHS = "stopping_force.csv", "stopping_force_paths.csv"
 STEEL = 8070.0  # kg/m3
 FALLS = (0.05, 0.1, 0.2)  # m
 COMPARED, COARSE, STIFF = "3 mm", "5 mm", "5 mm, 70 MPa"
-BEDS = {
-    COMPARED: bed_of(0.003),
-    COARSE: bed_of(0.005, width=4.0 * BALL),
-    STIFF: bed_of(0.005, width=4.0 * BALL, young_modulus=7e7),
-}
+EVERY = causes() | grains()
+BEDS = {COMPARED: EVERY[FINE], COARSE: EVERY[LOOSE], STIFF: EVERY[f"{LOOSE}, {STIFF_BEADS}"]}
 # Falls [m] of balls by bed and density; the experiment's are 0 to 0.8 m.
 DROPS = {
     (COMPARED, STEEL): (0.02, *FALLS, 0.4),

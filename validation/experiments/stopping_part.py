@@ -1,7 +1,7 @@
 """What the paths of balls in beads say: rows of the page's table, its section and its verdict."""
 
 import math
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from ball_into_beads import BALL
@@ -10,11 +10,10 @@ from fits import Estimate, mean_of, scale
 from result_rows import Row, read_rows
 from stopping_force import BEDS, COMPARED, FALLS, NAME, PATHS, STEEL
 from stopping_law import Law, along_paths, at_depths, law_depth, law_time, with_intervals
-from table_lines import FIGURES, HERE, Line, Lines, line, said, table
+from table_lines import FIGURES, HERE, SHARE, Line, Lines, line, said, table
 
 MEASURED = Law(0.087, 1040.0)  # of a steel ball of 25.4 mm in glass beads [Katsuragi-2007]
 BULK = 1520.0  # kg/m3, of these beads
-SHARE = 0.25  # of a measured value: the tolerance of depths, times and prefactors
 STILL = 0.02  # of the impact speed, below which a ball has stopped: what creeps on after that takes long
 MM = 1e3
 # From where the ball is in by half, and its section grows no more, in steps of a bead.
@@ -26,9 +25,15 @@ def source_law(looks: list[Row]) -> Law:
     return DEPTHS(looks)[0]
 
 
+@cache
+def rows_of(name: str) -> list[Row]:
+    """Return the rows of a table, read once."""
+    return read_rows(HERE / name)
+
+
 def drops(bed: str = COMPARED) -> list[Row]:
     """Return the drops into a bed, the lightest ball first and the slowest of each first."""
-    rows = [row for row in read_rows(HERE / NAME) if row["bed"] == bed]
+    rows = [row for row in rows_of(NAME) if row["bed"] == bed]
     return sorted(rows, key=lambda row: (row["density"], row["fall"]))
 
 
@@ -39,7 +44,7 @@ def steel(bed: str = COMPARED) -> list[Row]:
 
 def looks(density: float, bed: str = COMPARED) -> list[Row]:
     """Return the looks at the paths of balls of a density [kg/m3] in a bed."""
-    return [row for row in read_rows(HERE / PATHS) if (row["bed"], row["density"]) == (bed, density)]
+    return [row for row in rows_of(PATHS) if (row["bed"], row["density"]) == (bed, density)]
 
 
 def densities() -> list[float]:

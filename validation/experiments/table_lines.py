@@ -11,6 +11,7 @@ HERE = Path(__file__).parent
 PAGES = HERE.parents[1] / "docs" / "validation"
 FIGURES = PAGES / "experiments"
 NOT_SHOWN = "not shown"
+SHARE = 0.25  # of a measured value: the tolerance of prefactors, coefficients, times, depths, speeds and densities
 
 
 class Line(NamedTuple):

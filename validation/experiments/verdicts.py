@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from ball_into_beads import BALL, BOTH, FINE, FINER, LOOSE, OURS
+from ball_into_beads import BALL, FINE, FINER, LOOSE, OURS, ROLLING_STIFF
 from beads_part import SURFACES, cause_of_diameter, steps_of_diameter
 from bed_steps import BAR as STEP
 from bed_steps import agrees, bed_table, diameter_table, mean_prefactor, pairs, pours, step_table, steps
@@ -104,7 +104,7 @@ def size_words(beds: dict[str, tuple[Row, Row]]) -> str:
         ", ".join(f"{100.0 * beds[name][k]['deepest']:.2f}" for name in (LOOSE, FINE, FINER)) for k in (0, 1)
     ]  # fmt: skip
     less = [100.0 * (1.0 - after["deepest"] / before["deepest"])
-            for before, after in zip(beds[LOOSE], beds[BOTH], strict=True)]  # fmt: skip
+            for before, after in zip(beds[LOOSE], beds[f"{LOOSE}, {ROLLING_STIFF}"], strict=True)]  # fmt: skip
     return (
         "Depths have not converged with the size of the beads: in beads of 5, 3 and 2 mm the light ball sinks by "
         f"{depths[0]} cm and the heavy one by {depths[1]} cm. Rolling friction and stiffer beads together take "

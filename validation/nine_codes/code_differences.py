@@ -30,11 +30,10 @@ def largest_gap(found: dict[str, Curve]) -> float:
 
 def within_until(found: dict[str, Curve]) -> float:
     """Return until when [s] the two heights stay within the criterion, MercuryDPM's as carried on in free flight."""
-    times = found[OURS][0]
-    apart = [
-        abs((height(found["mercury"], float(time)) or np.inf) - z) for time, z in zip(*found[OURS][:2], strict=True)
-    ]
-    outside = np.array(apart) > CRITERION
+    times, ours = found[OURS][:2]
+    # None, where it is not known, becomes NaN, which is not within anything.
+    theirs = np.array([height(found["mercury"], float(time)) for time in times], dtype=np.float64)
+    outside = ~(np.abs(theirs - ours) <= CRITERION)
     return float(times[np.argmax(outside) - 1] if outside.any() else times[-1])
 
 

@@ -5,7 +5,7 @@ import textwrap
 from pathlib import Path
 
 import numpy as np
-from impact import RUNS
+from impact import FROM_START, LATER, RUNS
 from impact_bed import GRAVITY, in_free_fall
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
@@ -20,10 +20,10 @@ BOTTOM = 0.02925  # s: just before the ball meets the layer on the floor
 FREE, LAST = 0.1, 4
 ROUNDING = 1e-6  # m, of heights in free fall, which are alike
 PLACES = ("east", "north", "west", "south")  # impacts to a side
-OURS = "no_dashpot"  # the run of the benchmark's law, which is compared
+OURS = FROM_START  # the run of the benchmark's law, which is compared
 IMPACTS = ("published", *PLACES, "nudged")
 # Runs without a dashpot across the normal.
-UNDAMPED = ("mercury", "lammps_no_dashpot", "no_dashpot", "no_dashpot_later")
+UNDAMPED = ("mercury", "lammps_no_dashpot", FROM_START, LATER)
 Curve = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
