@@ -9,13 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lithobrake.campaign.executors import WorkerDiedError, submit_limited
 from lithobrake.campaign.ledger import Ledger
-from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local_executor import WorkerDiedError, submit_limited
-from lithobrake.campaign.main_module import MainModuleError
-from lithobrake.campaign.record import RunStatus
-from lithobrake.campaign.run_counts import Tally, common_reasons
-from lithobrake.campaign.single_run import Model, run_model
+from lithobrake.campaign.record import RunStatus, Tally, common_reasons
+from lithobrake.campaign.single_run import Limits, Model, run_model
+from lithobrake.campaign.worker import MainModuleError
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
 _SUBMITTED_PER_WORKER = 2

@@ -13,7 +13,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.record import (
     CHECKSUM,
     COLUMNS,
@@ -32,6 +31,7 @@ from lithobrake.campaign.record import (
     row_hash,
     utc_now,
 )
+from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.files.atomic import locked
 from lithobrake.vocabulary.plain_text import one_line
 

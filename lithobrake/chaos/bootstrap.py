@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos import sensitivity
-from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.degree_selection import best_terms, with_low_degrees
+from lithobrake.chaos import moments
+from lithobrake.chaos.basis import Indices, basis_matrix
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
-from lithobrake.chaos.multi_index import Indices
+from lithobrake.chaos.least_squares import best_terms, with_low_degrees
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.training import Training, checked_training
+from lithobrake.chaos.training import Training, checked_training, one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
@@ -168,7 +166,7 @@ def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tupl
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
     """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
-    return np.stack([sensitivity.first_order(indices, coefficients), sensitivity.total_order(indices, coefficients)])
+    return np.stack([moments.first_order(indices, coefficients), moments.total_order(indices, coefficients)])
 
 
 def _check_resampling(count: int, level: float) -> None:

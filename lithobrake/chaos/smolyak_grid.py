@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.counts import check_level, smolyak_count
-from lithobrake.chaos.distribution_registry import checked_inputs
+from lithobrake.chaos.basis import check_level, smolyak_count
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.vocabulary.arrays import Array
 
 MOST_NODES = 10_000_000

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.model_selection import PROCESS_FROM, PROCESS_LIMIT
-from lithobrake.chaos.noise import equal_rows, replicates
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.fitting import PROCESS_FROM, PROCESS_LIMIT, fit
+from lithobrake.chaos.scores import equal_rows, replicates
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training

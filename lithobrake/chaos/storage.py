@@ -9,9 +9,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.distribution_registry import distribution
-from lithobrake.chaos.multi_index import LOOKED_AT, Indices
+from lithobrake.chaos.basis import LOOKED_AT, Indices
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import distribution
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import UNREADABLE
 from lithobrake.vocabulary.arrays import Array

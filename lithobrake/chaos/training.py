@@ -1,16 +1,18 @@
-"""The data of a fit, checked once: points inside the support, outputs finite, missing runs dropped and counted."""
+"""The data of a fit, checked once, and linear algebra on one thread."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_weights, outside_count, points_of
-from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.noise import equal_rows
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import checked_inputs
+from lithobrake.chaos.scores import equal_rows
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
 
@@ -123,3 +125,23 @@ def _names(output_names: Sequence[str] | None, count: int, one_dimensional: bool
     if len(names) != count or len(set(names)) != count:
         raise ValueError(f"output_names is {names}, but must be {count} different names")
     return names
+
+
+@cache
+def _libraries() -> Any:
+    """The linear algebra libraries of this process; to find them takes milliseconds, so they are found once."""
+    # SciPy brings a library of its own, which must be loaded to be found.
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
+
+    return ThreadpoolController()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Hold the linear algebra libraries to one thread; what was set before comes back at the end.
+
+    Several threads split a matrix product by their number, and so add its terms in another order.
+    """
+    with _libraries().limit(limits=1):
+        yield

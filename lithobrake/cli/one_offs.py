@@ -16,10 +16,13 @@ from lithobrake.cli.arguments import (
     OutPath,
     StudyPath,
     app,
+    one_sentence,
     refuse_written,
+    shown_progress,
     study_folder,
+    tell,
+    tell_json,
 )
-from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
@@ -150,7 +153,7 @@ def _followed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
-    from lithobrake.cli.one_journey import follow, refuse_journey_file, show_touchdowns
+    from lithobrake.cli.results import follow, refuse_journey_file, show_touchdowns
 
     if out is not None:
         refuse_journey_file(out, force, (".h5",))

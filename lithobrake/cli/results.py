@@ -1,4 +1,4 @@
-"""Commands that show the results of a study."""
+"""Commands that show the results of a study, and one journey of it."""
 
 import shutil
 import sys
@@ -8,23 +8,71 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import LOOK, Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
-from lithobrake.cli.one_journey import refuse_journey_file, show_touchdowns
-from lithobrake.cli.terminal import (
+from lithobrake.cli.arguments import (
     BAD_INPUT,
+    LOOK,
+    Force,
+    Json,
+    StudyDirectory,
+    app,
+    given_folder,
     leave,
     one_sentence,
     reader_may_leave,
+    refuse_written,
+    run_of,
     shown_progress,
     study_headline,
     tell,
     tell_json,
-)  # fmt: skip
+)
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.pipeline import OneJourney
+    from lithobrake.results import JourneyMotion
+    from lithobrake.results.motions import MovingBodies
     from lithobrake.results.study_results import StudyResults
+    from lithobrake.study import Study
+
+
+def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> None:
+    """Raise ValueError for a file of another kind, but for these, and for one that exists unless it may be replaced."""
+    from lithobrake.view import refuse_other_kinds
+    from lithobrake.view.motion_files import JOURNEY_KINDS, written_over
+
+    refuse_other_kinds(out, (*JOURNEY_KINDS, *also))
+    for path in written_over(out):
+        refuse_written(path, force)
+
+
+def follow(
+    study: "Study", values: dict[str, float], out: Path | None, is_told: bool
+) -> "tuple[OneJourney, list[Path]]":
+    """Follow a lander to its end and keep its motion; is_told: whether lines are printed as it goes."""
+    from lithobrake.pipeline import follow_one
+    from lithobrake.view.motion_files import touchdown_paths, write_journey
+
+    with shown_progress("journey") as progress:
+        found = follow_one(study, values, (lambda line: tell([line])) if is_told else (lambda line: None), progress)
+        if is_told:
+            tell([found.track.end_words])
+        if out is None:
+            return found, []
+        if out.suffix == ".h5":
+            paths = touchdown_paths(out, len(found.landings))
+            found.save(paths)
+            return found, paths
+        return found, write_journey(found.motion(), out, progress=progress)
+
+
+def show_touchdowns(motion: "JourneyMotion") -> None:
+    """Open a window on each touchdown, the next one when it is closed."""
+    from lithobrake.view import show
+
+    for bodies in motion.bodies:
+        show(bodies)
+
 
 JourneyNumber = Annotated[
     int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")

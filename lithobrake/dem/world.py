@@ -9,20 +9,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.arrays import Floats
-from lithobrake.dem.bodies.material import Material
-from lithobrake.dem.bodies.period import period_of, refuse_tilted_plane
-from lithobrake.dem.bodies.rigid_body import Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.rigid_body import Material, Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
-from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
-from lithobrake.dem.law.material_pair import contact_options
-from lithobrake.dem.local_stepping.contact_plans import FEWEST_STEPS
+from lithobrake.dem.bodies.vectors import period_of, refuse_tilted_plane
+from lithobrake.dem.law.restitution import contact_options
+from lithobrake.dem.local_stepping.agenda import FEWEST_STEPS
 from lithobrake.dem.local_stepping.local_engine import Setting
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.stepping.assembly import rotation_matrices
-from lithobrake.dem.stepping.time_loop import DIVERGED, STEP_TOO_LARGE
-from lithobrake.dem.stepping.time_step import Clock, checked_count, checked_step, chosen_step
-from lithobrake.dem.stepping.watch import FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEPS, TOUCHED, new_record
-from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
+from lithobrake.dem.stepping.engine import rotation_matrices
+from lithobrake.dem.stepping.time_loop import (
+    DIVERGED,
+    FIRST_CONTACT,
+    LAST_CONTACT,
+    PEAK_FORCE,
+    STEP_TOO_LARGE,
+    STEPS,
+    TOUCHED,
+    new_record,
+)
+from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
+from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
 
 
 class StepTooLargeError(ValueError):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.dem import Material, Sphere
-from lithobrake.pipeline.planning.pace import EDGE, REFERENCE, STEPS, probe
+from lithobrake.pipeline.planning.expected_time import EDGE, REFERENCE, STEPS, probe
 from lithobrake.smallbody import dimorphos, fly
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
 

@@ -12,16 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.export.aem import one_sided, sampled
-from lithobrake.export.flight_segments import checked_step, flight_segments
+from lithobrake.export.attitudes import one_sided, sampled, turns_of
+from lithobrake.export.ephemerides import checked_step, flight_segments
 from lithobrake.export.flown import Flown, has_journeys
-from lithobrake.export.frames import RESOLUTION, Frame
-from lithobrake.export.oem import Segment, epoch_texts
-from lithobrake.export.turning import turns_of
+from lithobrake.export.oem import RESOLUTION, Frame, Segment, epoch_texts
 from lithobrake.files.atomic import atomic_path
 from lithobrake.results import StudyResults
-from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 

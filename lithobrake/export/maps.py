@@ -1,7 +1,4 @@
-"""Where flights end as maps of other programs: GeoTIFF and GeoJSON in a geographic frame of the body's own.
-
-Source: [GeoTIFF-2019], keys of user-defined geographic frames.
-"""
+"""Where flights end, and the sites of a map, in the formats of geographic programs: GeoTIFF and GeoJSON."""
 
 import json
 import math
@@ -12,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import body_name, has_journeys
+from lithobrake.export.flown import body_name, has_journeys, plain_name
 from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
+from lithobrake.results.site_results import SiteMap
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus
 
 if TYPE_CHECKING:
@@ -211,3 +209,34 @@ def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[An
     }
     with atomic_path(path) as draft:
         draft.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
+
+
+UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
+
+
+def site_cells_file(place: Path) -> Path:
+    """The file of the polygons in the folder of a map."""
+    return place / "sites.geojson"
+
+
+def write_site_cells(site_map: SiteMap, place: Path) -> Path:
+    """Write a polygon for each site of a map, with its numbers, null where it has none; returns the file.
+
+    Borders of sites are lines of constant latitude or longitude, as straight lines in these coordinates are.
+    """
+    radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
+    frame, path = MapFrame(plain_name(site_map.body), radius), site_cells_file(place)
+    features = []
+    for number, site in enumerate(site_map.cells):
+        south, north, west, east = site.bounds_deg
+        ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+        features += [
+            {
+                "type": "Feature",
+                "id": number,
+                "geometry": {"type": "Polygon", "coordinates": [ring]},
+                "properties": site.row,
+            }
+        ]
+    write_features(frame, path, "sites", features, note=f"{NOTE}; {UNITS}")
+    return path

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.export.flown import refuse_rotation
 from lithobrake.files.atomic import atomic_path
-from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.files.reading import content_hash, hashed_seed
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, Shape
 from lithobrake.vocabulary.given_numbers import finite_number, whole_number

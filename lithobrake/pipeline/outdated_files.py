@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from lithobrake.files.hashing import json_hash, source_hash
+from lithobrake.files.reading import json_hash, source_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.stages import stages_of, stages_until
 from lithobrake.study import Study

@@ -8,17 +8,22 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of_design, read_shares
-from lithobrake.pipeline.answer.failing_runs import failing_runs
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_answers import (
+    ANSWERED_AFTER,
+    answer_words,
+    answers_of_design,
+    failing_runs,
+    read_shares,
+)
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.stages import JOURNEYS as JOURNEY_STAGE
 from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
+from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
-from lithobrake.pipeline.runs.touchdown_runs import known_runs
+from lithobrake.pipeline.stages import FOLLOW_JOURNEYS as JOURNEY_STAGE
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import JOURNEYS_FILE
@@ -32,7 +37,7 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     """
     if study.journey is not None:
         return _at_rest(study, folder)
-    key = folder.key_of(FILE)
+    key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:
         return {}
     shares = read_shares(folder)

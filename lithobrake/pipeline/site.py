@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.frames import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
-from lithobrake.study.correlated_keys import drawn_together
-from lithobrake.study.flight_sections import RotationSection
+from lithobrake.study.delivery_checks import drawn_together
+from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 
 if TYPE_CHECKING:

@@ -7,24 +7,22 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.model_server import PREFIX
-from lithobrake.chaos.threads import one_thread
-from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.campaign.worker import refuse_while_importing
+from lithobrake.chaos.training import one_thread
+from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder.notes import NAME
-from lithobrake.pipeline.folder.owner import refuse_others_folder
-from lithobrake.pipeline.folder.state import grouped, read_state
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.folder_state import grouped, read_state, refuse_others_folder
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.outdated_files import make, setting
-from lithobrake.pipeline.planning.plan_in_words import brief_lines
+from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import Model, function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_until
+from lithobrake.pipeline.study_folder import NAME, StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 

@@ -11,10 +11,9 @@ from lithobrake.report.content import Content, PageSection, Panel, Plot
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
-from lithobrake.report.pages.html import page
+from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.pages.paper_page import paper_content
-from lithobrake.report.pages.study_files import data_files, picture_files
 from lithobrake.report.tables.paper_tables import provenance
 from lithobrake.report.words import captions
 from lithobrake.results import open_study

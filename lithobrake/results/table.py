@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.vocabulary.plain_text import names_in_lines, short_repr
 from lithobrake.vocabulary.quantities import Quantity
-from lithobrake.vocabulary.screen import names_in_lines, short_repr
 
 if TYPE_CHECKING:
     import pandas

@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.attitude_history import AttitudeHistory
-from lithobrake.smallbody.delivered_place import delivered_directions
-from lithobrake.smallbody.gravity_gradient import gradient
-from lithobrake.smallbody.orbit import Entry, Orbit
-from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.acceleration import Entry, Orbit
+from lithobrake.smallbody.attraction import gradient
+from lithobrake.smallbody.rotation import AttitudeHistory
+from lithobrake.smallbody.shape import Shape, delivered_directions
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.smallbody.acceleration import Dynamics, Forces
-from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.acceleration import Dynamics, Forces, Orbit
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
+from lithobrake.smallbody.facet_grid import near_heights
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
 from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
-from lithobrake.smallbody.orbit import Orbit
+from lithobrake.smallbody.rotation import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.signed_distance import near_heights
-from lithobrake.smallbody.turning_ground import into_frame, out_of_frame, refuse_beyond, turning_of
+from lithobrake.smallbody.simd import Floats
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time

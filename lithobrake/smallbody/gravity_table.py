@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.simd import Floats
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.
 LEVELS = ((1 / 40, 0.0), (1 / 20, 1.6), (1 / 10, 3.0), (1 / 3, 8.0), (1.0, 24.0), (4.0, 80.0))

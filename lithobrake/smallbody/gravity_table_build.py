@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
+from lithobrake.smallbody.facet_grid import Grid, near_heights, pseudonormals
 from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
-from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
-from lithobrake.smallbody.signed_distance import near_heights, pseudonormals
+from lithobrake.smallbody.simd import Floats
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time

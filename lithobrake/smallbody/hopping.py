@@ -7,14 +7,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
+from lithobrake.smallbody.facet_grid import near_heights
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flight_results import Flights
-from lithobrake.smallbody.signed_distance import near_heights
+from lithobrake.smallbody.flight_results import Arcs, Flights
+from lithobrake.smallbody.rotation import ground_spin, kept_among_stars
 from lithobrake.smallbody.sliding import OnGround, slide
-from lithobrake.smallbody.turning_ground import ground_spin, kept_among_stars
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 

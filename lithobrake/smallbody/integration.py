@@ -9,22 +9,21 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.acceleration import Forces, accelerate, has_escaped
-from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.acceleration import Forces, Motion, accelerate, has_escaped, motion_over, own_motion
 from lithobrake.smallbody.attraction import Workspace, workspace
-from lithobrake.smallbody.dormand_prince import (
+from lithobrake.smallbody.impact_search import (
     NODES,
     STAGES,
+    Ground,
     dense_coefficients,
     dense_output,
+    find_impact,
     next_step,
     stage_state,
     step_error,
 )
-from lithobrake.smallbody.impact_search import Ground, find_impact
-from lithobrake.smallbody.orbit import Motion, motion_over, own_motion
 from lithobrake.smallbody.polyhedron_gravity import ROWS
-from lithobrake.smallbody.simd import LANES
+from lithobrake.smallbody.simd import LANES, Floats, Integers
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
 # Of a flight: some 40 000 circuits near the surface at the default tolerance, years about a body of a kilometre.

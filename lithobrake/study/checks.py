@@ -7,19 +7,31 @@ import shlex
 import shutil
 from collections.abc import Iterator
 
-from lithobrake.study.aim_checks import aim_problems
-from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
-from lithobrake.study.body_checks import body_problems
-from lithobrake.study.boulder_checks import boulder_problems, boulder_width
-from lithobrake.study.contact_checks import contact_problems, size_problems
+from lithobrake.study.body_checks import body_problems, rotation_problems
+from lithobrake.study.delivery_checks import journey_problems
 from lithobrake.study.design_checks import design_problems
-from lithobrake.study.journey_checks import journey_problems
-from lithobrake.study.lander_checks import NAME, inertia_problems, mass_problems, part_problems, shape_problems
-from lithobrake.study.lander_solids import lander_radius, main_radius
-from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
+from lithobrake.study.ground_checks import (
+    TWO_IMAGES,
+    boulder_problems,
+    boulder_width,
+    contact_problems,
+    size_problems,
+    slope_problems,
+    soil_problems,
+    widths_in_grains,
+)
+from lithobrake.study.ground_sections import Bell, Between, Constant, PowerLaw
+from lithobrake.study.lander_checks import (
+    NAME,
+    inertia_problems,
+    lander_radius,
+    main_radius,
+    mass_problems,
+    part_problems,
+    shape_problems,
+)
 from lithobrake.study.quantity import reach
-from lithobrake.study.rotation_checks import rotation_problems
-from lithobrake.study.soil_checks import soil_problems
+from lithobrake.study.question_checks import aim_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -278,7 +290,7 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     if not is_program:
         yield "solver.templates and solver.answer are files of a program, and solver.command names none; leave them out"
         return
-    from lithobrake.campaign.decoders import DECODERS
+    from lithobrake.campaign.command import DECODERS
 
     for name in solver.templates:
         if not os.path.isfile(name):

@@ -1,13 +1,78 @@
-"""What is wrong with a delivery: keys that stand twice, correlations that cannot be, states without a frame."""
+"""What is wrong with a delivery and its journeys: keys that stand twice, correlations, states without a frame."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
-from lithobrake.study.covariance_checks import covariance_problems
-from lithobrake.study.journey_sections import ANY_HEADING, FLOWN, OWN_KEYS, PLACE_KEYS, SURFACE_KEYS, DeliverySection
+import numpy as np
+
+from lithobrake.study.delivery_sections import (
+    ANY_HEADING,
+    FLOWN,
+    OWN_KEYS,
+    PLACE_KEYS,
+    SIDE,
+    SURFACE_KEYS,
+    DeliverySection,
+    Matrix,
+    ReleaseSection,
+)
 from lithobrake.study.quantity import Uncertain
-from lithobrake.study.release_section import ReleaseSection
+from lithobrake.study.question_checks import sky_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import GaussianCopula
+
+# Of numbers that were written with ten digits.
+ROUNDING = 1e-9
+
+
+def covariance_problems(matrix: Matrix) -> Iterator[str]:
+    """What is wrong with a matrix of six rows, after its name; the first thing alone."""
+    pairs = [(row, column) for row in range(SIDE) for column in range(row)]
+    wrong = [text for row in range(SIDE) if (text := _variance(matrix, row))]
+    wrong = wrong or [text for row, column in pairs if (text := _pair(matrix, row, column))]
+    if wrong:
+        yield wrong[0]
+    elif (smallest := _smallest(matrix)) < -SIDE * ROUNDING:
+        yield (
+            f"has correlations whose matrix has the eigenvalue {smallest:.3g}; allowed: none below 0 (positive "
+            "semi-definite); weaken correlations that contradict each other, or write more digits"
+        )
+
+
+def _variance(matrix: Matrix, row: int) -> str | None:
+    variance = matrix[row][row]
+    if variance >= 0.0:
+        return None
+    return f"has {variance:g} as the variance in row {row + 1}; allowed: at least 0; mend it"
+
+
+def _pair(matrix: Matrix, row: int, column: int) -> str | None:
+    """What is wrong with two entries that mirror each other."""
+    one, other = matrix[row][column], matrix[column][row]
+    size = math.sqrt(matrix[row][row] * matrix[column][column])
+    where = f"row {row + 1}, column {column + 1}"
+    if abs(one - other) > ROUNDING * max(abs(one), abs(other)):
+        return (
+            f"has {one:g} in {where} and {other:g} in row {column + 1}, column {row + 1}; allowed: a symmetric matrix; "
+            "make the two equal"
+        )
+    if abs(one) > size * (1.0 + ROUNDING):
+        return f"has {one:g} in {where}; allowed: -{size:g} to {size:g}, by the two variances; lower it, or raise these"
+    return None
+
+
+def _smallest(matrix: Matrix) -> float:
+    """The smallest eigenvalue of its correlations; what has no variance is left out by being correlated with nothing"""
+    import numpy as np
+
+    variances = np.array([matrix[row][row] for row in range(SIDE)])
+    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    return float(np.linalg.eigvalsh(np.array(matrix) / np.outer(scale, scale))[0])
+
 
 AIM = ("latitude_deg", "longitude_deg")
 ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
@@ -62,8 +127,6 @@ def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[s
             return
         seen.add(frozenset((one, other)))
     if delivery.correlations:
-        from lithobrake.study.correlated_keys import copula_of, correlated_keys
-
         try:
             copula_of(study, correlated_keys(study))
         except ValueError as error:
@@ -163,3 +226,79 @@ def _release_problems(release: ReleaseSection) -> Iterator[str]:
     elif release.covariance is not None:
         for text in covariance_problems(release.covariance):
             yield f"delivery.release.covariance {text}"
+
+
+def correlated_keys(study: "Study") -> tuple[str, ...]:
+    """The keys of [delivery] that are correlated with another, those of the place before all others."""
+    pairs = () if study.delivery is None else study.delivery.correlations or ()
+    named = {key for one, other, _ in pairs for key in (one, other)}
+    return tuple(key for key in SURFACE_KEYS if key in named)
+
+
+def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
+    """The distribution of these keys together. Raises ValueError for correlations that contradict each other."""
+    from lithobrake.chaos import GaussianCopula
+
+    laws, matrix = {}, np.eye(len(keys))
+    for key in keys:
+        value = getattr(study.site if key in PLACE_KEYS else study.impact, key)
+        assert isinstance(value, Uncertain)
+        laws[key] = value.to_chaos()
+    assert study.delivery is not None
+    for one, other, correlation in study.delivery.correlations or ():
+        if one in keys and other in keys:
+            row, column = keys.index(one), keys.index(other)
+            matrix[row, column] = matrix[column, row] = correlation
+    return GaussianCopula(laws, matrix)
+
+
+def drawn_together(study: "Study", columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Columns by key, each [count], of which those that are correlated go together; all else stays as it is.
+
+    columns: independent draws. A key follows from those before it alone, so that the place of a lander is the same
+    whether the rest of its arrival is asked for or not.
+    """
+    keys = tuple(key for key in correlated_keys(study) if key in columns)
+    # One alone goes with nothing here.
+    if len(keys) < 2:
+        return dict(columns)
+    table = np.column_stack([columns[key] for key in keys])
+    return {**columns, **dict(zip(keys, copula_of(study, keys).dependent(table).T, strict=True))}
+
+
+def journey_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing that is wrong."""
+    yield from delivery_problems(study)
+    yield from sky_problems(study)
+    if study.journey is None:
+        if study.site.roughness_deg and not study.rest.count:
+            yield (
+                f"site.roughness_deg is {study.site.roughness_deg:g}, and no impact of the study reads it: there is no "
+                "[journey] and rest.count is 0; leave it out, or tilt the landings by surface.slope_deg"
+            )
+        return
+    design = study.design
+    if design.method != "drawn":
+        yield f'[journey] follows drawn landings, and design.method is "{design.method}"; leave one of the two out'
+    if study.journey.count is not None and study.journey.count != design.run_count:
+        yield (
+            f"journey.count is {study.journey.count} and design.run_count {design.run_count}; both are the number of "
+            "journeys: keep one"
+        )
+    if study.surface.gravity != "site":
+        yield (
+            f'surface.gravity is {show(study.surface.gravity)}; allowed with [journey]: "site", as every touchdown '
+            "takes the acceleration of where it is; leave it out"
+        )
+    if study.surface.model_fields_set & {"slope_deg", "slope_azimuth_deg"}:
+        yield "surface.slope_deg is given; with [journey] every touchdown has the slope of where it is; leave it out"
+    if study.has_soil and study.bed.sides != "periodic":
+        yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
+    of_emulator = {
+        "rest": study.rest.model_fields_set,
+        "limit_states": study.limit_states.conditions(),
+        "monte_carlo": study.monte_carlo.model_fields_set,
+    }
+    for name, given in of_emulator.items():
+        if given:
+            yield f"[{name}] asks the emulator of single landings, and [journey] has none; leave one of the two out"

@@ -1,18 +1,20 @@
-"""The table of the study file of the lander: its shape, its mass, what it is made of, and parts fixed to it."""
+"""The table of the study file of the lander: its shape, its mass, its sides, and parts fixed to it."""
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field
 
-from lithobrake.study.material_sections import (
-    Cohesion,
-    Friction,
-    PoissonRatio,
-    Restitution,
-    SurfaceEnergy,
-    YoungModulus,
-)
+from lithobrake.geometry.attitude import alike
+from lithobrake.study.ground_sections import Cohesion, Friction, PoissonRatio, Restitution, SurfaceEnergy, YoungModulus
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
+
+if TYPE_CHECKING:
+    from lithobrake.dem import Box, ConvexHull, Part, Sphere
+
+    Array = np.ndarray
 
 Along = Annotated[Scalar, MaybeUncertain("m")]
 
@@ -128,3 +130,109 @@ class LanderSection(Section):
     def is_plain_box(self) -> bool:
         """Whether it has the symmetry of a box: no parts, and the centre of mass amid it."""
         return self.edges is not None and not self.part and self.centre_of_mass is None and len(self.inertia or ()) < 6
+
+
+SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
+
+
+def sides_down(lander: "LanderSection", normal: "np.ndarray") -> "np.ndarray":
+    """Which side of the lander faces the ground most, [count]; "" for a ball. normal: seen from the lander [count, 3].
+
+    Of a box by the axis that stands most upright, "z", or by those whose edges are alike, "x or y"; of a mesh one of
+    "+x" to "-z", by its own axes.
+    """
+    import numpy as np
+
+    axis = np.abs(normal).argmax(axis=1)
+    if lander.edges is not None:
+        words = np.array([_alike(lander.edges, one) for one in range(3)])
+        found: np.ndarray = words[axis]
+        return found
+    if lander.shape == "sphere":
+        return np.full(len(normal), "")
+    upward = np.take_along_axis(normal, axis[:, None], axis=1)[:, 0] > 0.0
+    sides: np.ndarray = np.array(SIDES)[2 * axis + upward]
+    return sides
+
+
+def directions_of_sides(lander: "LanderSection") -> dict[str, list[list[float]]]:
+    """The sides of the lander, named as by `sides_down`, each with the directions of it that may face the ground."""
+    found: dict[str, list[list[float]]] = {}
+    for side in SIDES if lander.shape != "sphere" else ():
+        axis = "xyz".index(side[1])
+        name = side if lander.edges is None else _alike(lander.edges, axis)
+        down = [(1.0 if side[0] == "+" else -1.0) * (one == axis) for one in range(3)]
+        found.setdefault(name, []).append(down)
+    return found
+
+
+def side_words(lander: "LanderSection", side: str) -> str:
+    """A side in words: of a box with the lengths of its face [m]."""
+    if lander.edges is None:
+        return side
+    first, second = (length for axis, length in enumerate(lander.edges) if axis != "xyz".index(side[0]))
+    return f"{side}, {first:g} m x {second:g} m"
+
+
+def _alike(edges: tuple[float, float, float], axis: int) -> str:
+    """The axes of a box whose faces are like those of one."""
+    names = [name for name, edge in zip("xyz", edges, strict=True) if alike(edge, edges[axis])]
+    return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def main_shape(section: LanderSection, values: Mapping[str, float]) -> "Sphere | Box | ConvexHull":
+    """The shape of the lander without its parts; values: of the study by dotted key."""
+    from lithobrake.dem import Box, Sphere
+    from lithobrake.touchdown import read_hull
+
+    if section.edges is not None:
+        return Box(section.edges)
+    if section.file is not None:
+        return read_hull(Path(section.file), section.unit)
+    return Sphere(values["lander.diameter"] / 2)
+
+
+def part_shape(section: PartSection) -> "Sphere | ConvexHull":
+    """The shape of a part where it stands."""
+    from lithobrake.dem import Box, ConvexHull, Sphere, rotation_matrices
+    from lithobrake.touchdown import read_hull
+
+    if section.diameter is not None:
+        return Sphere(section.diameter / 2, section.centre)
+    own = Box(section.edges) if section.edges is not None else read_hull(Path(str(section.file)), section.unit)
+    turn = np.array(section.orientation)
+    rotation = rotation_matrices((turn / np.linalg.norm(turn))[None])[0]
+    return ConvexHull(own.vertices @ rotation.T + np.array(section.centre))
+
+
+def lander_parts(
+    section: LanderSection, values: Mapping[str, float], properties: Mapping[str, float]
+) -> "tuple[Part, ...]":
+    """The parts of the lander; properties: of its own material, which a part has unless others are given."""
+    from lithobrake.dem import Material, Part
+
+    parts = []
+    for name, part in section.part.items():
+        shape = part_shape(part)
+        density = part.density if part.mass is None else part.mass / shape.volume
+        own: dict[str, Any] = {key: values.get(f"lander.part.{name}.{key}", value) for key, value in properties.items()}
+        parts.append(Part(shape, Material(density=float(density or 0.0), **own)))
+    return tuple(parts)
+
+
+def given_centre(section: LanderSection, values: Mapping[str, float]) -> "Array | None":
+    """The centre of mass [m], [3], where the study gives it."""
+    if section.centre_of_mass is None:
+        return None
+    return np.array([values[f"lander.centre_of_mass.{axis}"] for axis in "xyz"])
+
+
+def given_inertia(section: LanderSection) -> "Array | None":
+    """The inertia [kg m2], [3, 3], where the study gives it."""
+    if section.inertia is None:
+        return None
+    tensor = np.diag(section.inertia[:3])
+    if len(section.inertia) == 6:
+        for (i, j), element in zip(((0, 1), (0, 2), (1, 2)), section.inertia[3:], strict=True):
+            tensor[i, j] = tensor[j, i] = element
+    return tensor

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, PrivateAttr, model_validator
 
-from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, BedSection, default_bed_count
+from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.design_sections import (
     DEFAULT_METHOD,
     CampaignSection,
@@ -17,22 +17,28 @@ from lithobrake.study.design_sections import (
     SolverSection,
     method_name,
 )
-from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
+from lithobrake.study.ground_sections import (
+    JOURNEYS_A_BED,
+    LANDINGS_A_BED,
+    BedSection,
+    GrainSection,
+    SoilSection,
+    default_bed_count,
+)
 from lithobrake.study.impact_sections import (
     ContactSection,
+    FlightSection,
     ImpactSection,
     LandingSection,
     PlaceSection,
+    RestSection,
+    SiteSection,
     SurfaceSection,
+    kernel_values,
 )
-from lithobrake.study.journey_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.lander_section import CentreSection, LanderSection
-from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
-from lithobrake.study.question_sections import AimSection, LimitStatesSection
-from lithobrake.study.site_kernels import kernel_values
-from lithobrake.study.sky_section import SkySection
-from lithobrake.study.soil_section import SoilSection
+from lithobrake.study.question_sections import AimSection, LimitStatesSection, SkySection
 
 
 class Study(Section):

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake import __version__
-from lithobrake.files.hashing import source_hash
+from lithobrake.files.reading import source_hash
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
-from lithobrake.study.bed_section import Constant, PowerLaw
-from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
+from lithobrake.study.ground_sections import Constant, PowerLaw
+from lithobrake.study.lander_section import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.study.bed_section import Bell, Between
+    from lithobrake.study.ground_sections import Bell, Between
     from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
@@ -111,12 +111,12 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
-    "geometry/boulder_limits.py",
-    "geometry/longest_grain.py",
+    "geometry/grain_limits.py",
+    "geometry/grain_limits.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
-    "geometry/mesh_units.py",
-    "study/lander_shapes.py",
+    "geometry/mesh_files.py",
+    "study/lander_section.py",
     "study/touchdown_model.py",
 )
 

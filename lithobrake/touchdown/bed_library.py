@@ -15,7 +15,7 @@ from pathlib import Path
 
 from lithobrake.compilation.disk_cache import DiskCache
 from lithobrake.files.atomic import atomic_path
-from lithobrake.files.hashing import json_hash, source_hash
+from lithobrake.files.reading import json_hash, source_hash
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.pouring import BedRecipe
 

@@ -7,12 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
-from lithobrake.geometry.longest_grain import longest_reach
+from lithobrake.geometry.grain_limits import longest_reach
 from lithobrake.touchdown import settling
-from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world
-from lithobrake.touchdown.boulders import Boulders, place_boulders
-from lithobrake.touchdown.grains import GrainSizes, make_grain_within, random_orientation
-from lithobrake.touchdown.surface import height_map
+from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world, height_map
+from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation
 
 Progress = Callable[[float, str], None]
 Vector = tuple[float, float, float]

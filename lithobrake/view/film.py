@@ -80,9 +80,9 @@ def map_picture(track: "JourneyTrack", shown: int | None = None) -> np.ndarray:
     """The map up to a touchdown, or the whole of it, with what is said of it, as large as a picture of the film."""
     from PIL import Image
 
-    from lithobrake.report.figures.journey_sheet import caption, picture
+    from lithobrake.report.figures.landing_figure import caption, picture
+    from lithobrake.report.figures.map_frames import track_map
     from lithobrake.report.figures.style import figure_style
-    from lithobrake.report.figures.track_map import track_map
 
     words = track.end_words if shown is None else track.touchdowns[shown].words
     with figure_style():

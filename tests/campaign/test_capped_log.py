@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.campaign import Command
-from lithobrake.campaign.capped_log import KEPT, CappedLog, last_words
-from lithobrake.campaign.single_run import run_model
+from lithobrake.campaign.single_run import KEPT, CappedLog, last_words, run_model
 
 
 @pytest.mark.parametrize("piece", [1000, 65_536, 5_000_000])

@@ -19,7 +19,7 @@ from lithobrake.campaign import (
     LocalExecutor,
     RunOptions,
     Runs,
-    local_executor,
+    executors,
     missing,
     read_records,
     run,
@@ -249,7 +249,7 @@ class KilledFirst(Worker):
 def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(local_executor, "Worker", KilledFirst)
+    monkeypatch.setattr(executors, "Worker", KilledFirst)
     monkeypatch.setattr(KilledFirst, "started", [])
     runs = campaign(tmp_path, models.parabola, workers=1)
     assert len(KilledFirst.started) == 2

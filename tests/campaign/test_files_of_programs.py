@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Command
-from lithobrake.campaign.command import fill_template
-from lithobrake.campaign.decoders import read_answer
+from lithobrake.campaign.command import fill_template, read_answer
 
 ANSWER = {"outcome": "clear", "outputs": {"velocity_out_x": 0.05, "spin_out": 1.25e-3}}
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.campaign.main_module import MainModuleError, refuse_unreachable
+from lithobrake.campaign.worker import MainModuleError, refuse_unreachable
 
 # The model stands in a file of its own; what the script prints would come twice if a process imported it.
 SCRIPT = """

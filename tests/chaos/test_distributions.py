@@ -20,7 +20,7 @@ from lithobrake.chaos import (
     distribution,
 )
 from lithobrake.chaos.basis import outside_count
-from lithobrake.chaos.distribution_registry import KINDS
+from lithobrake.chaos.numerical_distributions import KINDS
 from lithobrake.study.quantity import DISTRIBUTIONS
 
 PAIRS = [

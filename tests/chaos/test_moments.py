@@ -21,7 +21,7 @@ from lithobrake.chaos import (
     sobol_sequence,
 )
 from lithobrake.chaos.moments import _by_grid as moments_by_grid
-from lithobrake.chaos.polynomial_products import central_moments
+from lithobrake.chaos.moments import central_moments
 
 
 def test_sum_of_independent_inputs_adds_cumulants():

@@ -6,7 +6,7 @@ import sys
 
 from threadpoolctl import threadpool_info
 
-from lithobrake.chaos.threads import one_thread
+from lithobrake.chaos.training import one_thread
 
 SCRIPT = """
 import hashlib, sys

@@ -13,9 +13,7 @@ from typer.testing import CliRunner
 from lithobrake import __version__
 from lithobrake.cli import app
 from lithobrake.cli.arguments import EXPERT, EXPORT, LOOK, RUN, START
-from lithobrake.study.known_bodies import known_body
-from lithobrake.study.known_landers import known_lander
-from lithobrake.study.short_study import all_keys, short_study
+from lithobrake.study.short_study import all_keys, known_body, known_lander, short_study
 from lithobrake.study.template import template
 
 RUNNER = CliRunner()

@@ -64,7 +64,7 @@ def test_what_is_no_terminal_gets_no_escape_sequence(code: str) -> None:
 @pytest.mark.parametrize(
     "code",
     [
-        "from lithobrake.cli.terminal import tell; tell(['  a study of ' + 'words ' * 30])",
+        "from lithobrake.cli.arguments import tell; tell(['  a study of ' + 'words ' * 30])",
         "from lithobrake.cli import app; app(['status', 'a study of ' + 'words ' * 30])",
     ],
 )

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lithobrake.compilation.cache_key import PLACE, user_key
-from lithobrake.compilation.disk_cache import DiskCache
+from lithobrake.compilation.disk_cache import PLACE, DiskCache, user_key
 
 NAME = hashlib.sha256(b"a kernel").hexdigest()
 
@@ -93,7 +92,7 @@ def test_the_key_is_made_once_and_for_this_user_alone(home):
 
 
 def test_processes_that_start_together_have_one_key(home):
-    words = [sys.executable, "-c", "from lithobrake.compilation.cache_key import user_key; print(user_key().hex())"]
+    words = [sys.executable, "-c", "from lithobrake.compilation.disk_cache import user_key; print(user_key().hex())"]
     processes = [subprocess.Popen(words, env=os.environ, stdout=subprocess.PIPE, text=True) for _ in range(3)]
     assert {process.communicate()[0].strip() for process in processes} == {user_key().hex()}
 

@@ -124,7 +124,7 @@ def test_this_numba_is_known_and_kernels_use_the_lighter_compilation():
 
 
 def test_a_function_that_numba_compiles_in_its_own_way_can_call_a_kernel_with_kernels_below_it():
-    from lithobrake.dem.narrow_phase.simplex import triangle_weights
+    from lithobrake.dem.narrow_phase.gjk import triangle_weights
 
     @numba.njit
     def nearest(a, b, c):

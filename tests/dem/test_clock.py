@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from lithobrake.dem.stepping.time_step import Clock
+from lithobrake.dem.stepping.time_step_stability import Clock
 
 
 def test_a_chosen_step_is_made_to_fit_the_duration_and_holds() -> None:

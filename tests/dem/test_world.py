@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
-from lithobrake.dem.law.material_pair import PAIR_RULES, pair_law
+from lithobrake.dem.law.restitution import PAIR_RULES, pair_law
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 

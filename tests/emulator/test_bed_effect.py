@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lithobrake.emulator.bed_effect import BedEffect
-from lithobrake.emulator.residual_rows import smoothing
+from lithobrake.emulator.density import BedEffect
+from lithobrake.emulator.law import smoothing
 
 SHARES = np.array([0.3, 0.0])
 

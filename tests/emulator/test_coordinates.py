@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lithobrake.emulator.coordinates import from_coordinate, to_coordinate, with_slope
+from lithobrake.emulator.training import from_coordinate, to_coordinate, with_slope
 
 LOWER = np.array([0.0, -1.0, -np.inf, -np.inf])
 UPPER = np.array([0.4, np.inf, 2.0, np.inf])

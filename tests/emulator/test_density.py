@@ -6,7 +6,7 @@ import pytest
 from lithobrake import emulator
 from lithobrake.chaos import Uniform, sobol_sequence
 from lithobrake.emulator import Emulator
-from lithobrake.emulator.residual_rows import SMOOTHING_FACTOR
+from lithobrake.emulator.law import SMOOTHING_FACTOR
 
 INPUTS = {"friction": Uniform(0.0, 1.0), "speed": Uniform(0.0, 1.0)}
 SOIL = [[0.7, 0.4]]
@@ -40,7 +40,7 @@ def test_the_density_of_an_output_integrates_to_the_chance_of_having_outputs(mod
 
 
 def test_draws_fall_where_a_density_with_their_kernels_says(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lithobrake.emulator.observed_density.DENSITY_FACTOR", SMOOTHING_FACTOR)
+    monkeypatch.setattr("lithobrake.emulator.density.DENSITY_FACTOR", SMOOTHING_FACTOR)
     drawn = model.sample(SOIL, 40_000, seed=3)[0]
     clear = np.isfinite(drawn[:, 0]).mean()
     steps = np.linspace(0.1, 0.95, 8)

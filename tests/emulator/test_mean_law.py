@@ -5,7 +5,7 @@ import pytest
 
 from lithobrake import emulator
 from lithobrake.chaos import Normal, Uniform, sobol_sequence
-from lithobrake.emulator.significance import found_inputs
+from lithobrake.emulator.mean_law import found_inputs
 
 INPUTS = {"a": Uniform(0.0, 2.0), "b": Normal(0.0, 1.0), "c": Uniform(-1.0, 1.0)}
 

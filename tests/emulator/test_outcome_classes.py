@@ -5,8 +5,8 @@ import pytest
 from scipy import special
 
 from lithobrake.chaos import Uniform, sobol_sequence
-from lithobrake.emulator.outcome_classes import INVERSE_PENALTIES, OutcomeClasses, best_class_choice, fit_classes
-from lithobrake.emulator.terms import candidate_terms
+from lithobrake.emulator.law import INVERSE_PENALTIES, OutcomeClasses, best_class_choice, fit_classes
+from lithobrake.emulator.mean_law import candidate_terms
 
 COUNT = 300
 

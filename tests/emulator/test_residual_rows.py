@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import stats
 
-from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.emulator.law import drawn_rows, row_weights, smoothed, smoothing
 
 
 def test_near_rows_are_drawn_more_often() -> None:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, sobol_sequence
+from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, terms_up_to
 from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
-from lithobrake.emulator.terms import MOST_TERMS, candidate_terms, terms_up_to
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0), "c": Uniform(0.0, 1.0)}
 TERMS = terms_up_to(INPUTS, 2)

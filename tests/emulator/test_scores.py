@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lithobrake.emulator.scores import crps, energy_scores, pit
+from lithobrake.emulator.validation import crps, energy_scores, pit
 
 RANDOM = np.random.default_rng(4)
 MEMBERS, WEIGHTS = RANDOM.standard_normal((40, 3)), RANDOM.dirichlet(np.ones(40), size=5)

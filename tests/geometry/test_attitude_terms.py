@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.attitude_terms import AttitudeTerms, orthonormal, seen_from_lander
+from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, seen_from_lander
 
 PRISM, BOX, CUBE = (AttitudeTerms.of_box(np.array(edges)) for edges in ([0.1, 0.1, 0.2], [0.3, 0.2, 0.1], [0.1] * 3))
 MESH = AttitudeTerms.of_body(np.array([[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]]))

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import summary_dependencies
-from lithobrake.pipeline.fly.flights import flight_dependencies
+from lithobrake.pipeline.answer.dispersion_statistics import site_results
+from lithobrake.pipeline.answer.study_summary import summary_dependencies
+from lithobrake.pipeline.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape

@@ -13,8 +13,7 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import ModelServer
-from lithobrake.pipeline.commands.serving import FLIGHT, ServedStudy, served_models
-from lithobrake.pipeline.commands.serving_process import EvaluationProcess
+from lithobrake.pipeline.commands.serving import FLIGHT, EvaluationProcess, ServedStudy, served_models
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ServedModel, model_server
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -195,8 +194,8 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
 
 
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
-    from lithobrake.pipeline.design.drawn_design import DrawnDesign
-    from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, model_of
+    from lithobrake.pipeline.design.design import DrawnDesign
+    from lithobrake.pipeline.runs.landings import drawn_rows, model_of
     from lithobrake.study import StudySource
 
     own = StudySource.read(BALL).study

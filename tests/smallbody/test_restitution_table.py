@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import Impacts, RestitutionTable
-from lithobrake.smallbody.restitution_table import LEVELS, cells
+from lithobrake.smallbody.bounce import LEVELS, cells
 
 
 def even(lower: float, upper: float) -> np.ndarray:

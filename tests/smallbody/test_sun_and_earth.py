@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import HeliocentricOrbit, latitudes_over
-from lithobrake.smallbody.sun_and_earth import earth_place
-from lithobrake.study.sky_section import OrbitSection
+from lithobrake.smallbody.sky import earth_place
+from lithobrake.study.question_sections import OrbitSection
 
 pytest.importorskip("spiceypy")
 pytest.importorskip("erfa")

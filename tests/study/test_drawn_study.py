@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
+from lithobrake.study.ground_sections import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
 
 TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}

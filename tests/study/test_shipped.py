@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.study import StudyError, StudySource, read_study
-from lithobrake.study.shipped import BESIDE, shipped, shipped_by_name, study_path
+from lithobrake.study.reader import BESIDE, shipped, shipped_by_name, study_path
 
 ROOT = Path(__file__).parents[2]
 

@@ -3,9 +3,9 @@
 import tomllib
 from pathlib import Path
 
-from lithobrake.pipeline.fly import flights
-from lithobrake.pipeline.rest import aiming
-from lithobrake.pipeline.rest import journeys as rest
+from lithobrake.pipeline import flights
+from lithobrake.pipeline.first_bounces import aiming
+from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import check_tables
 from lithobrake.study.template import template

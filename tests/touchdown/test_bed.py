@@ -7,8 +7,8 @@ import pytest
 
 from lithobrake.dem import Material, Sphere, StepTooLargeError, World
 from lithobrake.touchdown import Bed, GrainSizes, pour_bed, pouring, settling
+from lithobrake.touchdown.bed import height_map
 from lithobrake.touchdown.grains import make_grain
-from lithobrake.touchdown.surface import height_map
 
 
 def test_sizes_follow_their_distribution():

@@ -8,18 +8,11 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull
-from lithobrake.geometry.boulder_limits import BOULDER_REACH
+from lithobrake.geometry.grain_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, Boulders, GrainSizes, pour_bed, settling
-from lithobrake.touchdown.boulders import (
-    SOLID_FRACTION,
-    cut_below,
-    free_places,
-    lowered,
-    place_boulders,
-    surface_among,
-)
+from lithobrake.touchdown.bed import heights_at
+from lithobrake.touchdown.grains import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among
 from lithobrake.touchdown.pouring import rain
-from lithobrake.touchdown.surface import heights_at
 
 WIDTH = (0.8, 0.8)
 SIZES = GrainSizes(distribution="power_law", lower=0.15, upper=0.4, exponent=3.65)

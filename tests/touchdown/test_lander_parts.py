@@ -8,7 +8,7 @@ import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Part, Sphere, rotation_matrices
 from lithobrake.touchdown import ContactModel, Lander, Landing, land
-from lithobrake.touchdown.outcome import picture
+from lithobrake.touchdown.landing import picture
 from lithobrake.touchdown.simulation import release
 
 SKIN = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.6, friction=0.4, density=1000.0)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull, simulation
-from lithobrake.touchdown.outcome import outgoing
+from lithobrake.touchdown.landing import outgoing
 from lithobrake.touchdown.simulation import CALM_SPEED, released_speed
 
 BOUNCY = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.9, friction=0.3, density=2500.0)

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, World, folded, period_of
-from lithobrake.geometry.longest_grain import longest_reach
+from lithobrake.geometry.grain_limits import longest_reach
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
-from lithobrake.touchdown.bed import boxed_world
+from lithobrake.touchdown.bed import boxed_world, height_map
 from lithobrake.touchdown.grains import make_grain, make_grain_within
 from lithobrake.touchdown.pouring import rain
-from lithobrake.touchdown.surface import height_map
 
 WIDTH = (0.52, 0.56)
 ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)

@@ -8,7 +8,7 @@ import pytest
 
 from lithobrake.dem import BodyMotion, Box, Material
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed
-from lithobrake.touchdown.rest_watch import REST_WAY, RestWatch, rest_time
+from lithobrake.touchdown.outcome_judge import REST_WAY, RestWatch, rest_time
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, TO_REST
 
 ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)

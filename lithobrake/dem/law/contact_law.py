@@ -8,12 +8,11 @@ Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949].
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Reactions, Step
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
+from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, way_between
 from lithobrake.dem.law.contact_motion import relative_motion
 from lithobrake.dem.law.coulomb_friction import friction_force, resist_twisting
 from lithobrake.dem.law.hertz_spring import ContactSprings, contact_springs, normal_force
-from lithobrake.dem.law.material_pair import law_between
+from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.law.rolling_resistance import resist_rolling
 from lithobrake.dem.law.tangential_spring import stored
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact

@@ -3,10 +3,8 @@
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs
-from lithobrake.dem.bodies.parts import curvature_of
-from lithobrake.dem.bodies.period import arm_to
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled, times
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs, curvature_of
+from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, row, scaled, times
 
 
 @kernel

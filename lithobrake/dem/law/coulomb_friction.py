@@ -11,7 +11,7 @@ from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, Bodies, Pairs
 from lithobrake.dem.bodies.vectors import Vector, dot, plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_along
 from lithobrake.dem.law.hertz_spring import ContactSprings
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, stored, turned_spring, unloaded
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import spin_radii

@@ -9,10 +9,9 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
-from lithobrake.dem.bodies.period import arm_to
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled
+from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, row, scaled
 from lithobrake.dem.law.contact_motion import RelativeMotion, point_velocity
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_EDGES
 from lithobrake.dem.narrow_phase.scratch import Patch

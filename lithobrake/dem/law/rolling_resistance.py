@@ -5,7 +5,7 @@ from lithobrake.dem.bodies.arrays import ROLLING, Bodies, Pairs
 from lithobrake.dem.bodies.vectors import Vector, plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_across
 from lithobrake.dem.law.hertz_spring import ContactSprings
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, turned_spring
 
 # Stiffness of rolling over that of the normal contact times the lever squared.

@@ -9,11 +9,9 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times
-from lithobrake.dem.local_stepping.agenda import Agenda, put_on
-from lithobrake.dem.local_stepping.contact_plans import Plans, replan, touches
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, surface_speed
+from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times, way_between
+from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, surface_speed
 
 # A body is held when it is slower than this part of the speed at which it would be let go again.
 CALM = 0.5

@@ -6,17 +6,15 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
-from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda
+from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
-from lithobrake.dem.local_stepping.contact_plans import Plans, Schedule
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_all_to
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.neighbours import free_slots, new_pairs, with_overflow_for_all, with_overflow_where_used
-from lithobrake.dem.stepping.threads import new_reactions
-from lithobrake.dem.stepping.watch import new_record
+from lithobrake.dem.stepping.time_loop import new_reactions, new_record
 
 # Slots for pairs at the start, for each body.
 SLOTS = 8

@@ -9,13 +9,9 @@ Source: [Lew-2003], asynchronous variational integrators.
 """
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
-from lithobrake.dem.bodies.parts import contact_radii
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
-from lithobrake.dem.local_stepping.agenda import put_on
-from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
-from lithobrake.dem.local_stepping.contact_plans import (
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step, contact_radii
+from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.local_stepping.agenda import (
     LONGER,
     SHORTER,
     Plans,
@@ -25,16 +21,24 @@ from lithobrake.dem.local_stepping.contact_plans import (
     has_changed,
     plan_apart,
     plan_approach,
+    put_on,
     replan,
 )
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.local_stepping.free_motion import (
+    Approach,
+    Flight,
+    Rules,
+    approach_of,
+    closing_speed,
+    fly_to,
+    spin_of,
+)
 from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
-from lithobrake.dem.stepping.force_sums import add_wrench, contact_force
-from lithobrake.dem.stepping.stability import pair_step
-from lithobrake.dem.stepping.watch import record_touch
+from lithobrake.dem.stepping.time_loop import add_wrench, contact_force, record_touch
+from lithobrake.dem.stepping.time_step_stability import pair_step
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3

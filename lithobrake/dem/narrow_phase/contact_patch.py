@@ -7,32 +7,39 @@ Cores that penetrate go on so: the distance of a corner changes its sign, and pa
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.bodies.parts import both_roundings, both_shapes, first_shape
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
-from lithobrake.dem.narrow_phase.deep_edges import add_deep_edges
-from lithobrake.dem.narrow_phase.feature_distance import (
-    edge_of,
-    edge_to_edge,
-    point_to_core,
-    stands_above,
-    write_relative,
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
+from lithobrake.dem.bodies.vectors import (
+    Vector,
+    dot,
+    minus,
+    plus,
+    put,
+    row,
+    scaled,
+    times,
+    transposed_times,
+    way_between,
 )
-from lithobrake.dem.narrow_phase.feature_id import (
+from lithobrake.dem.narrow_phase.feature_distance import (
     ALL_FEATURES,
     CORNER_OF_FIRST,
     CORNER_OF_SECOND,
     SPHERES,
+    edge_of,
+    edge_to_edge,
     encode_feature,
     feature_indices,
     feature_kind,
     listed_feature,
+    point_to_core,
+    stands_above,
+    write_relative,
 )
 from lithobrake.dem.narrow_phase.patch_energy import (
     CORNER,
     DEEP_FROM,
     EDGES_APART,
+    add_deep_edges,
     add_point,
     combine_overlaps,
     deepening,

@@ -9,11 +9,10 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Period, Planes
-from lithobrake.dem.bodies.period import folded, nearest, way_between
-from lithobrake.dem.bodies.vectors import Vector, dot, minus, row
-from lithobrake.dem.narrow_phase.closest_points import find_closest_points
-from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
+from lithobrake.dem.bodies.vectors import Vector, dot, folded, minus, nearest, row, way_between
+from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.gjk import APART
+from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch
 
 

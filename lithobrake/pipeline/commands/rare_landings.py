@@ -13,20 +13,19 @@ import numpy as np
 from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
-from lithobrake.analysis.limit_state_evaluation import limit_state_margin, limit_state_met
+from lithobrake.analysis.limit_states import limit_state_margin, limit_state_met
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.answer.failing_runs import OF_TOUCHDOWN, values_of_runs
-from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
-from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.limit_state import LimitState

@@ -8,13 +8,17 @@ from typing import Any
 
 from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.files.atomic import lock_holder
-from lithobrake.pipeline.commands.journeys_status import JourneysStatus, journeys_status, touchdown_keys
-from lithobrake.pipeline.commands.running_estimates import RunningEstimates, running_estimates
-from lithobrake.pipeline.folder.notes import NAME, Notes
-from lithobrake.pipeline.folder.state import STUDY_FILE, FolderState, StageState, grouped, read_state
-from lithobrake.pipeline.folder.study_folder import LOCK, FileState, StudyFolder
+from lithobrake.pipeline.commands.running_estimates import (
+    JourneysStatus,
+    RunningEstimates,
+    journeys_status,
+    running_estimates,
+    touchdown_keys,
+)
+from lithobrake.pipeline.folder_state import STUDY_FILE, FolderState, StageState, grouped, read_state
+from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, StudyFolder
 from lithobrake.results import open_study
-from lithobrake.results.journey_tables import JOURNEYS
+from lithobrake.results.study_files import JOURNEYS
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 
@@ -214,7 +218,7 @@ def _flown(path: Path, state: FolderState) -> dict[str, float]:
     """Which share of its flights each drawn run returns in, by key; none before they have flown."""
     if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
         return {}
-    from lithobrake.pipeline.answer.answer_of_run import read_shares
+    from lithobrake.pipeline.answer.run_answers import read_shares
 
     return read_shares(StudyFolder.only_read(path))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake import __version__
 from lithobrake.campaign import Command, run_key
-from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.files.reading import content_hash, hashed_seed
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version

@@ -7,36 +7,37 @@ from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.design.descent_words import descents_in_words
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.descents import descents_in_words
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder.owner import refuse_others_folder
-from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.inference.expected_inference import ExpectedInference
-from lithobrake.pipeline.inference.inferred_study import InferredStudy
+from lithobrake.pipeline.folder_state import refuse_others_folder
+from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
-from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
-from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
-from lithobrake.pipeline.planning.expected_width import expected_width
-from lithobrake.pipeline.planning.plan import Plan
-from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
-from lithobrake.pipeline.planning.planned_beds import (
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
+from lithobrake.pipeline.planning.expected_time import (
+    basis,
+    expected_bytes,
+    expected_seconds,
+    flight_count,
+    journey_count,
+)
+from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
+from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
+from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
     planned_beds,
     planned_boulders,
     planned_grains,
+    planned_ground,
+    planned_soils,
     planned_tile,
 )
-from lithobrake.pipeline.planning.planned_ground import planned_ground
-from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
-from lithobrake.pipeline.planning.planned_soils import planned_soils
-from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.runs.touchdown_runs import known_runs
+from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_of
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.place_region import smallest_width
+from lithobrake.pipeline.design.arrivals import smallest_width
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
-from lithobrake.study.bed_section import FEWEST_BEDS
+from lithobrake.study.ground_sections import FEWEST_BEDS
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 

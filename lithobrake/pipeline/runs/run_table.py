@@ -13,7 +13,7 @@ import numpy as np
 from lithobrake.campaign import Runs
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
+from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study.units import run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lithobrake.campaign import Command, ModelServer
-from lithobrake.campaign.main_module import pickled
+from lithobrake.campaign.worker import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 

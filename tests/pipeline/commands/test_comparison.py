@@ -12,8 +12,8 @@ import lithobrake
 from lithobrake.cli import app
 from lithobrake.pipeline import compare_studies
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
-from lithobrake.results.comparison import StudyComparison
 from lithobrake.results.json_values import from_json
+from lithobrake.results.questions import StudyComparison
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.pipeline import land_one, landing_inputs
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import read_study
 from lithobrake.study.touchdown_model import lander, landing

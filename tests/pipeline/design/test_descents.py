@@ -11,16 +11,15 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ndtri
 
 from lithobrake.files.ephemeris_message import message_states
-from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
-from lithobrake.pipeline.design.descents import Descents
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.release_draws import spread, spread_root
+from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, turned
+from lithobrake.pipeline.design.descents import Descents, spread, spread_root
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
 from lithobrake.study import StudyError
-from lithobrake.study.flight_sections import SiteSection
-from lithobrake.study.release_section import ReleaseSection
+from lithobrake.study.delivery_sections import ReleaseSection
+from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.source import StudySource
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus

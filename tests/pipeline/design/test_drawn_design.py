@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.design.arrivals import place_region, smallest_width
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
-from lithobrake.pipeline.design.place_region import place_region, smallest_width
+from lithobrake.pipeline.design.design import DrawnDesign, beds_of_runs
 from lithobrake.study import Study, check_tables
-from lithobrake.study.bed_section import LANDINGS_A_BED, default_bed_count
+from lithobrake.study.ground_sections import LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import PLACE, draw, medians
 from lithobrake.vocabulary.quantities import ORIENTATION

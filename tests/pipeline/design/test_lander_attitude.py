@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.study import Study, check_tables
-from lithobrake.study.lander_sides import directions_of_sides, side_words, sides_down
+from lithobrake.study.lander_section import directions_of_sides, side_words, sides_down
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ..journeys.soil_journeys import STUDY

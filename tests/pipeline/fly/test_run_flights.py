@@ -7,11 +7,11 @@ import pytest
 
 from lithobrake.analysis import share_estimate
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.outgoing import VELOCITY
-from lithobrake.pipeline.fly.flights import Starts, fly_starts
-from lithobrake.pipeline.fly.run_sites import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.flights import Starts, fly_starts
 from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.run_flights import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.study import Study, check_tables
 

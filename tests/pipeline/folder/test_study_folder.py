@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.study_folder import StudyFolder
 
 
 def test_a_file_that_is_named_as_a_probe_would_be_stays(tmp_path):

@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 
 import lithobrake
 from lithobrake.cli import app
-from lithobrake.pipeline.inference.bounce_table import read_bounces
-from lithobrake.pipeline.inference.inferred_study import InferredStudy, infer_study
+from lithobrake.pipeline.inferred_study import InferredStudy, infer_study, read_bounces
 
 from ...synthetic_landings import STRONG
 from ..synthetic_lander import SOIL, SyntheticLander, synthetic_tables

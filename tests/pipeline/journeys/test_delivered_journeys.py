@@ -10,13 +10,13 @@ from scipy import stats
 
 import lithobrake
 from lithobrake.pipeline.commands.status import study_status
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning.expected_width import law_before
-from lithobrake.pipeline.planning.plan_in_words import plan_lines
+from lithobrake.pipeline.planning.plan import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import fly
 from lithobrake.study.source import StudySource

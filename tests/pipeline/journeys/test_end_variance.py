@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables
 

@@ -16,8 +16,7 @@ from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.words import journey_captions as words
 from lithobrake.results import StudyResults
 from lithobrake.results.journey_results import EndShare
-from lithobrake.vocabulary.fate_colours import END_COLOURS
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
 from ...report.browser import browser_page, needs_browser

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.study import read_study
 from lithobrake.vocabulary.outcomes import JourneyEnd

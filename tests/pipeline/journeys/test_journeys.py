@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.campaign import read_records
-from lithobrake.geometry.contact_frame import attitude_of, from_frame, quaternion
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.journeys.resting_attitude import side_down
+from lithobrake.geometry.frames import attitude_of, from_frame, quaternion
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, Launch, hop
 from lithobrake.study.source import StudySource

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.design.felt_acceleration import felt
-from lithobrake.pipeline.design.local_ground import STEEPEST_DEG, ground_inputs
+from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, ground_inputs
+from lithobrake.pipeline.design.soils import felt
 from lithobrake.smallbody import Body, Partner, Shape, didymos, dimorphos, fly
 from lithobrake.study.touchdown_model import acceleration
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import lithobrake
-from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_axes
-from lithobrake.pipeline.rest.journeys import hard_surface, on_rough
+from lithobrake.geometry.frames import about_z, attitude_of, from_frame
+from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.bounces_to_rest import hard_surface, on_rough
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import RoughGround, fly
 from lithobrake.study import Study, StudyError

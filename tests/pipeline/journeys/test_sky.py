@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.site import Site
-from lithobrake.pipeline.sky.seen_from_rest import rows_of, sky_dependencies
-from lithobrake.pipeline.sky.where_they_stand import Days, where_it_stands
+from lithobrake.pipeline.sky import Days, rows_of, sky_dependencies, where_it_stands
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
-from lithobrake.study.lander_sides import SIDES
+from lithobrake.study.lander_section import SIDES
 from lithobrake.vocabulary.quantities import SKY
 
 from ...paper_tables import paper_tables

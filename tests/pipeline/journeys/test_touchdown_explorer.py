@@ -8,10 +8,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from lithobrake.emulator import law_tables
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulated.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.journeys.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.report import write_report
 from lithobrake.results import ExplorerTables, StudyResults
 from lithobrake.study import check_tables
@@ -31,7 +31,7 @@ PHONE = 390
 @pytest.fixture
 def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
     # A function has no beds.
-    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    monkeypatch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
     return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
 
 

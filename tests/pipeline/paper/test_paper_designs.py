@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.paper.paper_designs import points
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.paper.expansions import points
 from lithobrake.results import open_study
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.quantities import OUTPUTS

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.pipeline import InferredStudy, plan_lines, plan_study
-from lithobrake.pipeline.inference.expected_inference import ExpectedInference
+from lithobrake.pipeline.inferred_study import ExpectedInference
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import StudySource
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lithobrake
-from lithobrake.pipeline.rest.hard_equivalents import implied
+from lithobrake.pipeline.first_bounces.bounce_laws import implied
 from lithobrake.smallbody import HardSurface, Impacts
 
 from ..synthetic_lander import SyntheticLander, synthetic_tables

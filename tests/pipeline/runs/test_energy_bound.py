@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import energy_bound, energy_warning
 from lithobrake.study import Study, check_tables
 from lithobrake.study.touchdown_model import medians

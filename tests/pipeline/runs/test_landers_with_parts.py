@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import StudyFolder, run_study
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms
 from lithobrake.pipeline.runs.energy_bound import gyrations
 from lithobrake.pipeline.runs.run_table import DesignRuns
