@@ -23,8 +23,7 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE as EMULATOR
-from lithobrake.pipeline.first_bounces.emulator import SPEED, SPIN
+from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
@@ -141,15 +140,15 @@ class InferredStudy:
         from lithobrake.emulator import load
 
         folder = StudyFolder.only_read(path)
-        if not (folder / EMULATOR).is_file():
-            raise ValueError(f"{path} has no {EMULATOR}; run a drawn study there first (design.method = drawn)")
+        if not (folder / EMULATOR_FILE).is_file():
+            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a drawn study there first (design.method = drawn)")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
-        model = load(intact_file(path, EMULATOR, REMEDY))
-        _refuse_unbounded(folder / EMULATOR, model)
+        model = load(intact_file(path, EMULATOR_FILE, REMEDY))
+        _refuse_unbounded(folder / EMULATOR_FILE, model)
         return cls(study, folder, model)
 
     @property

@@ -22,7 +22,7 @@ from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
-from lithobrake.pipeline.stages import FOLLOW_JOURNEYS as JOURNEY_STAGE
+from lithobrake.pipeline.stages import FOLLOW_JOURNEYS
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
@@ -56,7 +56,7 @@ def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
     if key is None or folder.key_of(file_of("drawn")) is None:
         return {}
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
-    if stage_keys(study.with_run_count(max(len(table.end), 2)))[JOURNEY_STAGE.name] != key:
+    if stage_keys(study.with_run_count(max(len(table.end), 2)))[FOLLOW_JOURNEYS.name] != key:
         return {}
     return dict(zip(keys, table.rests[table.numbers["touchdowns"] > 0.0].astype(float).tolist(), strict=True))
 

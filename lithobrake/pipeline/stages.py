@@ -14,14 +14,11 @@ from lithobrake.pipeline.first_bounces.aiming import aim_dependencies, aim_files
 from lithobrake.pipeline.first_bounces.bounces_to_rest import follow_samples, rest_dependencies, rest_files
 from lithobrake.pipeline.first_bounces.emulator import (
     EMULATOR_FILE,
+    EXPLORER_FILE,
     draw_emulator_samples,
-    fit_emulator,
-    write_explorer,
+    make_emulator,
 )
-from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE as EXPLORER
-from lithobrake.pipeline.flights import PATHS_FILE as PATHS
-from lithobrake.pipeline.flights import PATHS_FILE as WAYS
-from lithobrake.pipeline.flights import flight_dependencies, fly_expansion_samples, fly_samples
+from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job, Stage, same_files
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
 from lithobrake.pipeline.journeys.emulated_journeys import (
@@ -62,15 +59,9 @@ from lithobrake.study.delivery_sections import OWN_KEYS
 # Beds and landings are known by the hash of the engine and of all that they follow from; this is how they are chosen
 # and written down.
 RUN_PARTS = (
-    "pipeline/design",
-    "pipeline/runs/energy_bound.py",
-    "pipeline/runs/landings.py",
-    "pipeline/runs/run_table.py",
-    "pipeline/runs/landings.py",
-    "chaos",
-    "vocabulary/quantities.py",
-    "geometry/attitude.py",
-)
+    "pipeline/design", "pipeline/runs/energy_bound.py", "pipeline/runs/landings.py", "pipeline/runs/run_table.py",
+    "chaos", "vocabulary/quantities.py", "geometry/attitude.py",
+)  # fmt: skip
 
 
 def drawn_dependencies(study: Study) -> Any:
@@ -100,18 +91,11 @@ SIDE_RUNS = Stage(
 TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
 
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS)
+FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS_FILE)
 FLIGHT_PARTS = (
-    "pipeline/fly",
-    "pipeline/site.py",
-    "pipeline/samples.py",
-    "pipeline/samples.py",
-    "pipeline/runs/run_table.py",
-    "smallbody",
-    "geometry",
-    "chaos",
-    "vocabulary/quantities.py",
-)
+    "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
+    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/quantities.py",
+)  # fmt: skip
 
 FLY_RUNS = Stage(
     "fly_runs",
@@ -126,14 +110,9 @@ FLY = Stage("fly", "flights", same_files(*FLIGHT_FILES), fly_samples, ("sample",
 
 
 EMULATOR_PARTS = (
-    "pipeline/emulate",
-    "pipeline/runs/energy_bound.py",
-    "emulator",
-    "chaos",
-    "analysis",
-    "results/explorer_tables.py",
-    "vocabulary/quantities.py",
-)
+    "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
+    "analysis", "results/explorer_tables.py", "vocabulary/quantities.py",
+)  # fmt: skip
 
 
 def sample_dependencies(study: Study) -> Any:
@@ -141,12 +120,9 @@ def sample_dependencies(study: Study) -> Any:
     return study.monte_carlo.model_dump()
 
 
-def _fit(job: Job) -> None:
-    fit_emulator(job)
-    write_explorer(job)
-
-
-EMULATOR = Stage("emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER), _fit, ("runs",), parts=EMULATOR_PARTS)
+EMULATOR = Stage(
+    "emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER_FILE), make_emulator, ("runs",), parts=EMULATOR_PARTS
+)
 SAMPLE = Stage(
     "sample",
     "samples",
@@ -158,13 +134,15 @@ SAMPLE = Stage(
 )
 
 
-REST_PARTS = ("pipeline/rest", *FLIGHT_PARTS)
+REST_PARTS = ("pipeline/first_bounces", *FLIGHT_PARTS)
 
 REST = Stage("rest", "bounces until rest", rest_files, follow_samples, ("fly",), rest_dependencies, REST_PARTS)
 AIM = Stage("aim", "aims", aim_files, follow_aims, ("fly",), aim_dependencies, REST_PARTS)
 
 
-JOURNEY_PARTS = ("pipeline/journeys", "pipeline/site.py", "geometry/frames.py", *RUN_PARTS, *FLIGHT_PARTS)
+JOURNEY_PARTS = (
+    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/frames.py", *RUN_PARTS, *FLIGHT_PARTS,
+)  # fmt: skip
 
 
 def journey_dependencies(study: Study) -> Any:
@@ -187,7 +165,7 @@ def _delivery(study: Study) -> list[Any]:
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, "body.obj", WAYS),
+    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, "body.obj", PATHS_FILE),
     make_journeys,
     ("bed",),
     journey_dependencies,
@@ -195,7 +173,7 @@ FOLLOW_JOURNEYS = Stage(
 )
 
 
-EMULATED_PARTS = ("pipeline/emulated", "pipeline/rest", "pipeline/journeys", *EMULATOR_PARTS, *FLIGHT_PARTS)
+EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
 
 EMULATED = Stage(
     "emulated",
@@ -211,13 +189,13 @@ OPTIONS = Stage(
 )
 
 
-SKY_PARTS = ("pipeline/sky", "pipeline/site.py", *FLIGHT_PARTS)
+SKY_PARTS = ("pipeline/sky.py", "pipeline/site.py", *FLIGHT_PARTS)
 
 SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",), sky_dependencies, SKY_PARTS)
 
 
 ANSWER_PARTS = (
-    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys/touchdown_emulator.py"),
+    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys"),
     *("analysis", "chaos", "emulator", "results", "vocabulary"),
 )
 
@@ -291,7 +269,7 @@ TEST = Stage("test", "scores", same_files("scores.json"), score_all, ("refine", 
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
-    same_files("samples.h5", EXPLORER),
+    same_files("samples.h5", EXPLORER_FILE),
     sample_expansion,
     ("refine", "test"),
     sample_dependencies,
@@ -340,59 +318,26 @@ REPORT = Stage(
     ("summary",),
     parts=("report", "results", "vocabulary"),
 )
-DRAWN = (
-    BED,
-    FIRST_LANDING,
-    DRAWN_RUNS,
-    SIDE_RUNS,
-    FLY_RUNS,
-    TELLING_LANDING,
-    ESTIMATE,
-    EMULATOR,
-    SAMPLE,
-    FLY,
-    REST,
-    AIM,
-    SUMMARY,
-    REPORT,
-)
+DRAWN_STAGES = (
+    BED, FIRST_LANDING, DRAWN_RUNS, SIDE_RUNS, FLY_RUNS, TELLING_LANDING, ESTIMATE, EMULATOR, SAMPLE, FLY, REST, AIM,
+    SUMMARY, REPORT,
+)  # fmt: skip
 # Landings that follow each other until the lander rests, in the place of single ones, and journeys by their emulator.
-JOURNEYS = (
-    BED,
-    FIRST_LANDING,
-    FOLLOW_JOURNEYS,
-    SIDE_RUNS,
-    FLY_RUNS,
-    TELLING_LANDING,
-    ESTIMATE,
-    EMULATED,
-    OPTIONS,
-    SKY,
-    JOURNEY_SUMMARY,
-    REPORT,
-)
-PAPER = (
-    BED,
-    MEDIAN_LANDING,
-    SCREENING_RUNS,
-    SCREEN,
-    REFINED_RUNS,
-    REFINE,
-    TEST_RUNS,
-    TEST,
-    SAMPLE_EXPANSION,
-    FLY_EXPANSION_SAMPLES,
-    FOLLOW_EXPANSION_SAMPLES,
-    PAPER_SUMMARY,
-    REPORT,
-)
+JOURNEY_STAGES = (
+    BED, FIRST_LANDING, FOLLOW_JOURNEYS, SIDE_RUNS, FLY_RUNS, TELLING_LANDING, ESTIMATE, EMULATED, OPTIONS, SKY,
+    JOURNEY_SUMMARY, REPORT,
+)  # fmt: skip
+PAPER_STAGES = (
+    BED, MEDIAN_LANDING, SCREENING_RUNS, SCREEN, REFINED_RUNS, REFINE, TEST_RUNS, TEST, SAMPLE_EXPANSION,
+    FLY_EXPANSION_SAMPLES, FOLLOW_EXPANSION_SAMPLES, PAPER_SUMMARY, REPORT,
+)  # fmt: skip
 
 
 def stages_of(study: Study) -> tuple[Stage, ...]:
     """The stages of a study in order, by its method."""
     if study.design.method == "paper":
-        return PAPER
-    return DRAWN if study.journey is None else JOURNEYS
+        return PAPER_STAGES
+    return DRAWN_STAGES if study.journey is None else JOURNEY_STAGES
 
 
 def stages_until(study: Study, until: str) -> tuple[Stage, ...]:

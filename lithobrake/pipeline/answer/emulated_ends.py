@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL, IntervalEstimate, quantile_within, refit_interval, upper_limit
+from lithobrake.analysis import IntervalEstimate, quantile_within, refit_interval, upper_limit
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
@@ -17,8 +17,7 @@ from lithobrake.pipeline.answer.typed_estimates import finite_estimate
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, FRESH, OWN, most_landings
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE as EMULATOR
-from lithobrake.pipeline.journeys.touchdown_emulator import why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys, EndShare
@@ -59,7 +58,7 @@ class EmulatedTable:
 
 def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[EmulatedJourneys, Shares]:
     """What the emulator's journeys say, and the shares of the ends of the journeys, narrowed where they can be."""
-    why = why_no_emulator(job.folder.read_json(EMULATOR))
+    why = why_no_emulator(job.folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         return EmulatedJourneys(why, 0, 0, 0, 0.0, {}, None, None, why), plain
     most = most_landings(job)

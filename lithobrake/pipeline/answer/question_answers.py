@@ -31,7 +31,7 @@ from lithobrake.results.questions import AimOnGround, AimResult, AimResults, Bes
 from lithobrake.results.run_results import CountedShare, Estimate, ShareInterval
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words
-from lithobrake.study.question_sections import AT_REST, SETTLED, SIDE, AimLimit
+from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.limit_state import LOFTED, RETURNS, SETTLED, LimitState
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome

@@ -35,10 +35,9 @@ from lithobrake.pipeline.answer.journey_ends import (
 )
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
 from lithobrake.pipeline.answer.run_answers import described, place_regions, why_no_interval
-from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE as ESTIMATES
-from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
+from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, parts_of_journeys
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE as EMULATOR
+from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -152,7 +151,7 @@ def write_results(job: Job, completed: Completed) -> None:
     side = job.study.design.side_runs
     runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
     distinct = DesignRuns.distinct(runs)
-    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES), "estimates")
+    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES_FILE), "estimates")
     results = completed(job, results_of_landings(job, estimates, distinct), runs[0], estimates)
     results = replace(results, answer=tuple(drawn_answer(job.study, results)))
     results = replace(results, headline=tuple(drawn_headline(results)))
@@ -256,7 +255,7 @@ def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorRe
     """What the emulator is worth on beds left out, and whether it agrees with the runs."""
     from lithobrake.emulator import load
 
-    model = load(job.folder / EMULATOR)
+    model = load(job.folder / EMULATOR_FILE)
     scores, modelled = model.scores, [model.output_names[column] for column in model.runs.modelled]
     table = {}
     for column, name in enumerate(modelled):

@@ -212,8 +212,8 @@ class OneJourney:
 
     def save(self, paths: list[Path]) -> None:
         """Write hulls and frames of each touchdown to an HDF5 file, as a study keeps its landing."""
-        for landing, path in zip(self.landings, paths, strict=True):
-            landing.save(path)
+        for one, path in zip(self.landings, paths, strict=True):
+            one.save(path)
 
     def to_json(self) -> dict[str, Any]:
         """The journey as a row of journeys.csv and its touchdowns, for a program; what is not known is null."""

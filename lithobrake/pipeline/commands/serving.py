@@ -18,8 +18,7 @@ from lithobrake.campaign.worker import BEGUN, Call, Worker
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE as OF_TOUCHDOWNS
-from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
@@ -72,12 +71,12 @@ class ServedStudy:
 
     def _has_touchdown_emulator(self) -> bool:
         """Whether the study has journeys, and these an emulator of all their touchdowns."""
-        path = self.folder / OF_TOUCHDOWNS
-        return path.is_file() and why_no_emulator(self.folder.read_json(OF_TOUCHDOWNS)) is None
+        path = self.folder / TOUCHDOWN_EMULATOR_FILE
+        return path.is_file() and why_no_emulator(self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
-        intact_file(self.folder.path, OF_TOUCHDOWNS, REMEDY)
+        intact_file(self.folder.path, TOUCHDOWN_EMULATOR_FILE, REMEDY)
         return TouchdownEmulator.read(self.design, self.folder)
 
     def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:

@@ -16,8 +16,7 @@ from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Progress, Silent
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE as EMULATOR
-from lithobrake.pipeline.journeys.touchdown_emulator import why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
@@ -141,7 +140,7 @@ def map_sites(
     _refuse(source.study, cell_count, lander_count)
     run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
-    why = why_no_emulator(folder.read_json(EMULATOR))
+    why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:

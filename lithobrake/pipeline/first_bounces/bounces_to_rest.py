@@ -9,8 +9,13 @@ import numpy as np
 from lithobrake.pipeline.design.arrivals import roughness
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounce_laws
-from lithobrake.pipeline.first_bounces.bounce_laws import RESTITUTION_FILE as RESTITUTION
-from lithobrake.pipeline.first_bounces.bounce_laws import emulator_bounce, restitution_table, slow_arrivals, why_no_soil
+from lithobrake.pipeline.first_bounces.bounce_laws import (
+    RESTITUTION_FILE,
+    emulator_bounce,
+    restitution_table,
+    slow_arrivals,
+    why_no_soil,
+)
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -59,7 +64,7 @@ DOWN = (
 def rest_files(study: Study) -> list[str]:
     """What the stage writes; the table of restitution where the emulator knows other impacts than the first."""
     asks = study.design.method == "drawn" and why_no_soil(study) is None and bool(study.rest.count)
-    return [*FILES, *([RESTITUTION] if asks else [])]
+    return [*FILES, *([RESTITUTION_FILE] if asks else [])]
 
 
 def journey_dependencies(study: Study) -> dict[str, Any]:
@@ -98,7 +103,7 @@ def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> Non
         else:
             job.say(f"Journeys from bounce to bounce are on hard ground only: {why}.")
         rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
-        if RESTITUTION in rest_files(study):
+        if RESTITUTION_FILE in rest_files(study):
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
     write_table(job.folder, "rest.csv", COLUMNS, rows)
     write_table(job.folder, ARCS_FILE, tuple(ARC), arcs, ARC)
@@ -172,7 +177,7 @@ def _on_equivalent_ground(job: Job, sites: "Sites") -> tuple["Rebounds", "Bounce
     """What hard ground says that has the restitution the soil implies; its table is written beside."""
     study = job.study
     table = restitution_table(study, Samples.load(job.folder), DesignRuns.load(job.folder, "drawn"))
-    table.save(job.folder / RESTITUTION)
+    table.save(job.folder / RESTITUTION_FILE)
     random, bounce = np.random.default_rng(sampling_seed(study, "equivalent ground")), on_rough(study, table)
     return bounce(_first_impacts(study, sites), random), bounce
 

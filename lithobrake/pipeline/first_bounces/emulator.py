@@ -245,3 +245,9 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
             names, outputs = list(table), np.empty((len(x), len(table)))
         outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
     return Samples(list(inputs), names, x, outputs, outcome)
+
+
+def make_emulator(job: Job) -> None:
+    """Fit the emulator of the drawn runs, and write its tables for the explorer of the page."""
+    fit_emulator(job)
+    write_explorer(job)

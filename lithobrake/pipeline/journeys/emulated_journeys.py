@@ -18,8 +18,13 @@ from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, save_explore
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE as EMULATOR
-from lithobrake.pipeline.journeys.touchdown_emulator import Arrivals, TouchdownEmulator, fit_touchdowns, why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import (
+    TOUCHDOWN_EMULATOR_FILE,
+    Arrivals,
+    TouchdownEmulator,
+    fit_touchdowns,
+    why_no_emulator,
+)
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
@@ -75,7 +80,7 @@ def write_reason(job: Job, why: str) -> None:
         file.attrs["why"] = why
 
 
-EMULATED_FILES = (EMULATOR, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
+EMULATED_FILES = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
 # Landers that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
@@ -174,7 +179,7 @@ def follow_options(job: Job) -> None:
     count = job.study.aim.lander_count * REFIT_COUNT
     end, time = np.full(len(begin.rows), UNKNOWN_END, dtype=object), np.zeros(len(begin.rows))
     distance = time
-    if why_no_emulator(job.folder.read_json(EMULATOR)) is None:
+    if why_no_emulator(job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None:
         landers = EmulatedLanders.of(
             job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
         )
