@@ -35,6 +35,7 @@ def multi_index_set(
         highest = [min(whole_number("an entry of max_degrees", one, 0), total) for one in max_degrees]
     if len(highest) != input_count:
         raise ValueError(f"max_degrees has {len(highest)} entries, but must have one for each of {input_count} inputs")
+    # Terms on the border of the set would otherwise be in or out by the rounding of their powers.
     budget = float(degree) ** q_norm * (1.0 + 1e-12)
     rows = np.zeros((1, 0), dtype=np.int64)
     used = np.zeros(1)
@@ -128,6 +129,7 @@ def recurrences_of(inputs: Mapping[str, Distribution], indices: Indices) -> list
 def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: Array) -> Array:
     """All terms at points in physical units; result [count, term_count] (H of [Landings-PCE], Eq 17), column-major."""
     germs = germs_of(inputs, points)
+    # Terms are rows while they are made, so that each product runs along memory; LAPACK takes the transpose.
     matrix = np.ones((len(indices), len(points)))
     for column, (recurrence, germ) in enumerate(zip(recurrences_of(inputs, indices), germs, strict=True)):
         if recurrence.degree == 0:
@@ -152,6 +154,7 @@ def condition_number(
     if matrix.shape[0] < matrix.shape[1]:
         return float("inf")
     values = np.linalg.svd(matrix, compute_uv=False)
+    # The tolerance of numpy.linalg.matrix_rank: singular values below it are rounding.
     limit = values[0] * max(matrix.shape) * np.finfo(float).eps
     return float(values[0] / values[-1]) if values[-1] > limit else float("inf")
 

@@ -73,6 +73,7 @@ def sobol_estimates(
         refit = _refit_of(surrogate, training, output)
         coefficients = refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T)
         estimate, low, high = (_basic if refit.shrinks else _debiased)(refit, coefficients, level)
+        # Distances that are turned round may miss the estimate, and leave the range of a share.
         found.append(np.clip([estimate, np.minimum(low, estimate), np.maximum(high, estimate)], 0.0, 1.0))
     table = np.stack(found, axis=-1)
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
@@ -181,6 +182,7 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
     method = entry.get("method")
     coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[:, output]
+    # The expansion holds the terms of all outputs together; those that this one does not have are 0.
     indices = surrogate.multi_indices[(coefficients != 0.0) | (surrogate.multi_indices.sum(axis=1) == 0)]
     if method in ("lars", "omp") and "candidate_degree" in entry:
         return _sparse_refit(training, output, entry["rmse_estimate"], indices)
@@ -206,6 +208,7 @@ def _least_squares_refit(training: Training, output: int, indices: Indices) -> R
         return np.linalg.solve(triangle, orthogonal.T @ values)
 
     truth = _indices_of(indices, coefficients(y[:, None]))[..., 0]
+    # Divided by their leverage residuals no longer add up to 0, and would shift every draw.
     return Refit(indices, coefficients, y, fitted, truth, residuals - residuals.mean())
 
 

@@ -55,6 +55,7 @@ class UnivariateGaussian(UnivariateCovariance):
     def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
         squares = ((germ[:, None] - germ[None, :]) / np.exp(parameters[0])) ** 2
         part = np.exp(parameters[1] - 0.5 * squares)
+        # Derivatives by the logarithms of length and variance, in which the search takes its steps.
         return part, part * squares, part
 
     def variance(self, parameters: Array, germ: Array) -> Array:
@@ -166,7 +167,6 @@ class ProductCovariance(Covariance):
         self.parts: list[UnivariateCovariance] = [self.part_of(entry, degree) for entry, degree in pairs]
 
     def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
-        """The factor of one input."""
         return UnivariateGaussian(entry, degree)
 
     def start(self) -> tuple[Array, list[tuple[float, float]]]:
@@ -184,6 +184,8 @@ class ProductCovariance(Covariance):
         total = scale * np.prod(factors, axis=0)
 
         def gradient(weight: Array) -> Array:
+            # The product of all other factors is made from both sides: a factor of polynomials may be 0, by which
+            # nothing can be divided.
             before = [np.full_like(total, scale)]
             for factor in factors[:-1]:
                 before.append(before[-1] * factor)
@@ -229,7 +231,6 @@ class PolynomialCovariance(ProductCovariance):
     name = "polynomial"
 
     def part_of(self, entry: Distribution, degree: int) -> UnivariateCovariance:
-        """The factor of one input."""
         return UnivariatePolynomial(entry, degree) if entry.bounded else UnivariateGaussian(entry, degree)
 
 

@@ -20,7 +20,6 @@ MOST_SOBOL = 2**30
 
 
 def checked_count(count: int, input_count: int = 1) -> int:
-    """Check a number of points, which memory must hold with all their inputs."""
     return sample_count("count", count, input_count)
 
 
@@ -120,6 +119,7 @@ class GaussianCopula:
         if not np.all(np.diag(matrix) == 1.0) or np.abs(matrix).max() > 1.0:
             raise ValueError("rank_correlation must have ones on its diagonal and nothing outside -1 to 1")
         normal = 2.0 * np.sin(np.pi * matrix / 6.0)
+        # 2 sin(pi / 6) is 1 only up to rounding.
         np.fill_diagonal(normal, 1.0)
         smallest = float(np.linalg.eigvalsh(normal)[0])
         if smallest <= 1e-10:
@@ -177,6 +177,7 @@ def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *
     distributions = checked_inputs(inputs)
     size, generator = checked_count(count, len(distributions)), random_numbers(seed)
     indices = multi_index_set(len(distributions), degree)
+    # The density is a mean over terms, so a term is drawn first, and then each input from the square of its polynomial.
     powers = indices[generator.integers(len(indices), size=size)]
     uniforms = generator.random((size, len(distributions)))
     columns = []
@@ -290,6 +291,7 @@ def _greedy_choice(rows: Array, inverse: Array, wanted: int) -> list[int]:
     for _ in range(wanted):
         best = int(np.argmax(gain))
         chosen.append(best)
+        # A point adds a matrix of rank one to the information matrix, whose inverse then needs no new inversion.
         step = inverse @ rows[best] / np.sqrt(1.0 + rows[best] @ inverse @ rows[best])
         inverse = inverse - np.outer(step, step)
         gain = gain - (rows @ step) ** 2

@@ -142,6 +142,7 @@ class Limited(Distribution):
 
     def physical(self, germ: Array) -> Array:
         low, high = self._limits
+        # The germs -1 and 1 give the limits without rounding, but the exponential of a logarithm may miss them.
         return self._clip(self._unscaled(0.5 * ((1.0 - germ) * low + (1.0 + germ) * high)))
 
     def germ_derivative(self, x: Array) -> Array:
@@ -313,6 +314,7 @@ class Exponential(Distribution):
         return self._clip(germ / self.rate)
 
     def ppf(self, u: ArrayLike) -> Array:
+        # log1p and expm1 keep the digits of small probabilities, which 1 - u would lose.
         return -np.log1p(-np.asarray(u, dtype=float)) / self.rate
 
     def cdf(self, x: Array) -> Array:

@@ -48,7 +48,6 @@ def _constant(training: Training, output: int) -> bool:
 
 
 def process_solution(training: Training, output: int) -> Solution:
-    """Projection of the best of the Gaussian processes of one output."""
     if training.count < PROCESS_FROM or training.count > PROCESS_LIMIT:
         raise ValueError(
             f"{training.count} points are given, but gaussian_process takes {PROCESS_FROM} to {PROCESS_LIMIT}: use ols"
@@ -96,6 +95,7 @@ def best_solutions(training: Training, progress: Callable[[int, int], None]) -> 
     """
     ladder = ols_by_degree(training)
     grid = is_structured(training.x)
+    # The likelihood of a process has no place for weights.
     use_processes = PROCESS_FROM <= training.count <= PROCESS_LIMIT and training.weights is None
     margin = MARGIN_IN_TAILS if any(has_long_tails(entry) for entry in training.inputs.values()) else MARGIN
     chosen: list[Solution] = []
@@ -184,7 +184,6 @@ def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: A
 
 
 def _assembled(training: Training, solutions: list[Solution], extra: dict[str, Any]) -> Surrogate:
-    """Join the solutions of all outputs and the facts about the data into the result."""
     indices, coefficients = joined(solutions)
     report = {**summary(solutions, training.output_names, training.y), **extra}
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.

@@ -121,6 +121,7 @@ def _block_products(
     """Keys (a number for each multi-index) and coefficients of products of terms first to last with all later ones."""
     pairs = [np.arange(i, len(indices)) for i in range(first, last)]
     left, right = np.repeat(np.arange(first, last), [len(one) for one in pairs]), np.concatenate(pairs)
+    # In the square each product of two different terms occurs twice.
     contributions = coefficients[left] * coefficients[right] * np.where(left == right, 1.0, 2.0)[:, None]
     keys = np.zeros(len(left), dtype=np.int64)
     for table, column in zip(tables, indices.T, strict=True):

@@ -142,6 +142,8 @@ class TruncatedNormal(Distribution):
         edges = np.linspace(low, high, PANELS + 1)[:, None]
         z = (0.5 * (edges[:-1] + edges[1:]) + 0.5 * (edges[1:] - edges[:-1]) * nodes).ravel()
         mode = min(max(0.0, low), high)
+        # Over its largest value: (z - m)(z + m) does not underflow where the limits lie far out in a tail, as exp(-z^2
+        # / 2) would.
         density = np.tile(weights, PANELS) * np.exp(-0.5 * (z - mode) * (z + mode))
         return discretised(degree, self.germ(self.mean + self.std * z), density / density.sum())
 
@@ -207,7 +209,6 @@ class Empirical(Limited):
 
     @cached_property
     def _polynomials(self) -> Recurrence:
-        """Polynomials of all degrees that the samples determine."""
         nodes, weights = self._measure()
         made = discretised(min(len(nodes) - 1, SAMPLE_DEGREE), nodes, weights)
         # Degrees beyond the usable ones may overflow; they are left out just below.

@@ -31,6 +31,7 @@ def score_of(predicted: Array, y: Array) -> Score:
     """
     error = predicted - y
     ape = absolute_percentage_error(predicted, y)
+    # By rounding the standard deviation of equal values need not be 0.
     rmse, std = float(np.sqrt(np.mean(error**2))), float(np.std(y)) if np.ptp(y) > 0.0 else 0.0
     rrmse = rmse / std if std > 0.0 else (0.0 if rmse == 0.0 else float("inf"))
     return {
@@ -126,6 +127,7 @@ def runs_needed(report: dict[str, Any], target: float) -> dict[str, dict[str, An
             answers[name] = {"floor": 0.0, "now": 0.0, "more_runs": 0, "sentence": f"{name} does not vary."}
             continue
         spread = entry["rmse_estimate"] / now if now > 0.0 else 1.0
+        # The scatter of a few repeats may come out above the expected error, of which it is a part.
         floor = min(float(entry.get("noise_std") or 0.0) / spread, now)
         answers[name] = {"floor": floor, "now": now, **_answer(name, now, floor, target, report["train_count"])}
     if not answers:

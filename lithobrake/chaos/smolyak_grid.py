@@ -25,6 +25,7 @@ def new_nodes(level: int) -> Array:
         return np.array([-1.0, 1.0])
     half = 2 ** (level - 1)
     steps = np.arange(1 - half, half, 2)
+    # The sine of an angle counted from the middle is odd to the last bit, so the nodes are symmetric; a cosine is not.
     return np.sin(np.pi * steps / (2.0 * half))
 
 

@@ -37,8 +37,6 @@ def is_structured(x: Array) -> bool:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The terms that a sparse method may choose from: those of a total degree and a norm."""
-
     degree: int
     q_norm: float
     indices: Indices

@@ -44,6 +44,7 @@ class StochasticSurrogate:
         The scatter is taken as normal around the mean.
         """
         mean, std = np.asarray(self.mean(x)), self.scatter_std(x)
+        # No Cholesky factor: with fewer degrees of freedom than outputs the matrix is singular.
         values, vectors = np.linalg.eigh(self.correlation)
         root = vectors * np.sqrt(np.maximum(values, 0.0))
         draws = random_numbers(seed).normal(size=(len(mean), len(root))) @ root.T

@@ -25,6 +25,7 @@ def data_hash(x: Array, y: Array) -> str:
     """Hash of training data x [count, input_count] and y [count, output_count], the same on every machine."""
     digest = hashlib.sha256()
     for array in (x, y):
+        # The shape counts, or arrays of the same numbers in other rows would have one hash; the byte order is fixed.
         digest.update(str(array.shape).encode() + np.ascontiguousarray(array, dtype="<f8").tobytes())
     return digest.hexdigest()
 

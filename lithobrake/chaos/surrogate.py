@@ -112,6 +112,7 @@ class Surrogate:
         count, sentence = outside_count(self.inputs, points)
         if count:
             text = f"{count} of {len(points)} points are outside the support of the inputs (first: {sentence})"
+            # Where an input enters by its logarithm there is nothing to extrapolate to at or below 0.
             undefined = any(
                 entry.logarithmic and bool((points[:, k] <= 0.0).any()) for k, entry in enumerate(self.inputs.values())
             )

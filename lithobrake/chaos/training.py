@@ -45,7 +45,6 @@ class Training:
 
     @property
     def count(self) -> int:
-        """Number of points in use."""
         return len(self.x)
 
 
@@ -67,6 +66,7 @@ def checked_training(
     table = outputs[:, None] if one_dimensional else outputs
     if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
         raise ValueError(f"y has shape {outputs.shape}, but must be [{len(points)}] or [{len(points)}, output_count]")
+    # A run that failed has no output at all; a row with some of them is more likely an error in the data.
     missing: NDArray[np.bool_] = np.all(np.isnan(table), axis=1)
     kept, rows = table[~missing], points[~missing]
     if not np.all(np.isfinite(kept)):
@@ -75,6 +75,7 @@ def checked_training(
             f"{wrong} rows of y hold NaN or infinity in some outputs: a missing run must be NaN in all outputs, "
             "so set the whole row to NaN or leave it out"
         )
+    # Before anything is squared: variances of larger numbers would overflow silently.
     check_magnitude("y", kept)
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")

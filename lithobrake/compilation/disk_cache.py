@@ -34,6 +34,7 @@ def user_key() -> bytes:
     if not path.exists():
         _make(path)
     with open_regular(path) as file:
+        # One byte more than a key has, so that a longer file is noticed.
         status, key = os.fstat(file.fileno()), file.read(_LENGTH + 1)
     if os.name == "posix" and (status.st_uid != os.geteuid() or status.st_mode & _OPEN_TO_OTHERS):
         raise ValueError(f"{path} can be read by others; delete it, and another key is made")

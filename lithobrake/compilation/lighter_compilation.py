@@ -44,7 +44,6 @@ class KernelLower(Lower):
     """Lowers a kernel, in which nothing is counted."""
 
     def setup_function(self, fndesc: Any) -> None:
-        """Begin the function."""
         super().setup_function(fndesc)
         self.builder = FoldingBuilder(self.entry_block)
         self.call_helper = self.call_conv.init_call_helper(self.builder)
@@ -105,13 +104,10 @@ def _is_on_members(value: Any) -> bool:
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class KernelLowering(NativeLowering):
-    """The pass that lowers kernels so."""
-
     _name = "kernel_lowering"
 
     @property
     def lowering_class(self) -> type[Lower]:
-        """What lowers."""
         return KernelLower
 
 
@@ -119,11 +115,11 @@ class KernelPipeline(Compiler):
     """Numba's passes with this one in the place of its own, and without those that find nothing in a kernel."""
 
     def define_pipelines(self) -> list[Any]:
-        """Give the passes."""
         without: set[type] = set()
         if not self.state.flags.nrt:
             # It joins expressions that make arrays, which takes counting.
             without.add(NopythonRewrites)
+        # A closure stands as code among the constants of its function; without any there is nothing to inline.
         if not any(isinstance(constant, CodeType) for constant in self.state.func_id.code.co_consts):
             without.add(InlineClosureLikes)
         found = super().define_pipelines()
@@ -163,7 +159,6 @@ class KernelFlags(compiler.Flags):
     __slots__ = ()
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same options were set to the same values."""
         return isinstance(other, KernelFlags) and self._values == other._values
 
     def __hash__(self) -> int:

@@ -77,6 +77,7 @@ def contacts_of(bodies: Bodies, pairs: Pairs) -> NDArray[Any]:
     result = np.zeros(len(touching), dtype=CONTACT)
     result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
     for name, members in (("a", "first"), ("b", "second")):
+        # Planes have numbers below 0, which would count bodies from the end.
         number, part = result[f"body_{name}"], getattr(pairs, f"{members}_part")[touching]
         result[f"part_{name}"] = np.where(number < 0, 0, part - bodies.part_start[np.maximum(number, 0)])
     for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):

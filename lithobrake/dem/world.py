@@ -238,6 +238,8 @@ class World(Observables):
             )
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
+        # No part of the setting: both follow the speed of the lander from call to call, and another setting has all
+        # plans made anew.
         local.slow_down(resolved_speed)
         local.hold(held_speed, reach)
         if not local.run(duration):
@@ -245,7 +247,6 @@ class World(Observables):
         self.time = local.time
 
     def _refuse(self, reason: int) -> None:
-        """Say why the time loop could not go on."""
         if reason == STEP_TOO_LARGE:
             raise StepTooLargeError(
                 f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
@@ -292,6 +293,7 @@ class World(Observables):
         lasted = float(self._watch_record[LAST_CONTACT] - self._watch_record[FIRST_CONTACT])
         if math.isnan(lasted):
             return None
+        # Common steps are counted, and the first and the last one of the touch both belong to it.
         return lasted if self._state.local is not None else (lasted + 1.0) * self.time_step
 
     @property
@@ -302,6 +304,7 @@ class World(Observables):
         """Return an instant [s] from what a record says of it."""
         if self._state.local is not None:
             return float(clock)
+        # Counted back from the present, as `time` may have been set since the record began.
         return float(self.time - (self._state.watch_record[STEPS] - clock) * self.time_step)
 
     # --- on disk -------------------------------------------------------------------------------------------------

@@ -64,6 +64,7 @@ class WorldState:
     @property
     def mass(self) -> Floats:
         """Masses [kg], shape [body_count]."""
+        # Bodies are added and never changed or removed, so their number tells whether the masses are those at hand.
         if len(self._mass) != len(self.bodies):
             self._mass = np.array([body.mass for body in self.bodies])
         return self._mass
@@ -135,7 +136,6 @@ class WorldState:
         self.engine = None
 
     def use_threads(self, thread_count: int) -> None:
-        """Take steps on so many threads from now on."""
         self.thread_count = thread_count
         self._step_together()
         if self.engine is not None:
@@ -171,6 +171,7 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
     """Write a state, the gravity and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
 
+    # A file holds no plans of contacts at steps of their own, so those go back to common steps first.
     engine = state.stepping_together(step)
     parts = parts_of(state.bodies)
     shapes, materials = list({id(part.shape): part.shape for part in parts}.values()), materials_of(parts, state.planes)
@@ -225,7 +226,6 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
 
 
 def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, Any]) -> None:
-    """Add the bodies and planes to an empty state."""
     shapes = [_shape(text) for text in json.loads(attributes["shapes"])]
     materials = [Material(**values) for values in json.loads(attributes["materials"])]
     parts = [
@@ -235,6 +235,7 @@ def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, 
     for k, (begin, end) in enumerate(pairwise(data["body/part_start"].tolist())):
         (own, *others), mass, inertia = parts[begin:end], float(data["body/mass"][k]), data["body/inertia"][k]
         is_plain = bool(data["body/is_plain"][k])
+        # Not stored: the inertia of a uniform body is, to the last bit, the one that `new_body` computes.
         uniform = is_plain and np.array_equal(inertia, own.shape.inertia_per_density * (mass / own.shape.volume))
         centre = None if is_plain else data["body/centre"][k]
         state.bodies.append(RigidBody(own.shape, own.material, mass, inertia, uniform, tuple(others), centre))

@@ -60,6 +60,7 @@ class Kernels:
             covariance = covariance + blur[:, :, None] ** 2 * np.eye(len(columns))
         factor = np.linalg.inv(np.linalg.cholesky(covariance))
         whitened = np.einsum("pij,pj->pi", np.broadcast_to(factor, (len(standard), *factor.shape[1:])), standard)
+        # All distances of points to rows are then one product of matrices, without an array [point, row, output].
         squares = self._squares(whitened, np.ascontiguousarray(factor @ seen))
         determinant = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
         step = max(1, _BLOCK // len(self.rows))
@@ -83,7 +84,6 @@ class Kernels:
 
 
 def _rows_of(table: Array, block: slice) -> Array:
-    """A block of points of a table, or its one row for all of them."""
     return table if len(table) == 1 else table[block]
 
 
@@ -115,7 +115,6 @@ class BedEffect:
 
     @classmethod
     def unseen(cls, before: Array) -> "BedEffect":
-        """The effect of a bed of which nothing is known."""
         return cls(np.zeros((1, len(before))), before[None], before)
 
     @classmethod
@@ -171,7 +170,6 @@ class BedEffect:
 
     @property
     def _next(self) -> Array:
-        """Covariance of the next run about its mean."""
         return np.eye(len(self.before)) - self.before + self.covariance
 
 
@@ -180,7 +178,6 @@ LARGEST_ERROR = 1e100
 
 
 def kernels_of(model: Parts) -> Kernels:
-    """The kernels about the residual rows whose sum is the density of an observed run."""
     return Kernels.of(model.law.rows, *smoothing(model.law.rows, model.law.weights, DENSITY_FACTOR))
 
 

@@ -45,6 +45,7 @@ def _is_distant(runs: TrainingRuns, column: int, design: TermTable, group: NDArr
         test = fold == number
         bent, straight = (_law(design, one, test) for one in (coordinate, y))
         scores = [_log_normal_density(one[test], *law) for one, law in ((coordinate, bent), (y, straight))]
+        # Densities of the output and of its coordinate are compared in one unit, to which the slope leads.
         gain[test] = scores[1] - scores[0] - np.log(slope[test])
         location, scale = straight
         sides = np.array([location - lower[test], upper[test] - location]) / scale
@@ -115,6 +116,7 @@ def fit(
 
 def used_terms(indices: Indices, choices: Choices, class_choice: ClassChoice) -> NDArray[np.bool_]:
     """Which terms [term_count] any of the ladders leaves more than a trace of, and all linear ones."""
+    # Linear terms always stay: they come first, and are the standardised inputs by which rows are drawn.
     used = (indices.sum(axis=1) == 1) | (class_choice.factors(indices) ** 2 > TRACE * class_choice.inverse_penalty)
     for rung in (rung for ladder in (*choices.location, *choices.scale) for rung in ladder):
         used |= rung.factors(indices) ** 2 > TRACE * rung.penalty

@@ -32,7 +32,6 @@ class LatentTerms:
 
     @property
     def degree(self) -> int:
-        """Total degree in the inputs."""
         return int(self.indices[:, :-1].sum(axis=1).max())
 
     def factors(self, points: Array) -> Array:
@@ -104,6 +103,7 @@ class LatentProblem:
         polynomials, node_weights = self.terms.rule
         away = (self.target[:, None] - branches(self.terms, self.factors, coefficients) @ polynomials) / noise
         exponents = np.log(node_weights) - 0.5 * away**2
+        # The largest exponent is taken out, or with little noise all of them would underflow.
         most = exponents.max(axis=1, keepdims=True)
         shares = np.exp(exponents - most)
         sums = shares.sum(axis=1, keepdims=True)

@@ -30,7 +30,6 @@ class Choices:
 
     @property
     def follows_inputs(self) -> bool:
-        """Whether anything of the law depends on the inputs."""
         return bool(np.isfinite(self.widths).any()) or any(self.location) or any(self.scale)
 
 
@@ -54,7 +53,6 @@ class Law:
 
 
 def rows_alone(coordinate_count: int, input_count: int) -> Choices:
-    """Choices that draw one of the runs, whatever the inputs."""
     return Choices(((),) * coordinate_count, ((),) * coordinate_count, (np.inf,) * input_count)
 
 
@@ -91,6 +89,7 @@ def fit_law(design: TermTable, coordinates: Array, choices: Choices) -> Law:
         locations.append(smoother.coefficients(y))
         scales.append(scale)
     at_runs = np.array([design.at(one)[weights > 0.0] for one in scales])
+    # Polynomials of the logarithm grow fast where no run stands, and the scale with their exponential.
     limits = np.array([at_runs.min(axis=1), at_runs.max(axis=1)])
     return Law(np.column_stack(locations), np.column_stack(scales), limits, np.column_stack(rows), weights)
 
@@ -183,6 +182,7 @@ def smoothing(rows: Array, weights: Array, factor: float = SMOOTHING_FACTOR) -> 
 
     factor: of the normal rule.
     """
+    # The number of equal weights that would scatter as much: rows that count twice add no detail.
     count, outputs = weights.sum() ** 2 / (weights**2).sum(), rows.shape[1]
     covariance = (rows * weights[:, None]).T @ rows / weights.sum()
     values, vectors = np.linalg.eigh(covariance)
@@ -230,6 +230,8 @@ class OutcomeClasses:
     def chances(self, matrix: Array) -> Array:
         """Chances of the classes [point_count, class_count] at terms [point_count, term_count]."""
         logits = self.intercepts + matrix @ self.slopes.T
+        # No regression can place a class that no run has met: it keeps its small chance everywhere, and the others
+        # share the rest.
         logits[:, self.never > 0.0] = -np.inf
         shares = np.exp(logits - logits.max(axis=1, keepdims=True))
         return self.never + (1.0 - self.never.sum()) * shares / shares.sum(axis=1, keepdims=True)
@@ -290,6 +292,5 @@ def best_class_choice(
 
 
 def _rung(indices: Indices, matrix: Array, there: NDArray[np.bool_]) -> Rung:
-    """How terms fade in the chance of outputs."""
     rung = fading_rung(TermTable(indices, matrix, np.ones(len(matrix))), there.astype(float))
     return rung if rung is not None else Rung((1.0,) * indices.shape[1], (0.0,) * indices.shape[1], 1, 0.0)

@@ -129,6 +129,7 @@ def noise_freed_squares(matrix: Array, y: Array, weights: Array) -> tuple[Array,
     inverse = np.linalg.pinv(full.T @ (weights[:, None] * full))
     coefficients = inverse @ (full.T @ (weights * y))
     influence = full @ inverse
+    # A run of nearly full leverage has next to no residual, by which its variance cannot be told.
     leverage = np.minimum((influence * full).sum(axis=1), 0.95)
     residual = (y - full @ coefficients) ** 2 / (1.0 - leverage)
     variances = (weights * residual) @ influence**2

@@ -60,6 +60,7 @@ def _loss(powers: Array, vector: Array, gram: Array, moments: Array, total: floa
         return REFUSED, np.zeros_like(vector)
     weighted = factors * moments
     slopes = linalg.cho_solve((lower, True), weighted, check_finite=False)
+    # Rounding may leave nothing, or less, of outputs without scatter.
     unexplained = max(1.0 - float(weighted @ slopes) / total, 1e-12)
     value = 0.5 * (count - 1.0) * np.log(unexplained)
     value += np.log(np.diag(lower)).sum() - 0.5 * len(factors) * np.log(ridge)
@@ -192,6 +193,7 @@ def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[t
         values = np.maximum(values, 0.0)
         ridges = sums.count * np.array(PENALTIES)[:, None]
         unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=1) / sums.total, 1e-12)
+        # Of a normal law whose scatter is unknown, with the constant integrated out: so count - 1.
         evidences = -0.5 * ((sums.count - 1.0) * np.log(unexplained) + np.log1p(values / ridges).sum(axis=1))
         for penalty, evidence in zip(PENALTIES, evidences.tolist(), strict=True):
             yield evidence, Rung(amplitudes, fades, degree, penalty * FADE**2)

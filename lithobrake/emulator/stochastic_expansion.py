@@ -142,6 +142,8 @@ class StochasticExpansion:
     def reweighted(self, weights: ArrayLike) -> "StochasticExpansion":
         """Fit the coefficients anew with each run counted as often as weights say [run_count]; choices are kept."""
         counted = self.runs.checked_weights(weights)
+        # From where the fit stands, at its noise: going down from a large noise again would repeat the whole path in
+        # every refit.
         coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
         return replace(self, coefficients=coefficients, weights=counted)
 
@@ -278,7 +280,6 @@ class _HeldOut:
 
     @property
     def logarithm(self) -> float:
-        """Their mean."""
         return float(self.logarithms.mean())
 
 

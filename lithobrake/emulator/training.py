@@ -122,6 +122,7 @@ class TrainingRuns:
             known.append(of_runs[0] if given is None else given)
         tables = checked_bounds(known[0], known[1], (count, len(self.output_names)))
         for name, table, of_runs in zip(("lower", "upper"), tables, (self.lower, self.upper), strict=True):
+            # A bound that is finite at the runs or at new points alone would give the output another coordinate there.
             if (np.isfinite(table) != np.isfinite(of_runs[0])).any():
                 raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
         return tables

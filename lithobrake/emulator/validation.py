@@ -57,6 +57,7 @@ def crps(values: Array, weights: Array, observed: Array) -> Array:
         np.take_along_axis(values, order, axis=1),
         np.take_along_axis(weights, order, axis=1),
     )
+    # From ranks, so that the mean distance of members costs a sort and not all pairs of them.
     below = np.cumsum(sorted_weights, axis=1) - 0.5 * sorted_weights
     spread = (sorted_weights * sorted_values * (2.0 * below - 1.0)).sum(axis=1)
     return (weights * np.abs(values - observed[:, None])).sum(axis=1) - spread
@@ -120,6 +121,7 @@ def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tu
         energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, tried[:1])[0]
     energy, widths = np.empty(len(group)), []
     for fold in folds:
+        # The kernel is chosen without the fold that it is scored on, or its luck would count as gain.
         own = _best_kernel(energies[:, ~fold.test], group[~fold.test])
         energy[fold.test] = energies[own, fold.test]
         widths.append(tried[own])

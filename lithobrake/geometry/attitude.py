@@ -60,7 +60,6 @@ ALIKE = 1e-6
 
 
 def alike(first: float, second: float) -> bool:
-    """Whether two lengths, or two moments, are the same but for rounding."""
     return math.isclose(first, second, rel_tol=ALIKE)
 
 
@@ -132,6 +131,7 @@ class AttitudeTerms:
 
         By a product rule that is exact for them: products of two terms are of eighth degree.
         """
+        # Six Gauss nodes are exact up to degree 11 along the axis, twelve turns for waves up to the eleventh.
         nodes, weights = np.polynomial.legendre.leggauss(6)
         turns = np.arange(12) * (2.0 * np.pi / 12)
         cosine, turn, roll = (one.ravel() for one in np.meshgrid(nodes, turns, turns, indexing="ij"))

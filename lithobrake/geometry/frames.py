@@ -45,6 +45,7 @@ def spin_of(outputs: Mapping[str, float]) -> np.ndarray:
 
 def quaternion(attitude: Rotation) -> tuple[float, float, float, float]:
     """An attitude as w, x, y, z."""
+    # Of the two quaternions of an attitude the one with w >= 0, so that equal attitudes are equal numbers.
     x, y, z, w = attitude.as_quat(canonical=True).tolist()
     return w, x, y, z
 

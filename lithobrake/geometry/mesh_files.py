@@ -210,6 +210,7 @@ def _read_stl(path: Path) -> Mesh:
         raise ValueError(
             f"{path}: has no facets: neither 'vertex' lines of a text STL nor the length of a binary one; export anew."
         )
+    # Adding 0.0 turns -0.0 into 0.0, which would else be two coordinates.
     vertices, index = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
     return vertices, index.reshape(-1, 3).astype(np.int64)
 
@@ -311,7 +312,6 @@ def _quadrilaterals(path: Path, size: int, rows: list[list[str]]) -> Mesh:
 
 
 def _read_kernel(path: Path) -> Mesh:
-    """Plates of a shape kernel (.bds) of SPICE."""
     from lithobrake.geometry.naif_kernels import read_shape_kernel
 
     return read_shape_kernel(path)

@@ -236,6 +236,7 @@ def _plates(kernels: Any, handle: int, path: str) -> Plates:
             "model: split the kernel, or export the segment with NAIF's DSKEXP."
         )
     vertex_count, plate_count = kernels.dskz02(handle, segment)
+    # A damaged kernel may state more plates than memory holds; the file cannot have more than fit into it.
     size = Path(path).stat().st_size
     if min(vertex_count, plate_count) < 1 or VERTEX_SIZE * vertex_count + PLATE_SIZE * plate_count > size:
         raise ValueError(

@@ -119,14 +119,11 @@ class Dynamics(NamedTuple):
     speed_tolerance: Floats  # the same in velocity [m/s]
 
     def of_flights(self, piece: slice) -> "Dynamics":
-        """Those of some flights."""
         orbit = Orbit(*(array[piece] for array in self.orbit))
         return Dynamics(orbit, *(array[piece] for array in self[1:]))
 
 
 class Forces(NamedTuple):
-    """All that accelerates flights."""
-
     gravity: Gravity
     partner_gravity: Gravity
     dynamics: Dynamics
@@ -154,6 +151,7 @@ def accelerate(
         for j in range(count):
             lane[i * LANES + j] = state[i, j]
     turns = len(forces.turning.states) > 0
+    # Gravity is read in the axes of the body, while states are in axes that turn uniformly.
     if turns:
         block_into_body(lane, count, forces.turning, when, scratch.turn)
     attract(lane, count, scratch, forces.gravity)

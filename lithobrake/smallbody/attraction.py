@@ -21,8 +21,6 @@ class Gravity(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Scratch of attract and of acceleration.accelerate."""
-
     near: Floats  # [ROWS * LANES], block of the near points
     far: Floats  # [ROWS * LANES], block of the far points
     lane: Integers  # [2 LANES], lanes of the near points, then of the far ones
@@ -35,7 +33,6 @@ class Workspace(NamedTuple):
 
 @compiled
 def workspace(vertex_count: int) -> Workspace:
-    """Room for a shape with this many vertices."""
     return Workspace(
         np.zeros(ROWS * LANES),
         np.zeros(ROWS * LANES),
@@ -66,6 +63,7 @@ def attract(lane: Floats, count: int, scratch: Workspace, gravity: Gravity) -> N
     """
     near, far, index = scratch.near, scratch.far, scratch.lane
     table, centre, nearest = gravity.table, gravity.multipole.centre, gravity.multipole.nearest
+    # Near and far points go into blocks of their own, since either way runs over many lanes at once without a branch.
     near_count = far_count = 0
     for j in range(count):
         x, y, z = lane[j], lane[LANES + j], lane[2 * LANES + j]
@@ -97,7 +95,6 @@ def attract(lane: Floats, count: int, scratch: Workspace, gravity: Gravity) -> N
 
 @compiled
 def _evaluate(points: Floats, result: Floats, gravity: Gravity) -> None:
-    """Field at many points, block by block."""
     lane, scratch = np.zeros(ROWS * LANES), workspace(len(gravity.polyhedron.vertices))
     for start in range(0, len(points), LANES):
         count = min(LANES, len(points) - start)
@@ -108,6 +105,7 @@ def _evaluate(points: Floats, result: Floats, gravity: Gravity) -> None:
         for j in range(count):
             for i in range(5):
                 result[start + j, i] = lane[(3 + i) * LANES + j]
+            # A block holds twice the potential.
             result[start + j, 3] *= 0.5
 
 

@@ -132,6 +132,7 @@ class RestitutionTable:
         count = len(impacts.speed)
         row, column = cells(self.speed, impacts.speed), cells(self.incidence_deg, np.degrees(impacts.incidence))
         scores, stays = random.standard_normal((count, 3)), random.random(count)
+        # A Gaussian copula: normal scores are correlated first, and become the quantiles of each restitution then.
         tie = self.correlation[row, column]
         scores[:, 1] = tie * scores[:, 0] + np.sqrt(1.0 - tie**2) * scores[:, 1]
         drawn = {}

@@ -91,6 +91,7 @@ def _rings() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     turns = np.concatenate(angles)
     tilt = np.repeat(0.5 * np.pi - spacing * np.arange(RINGS + 1), [len(a) for a in angles])
     cap = np.stack([np.cos(tilt) * np.cos(turns), np.cos(tilt) * np.sin(turns), np.sin(tilt)], axis=1)
+    # The cosine of a right angle is not 0 to the last bit.
     cap[0] = (0.0, 0.0, 1.0)
     facets = [facet for ring in range(RINGS) for facet in _strip(ring, first)]
     count, size = len(cap), 4 * RINGS
@@ -100,6 +101,7 @@ def _rings() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     band = np.concatenate(
         [np.stack([rim, rim + count, after + count], axis=1), np.stack([rim, after + count, after], axis=1)]
     )
+    # Mirrored facets would face inwards, so their corners run the other way round.
     south = north[:, ::-1] + count
     return np.concatenate([cap, cap * [1.0, 1.0, -1.0]]), np.concatenate([north, south, band])
 

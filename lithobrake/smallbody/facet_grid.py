@@ -40,6 +40,7 @@ class Grid(NamedTuple):
         lower, upper = low.min(axis=0), high.max(axis=0)
         if edge is None:
             edge = float((upper - lower).max()) / LARGEST
+        # A cell and a half, so that the outermost layer is empty and `clearance` can count on it.
         lower = lower - 1.5 * edge
         size = np.ceil((upper - lower) / edge).astype(np.int64) + 2
         first = np.floor((low - lower) / edge - PAD).astype(np.int64)
@@ -48,6 +49,7 @@ class Grid(NamedTuple):
         normal = np.cross(scaled[:, 1] - scaled[:, 0], scaled[:, 2] - scaled[:, 0])
         plane = np.column_stack([normal, np.einsum("fi,fi->f", normal, scaled[:, 0])])
         start = np.zeros(int(size.prod()) + 1, dtype=np.int32)
+        # Counted first and placed then, so that the facets of all cells stand in one array.
         _sort(first, last, plane, size, start, np.empty(0, dtype=np.int32))
         occupied = (start[1:] > 0).reshape(size)
         start = np.cumsum(start, dtype=np.int32)
@@ -125,6 +127,7 @@ def pseudonormals(
     result[:, 1:4] = edge_sum[index.reshape(-1, 3)]
     corner = vertices[faces]
     forth, back = corner[:, [1, 2, 0]] - corner, corner[:, [2, 0, 1]] - corner
+    # An arc cosine would lose the digits of the small angles of slivers.
     turn = np.arctan2(np.linalg.norm(np.cross(forth, back), axis=2), np.einsum("fci,fci->fc", forth, back))
     vertex_sum = np.zeros((size, 3))
     np.add.at(vertex_sum, faces.reshape(-1), (turn[:, :, None] * normals[:, None, :]).reshape(-1, 3))
@@ -144,6 +147,7 @@ def _closest_feature(p: Floats, a: Floats, b: Floats, c: Floats) -> tuple[float,
         d4 += v * (p[i] - b[i])
         d5 += u * (p[i] - c[i])
         d6 += v * (p[i] - c[i])
+    # Corners first, then edges, then the facet: each test counts on those before it.
     if d1 <= 0.0 and d2 <= 0.0:
         return 0.0, 0.0, 4
     if d3 >= 0.0 and d4 <= d3:
@@ -186,6 +190,8 @@ def height_near(grid: Grid, corner: Floats, outward: Floats, p: Floats) -> tuple
     """
     size, start, facets = grid.size, grid.start, grid.facets
     i, j, k = cell_of(grid, p[0], p[1], p[2])
+    # The cells around that of the point hold all facets nearer than an edge, and no others can be trusted to be the
+    # nearest.
     best, height, nearest = grid.edge, np.inf, -1
     for a in range(max(i - 1, 0), min(i + 2, size[0])):
         for b in range(max(j - 1, 0), min(j + 2, size[1])):
@@ -262,6 +268,7 @@ def first_entry(grid: Grid, corner: Floats, origin: Floats, along: Floats) -> tu
                 cell = (a * size[1] + b) * size[2] + c
                 for entry in range(start[cell], start[cell + 1]):
                     fraction, side = intersect_facet(corner, facets[entry], origin, along)
+                    # Only inward: a start on the ground, or within rounding of it, then does not hit what it leaves.
                     if side > 0.0 and 0.0 <= fraction <= 1.0 and fraction < best:
                         best, hit = fraction, facets[entry]
     return best, hit
@@ -276,5 +283,6 @@ def outermost_hit(corner: Floats, directions: Floats, distance: Floats, facet: I
         for f in range(len(corner)):
             t, side = intersect_facet(corner, f, origin, directions[r])
             # Going outwards the line leaves the body: the side is negative.
+            # `not t <=` lets the first hit pass, against a distance that is still NaN.
             if side < 0.0 and t > 0.0 and not t <= distance[r]:
                 distance[r], facet[r] = t, f

@@ -130,6 +130,7 @@ class Flights:
         """As Body.jacobi, with the mass and spin of each flight."""
         spin_rate = 2.0 * np.pi / self.start.spin_period
         turning = spin_rate**2 * (position[:, 0] ** 2 + position[:, 1] ** 2)
+        # The shape is one for all flights, so their potentials differ by the mass alone.
         depth = self.body.potential(position) * (self.start.mass / self.body.mass)
         constant: NDArray[np.float64] = 0.5 * ((velocity * velocity).sum(axis=1) - turning) - depth
         return constant
@@ -175,6 +176,7 @@ class Arcs:
     @classmethod
     def joined(cls, parts: "Sequence[Arcs]") -> "Arcs":
         """Arcs of one round after the other, lander by lander; at least one part."""
+        # Stable, so that the flights of one lander stay in the order of the rounds.
         order = np.argsort(np.concatenate([part.lander for part in parts]), kind="stable")
         names = (field.name for field in fields(cls))
         return cls(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))

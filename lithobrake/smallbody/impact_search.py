@@ -61,6 +61,7 @@ def step_error(derivative: Floats, step: float, j: int, length: float, speed: fl
         for m in range(STAGES):
             total += ERROR[m] * derivative[m, i, j]
         error = abs(step * total) / (length if i < 3 else speed)
+        # A maximum would pass over NaN, and the step would be taken.
         if not error < np.inf:
             return np.nan
         worst = max(worst, error)
@@ -69,9 +70,10 @@ def step_error(derivative: Floats, step: float, j: int, length: float, speed: fl
 
 @kernel
 def next_step(step: float, error: float) -> float:
-    """Step size whose error is expected to be just below 1."""
+    # NaN gives a fifth of the step, whose error may be a number again.
     if not error > 0.0:
         return step * 5.0 if error == 0.0 else step * 0.2
+    # The error of the pair goes with the fifth power of the step; with a tenth to spare few steps are refused.
     return step * min(5.0, max(0.2, 0.9 * error**-0.2))
 
 
@@ -93,7 +95,6 @@ def dense_coefficients(state: Floats, end: Floats, derivative: Floats, step: flo
 
 @kernel
 def dense_output(curve: Floats, fraction: float, i: int) -> float:
-    """Component i of the state at a fraction of the step."""
     remaining = 1.0 - fraction
     inner = curve[3, i] + remaining * curve[4, i]
     value: float = curve[0, i] + fraction * (curve[1, i] + remaining * (curve[2, i] + fraction * inner))
@@ -101,6 +102,7 @@ def dense_output(curve: Floats, fraction: float, i: int) -> float:
 
 
 ON_SURFACE, ALOFT = 0, 1
+# Halvings of a fraction of the step, down to its rounding.
 BISECTIONS = 48
 SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
@@ -192,7 +194,6 @@ def _closest_approach(here: Floats, there: Floats) -> float:
 def _fraction_at_plane(
     curve: Floats, ground: Ground, motion: Motion, facet: int, point: Floats, low: float, high: float
 ) -> float:
-    """Fraction between low and high at which the curve passes the plane of a facet."""
     corner, outward = ground.corners, ground.pseudonormals
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -267,9 +268,11 @@ def find_impact(
     _position_at(curve, 0.0, motion, here)
     if phase == ALOFT:
         _position_at(curve, 1.0, motion, there)
+        # A step that clears the sphere around the body needs no look at its facets, as most do against a partner.
         if _closest_approach(here, there) > ground.radius + 0.125 * acceleration * step * step:
             return 1.0, -1, phase
     fastest, longest = _chord_limits(ground, pace, acceleration, step)
+    # A lander on the ground may turn back at once, so the first looks are a few slacks apart.
     stride = min(longest, 4.0 * slack / pace) if pace > 0.0 else longest
     time, height = 0.0, 0.0
     if phase == ON_SURFACE:
@@ -291,6 +294,7 @@ def find_impact(
             gap = clearance(grid, here[0], here[1], here[2])
             until = min(time + (gap / fastest if gap > 0.0 else longest), step)
             _position_at(curve, until / step, motion, there)
+            # A chord within the clearance of its beginning meets no facet, so none is looked at.
             facet = _entered_facet(ground, here, there, chord) if gap == 0.0 else -1
             if facet >= 0:
                 fraction = _fraction_at_plane(curve, ground, motion, facet, there, time / step, until / step)

@@ -53,6 +53,7 @@ def axes_at(turning: Turning, time: float) -> tuple[Vector, Vector, Vector]:
     x = here * first[1] + leaving * first[5] + there * second[1] + coming * second[5]
     y = here * first[2] + leaving * first[6] + there * second[2] + coming * second[6]
     z = here * first[3] + leaving * first[7] + there * second[3] + coming * second[7]
+    # Over the square of its length, which a cubic does not keep at 1.
     twice = 2.0 / (w * w + x * x + y * y + z * z)
     return (
         (1.0 - twice * (y * y + z * z), twice * (x * y + w * z), twice * (x * z - w * y)),
@@ -197,6 +198,7 @@ class AttitudeHistory:
         interval = np.repeat(np.arange(len(whole) - 1), PLACES + 1)
         share = np.tile(np.arange(PLACES + 1) / PLACES, len(whole) - 1)
         spin, change = _curve(states, self.step, interval, share)[1:]
+        # Between the places where they are taken, the cubic's rates may be a little larger.
         fastest, largest = (SAFETY * float(np.linalg.norm(one, axis=1).max()) for one in (spin, change))
         return Turning(float(self.step), states, fastest, largest)
 
@@ -242,6 +244,7 @@ def _curve(states: Array, step: float, interval: NDArray[np.int64], u: Array) ->
     square = np.sum(quaternion**2, axis=1, keepdims=True)
     back = quaternion * np.array([1.0, -1.0, -1.0, -1.0]) / square
     spin = 2.0 * quaternion_products(back, rate)[:, 1:]
+    # A cubic does not keep the length of a quaternion; what changes that length turns nothing.
     lengthening = 2.0 * np.sum(quaternion * rate, axis=1, keepdims=True) / square
     change = 2.0 * quaternion_products(back, bend)[:, 1:] - lengthening * spin
     return quaternion, spin, change
@@ -251,7 +254,6 @@ Rotation = AttitudeHistory | None
 
 
 def turning_of(rotation: Rotation) -> Turning:
-    """What kernels read."""
     return Turning.none() if rotation is None else rotation.turning
 
 
@@ -275,6 +277,7 @@ def ground_spin(rotation: Rotation, time: Array, spin_period: Array) -> Array:
 
 def kept_among_stars(rotation: Rotation, vectors: Array, start: Array, time: Array, spin_period: Array) -> Array:
     """Body-fixed vectors at a start, which then stay among the stars, as body-fixed ones a time later."""
+    # The frame turns on by this angle, so what stays among the stars turns back in it.
     angle = 2.0 * np.pi / spin_period * time
     c, s = np.cos(angle), np.sin(angle)
     x, y, z = (vectors if rotation is None else rotation.at(start).into_frame(vectors)).T

@@ -61,6 +61,7 @@ def rotation_history(
     principal[:, 2] *= np.sign(np.linalg.det(principal))
     start = _turns(*angles) @ principal
     whole = principal.T @ rates + body.spin_rate * start[2]
+    # The unit of all rates, so that one tolerance holds for the quaternion and for them.
     pace = max(body.spin_rate, math.sqrt(_twist(body)), float(np.linalg.norm(whole)))
     found = solve_ivp(
         _derivative(body, moments, pace),
@@ -221,6 +222,7 @@ def _reply(
     _stamps: tuple[Any, ...],
     *arguments: str | int | tuple[str, ...],
 ) -> Reply:
+    # The stamps are only part of the key: files that have changed are read again.
     return read_apart(function, paths, *arguments, kernels=paths)
 
 
@@ -230,4 +232,5 @@ def _stamp(path: str) -> tuple[int, int, int] | None:
         found = os.stat(path)
     except OSError:
         return None
+    # The inode too, as a file may be replaced by one of the same size within a tick of the clock.
     return found.st_ino, found.st_size, found.st_mtime_ns

@@ -52,6 +52,7 @@ class Shape:
         used, index = np.unique(faces, return_inverse=True)
         self.vertices, self.faces = self.vertices[used], np.ascontiguousarray(index.reshape(faces.shape))
         self.volume, self.centroid, self.inertia_per_density = mass_properties(self.vertices, self.faces)
+        # Moments, grids and tables are made from these once, and would be wrong after a change.
         self.vertices.flags.writeable = self.faces.flags.writeable = False
 
     @classmethod
@@ -193,6 +194,7 @@ class Shape:
     def latitude_longitude(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Planetocentric latitude and east longitude in (-180, 180] [deg] of body-fixed points [m], shape [..., 3]."""
         p = self._checked(points)
+        # No arc sine, which loses half of its digits towards the poles.
         latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
         return latitude, np.where(longitude == -180.0, 180.0, longitude)
@@ -253,6 +255,7 @@ class Shape:
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
         p = self._checked(points)
+        # Halfway between 0 outside and 4 pi inside, far above the rounding of the sum.
         inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
         return inside.reshape(p.shape[:-1])
 
@@ -272,6 +275,7 @@ def delivered_directions(
     eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
     way = np.hypot(north, east)
     turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
+    # Errors of 0 have no direction: the caller leaves these places out.
     ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
     there: NDArray[np.float64] = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
     return there

@@ -40,10 +40,13 @@ def over_edges(
         start[on] += part[:, None] * way[on]
         fold = Fold.of(shape, facet[on], edge)
         across, speed = -np.einsum("ni,ni->n", velocity[on], fold.inward), np.linalg.norm(velocity[on], axis=1)
+        # The bend counts over the way from middle to middle of both facets, so that the fineness of a mesh does not
+        # decide who leaves the ground.
         off = (across > 0.0) & (across**2 * fold.angle > press[on] * fold.spread)
         lifted[on[off]], way[on[off]] = True, 0.0
         on, fold, across, speed = on[~off], fold.of_some(~off), across[~off], speed[~off]
         share = np.divide(across, speed, out=np.zeros_like(speed), where=speed > 0.0)
+        # The capstan equation, with the sign of the bend.
         kept = np.exp(braking[on] * fold.angle * np.abs(share))
         way[on] = fold((1.0 - part[~off])[:, None] * way[on])
         velocity[on] = kept[:, None] * fold(velocity[on])
@@ -56,6 +59,7 @@ def over_edges(
 def first_edge(shape: Shape, facet: Whole, start: Array, way: Array) -> tuple[Whole, Array]:
     """Number of the edge through which each way leaves its facet, -1: none, and the part of the way before it."""
     corner, inward = shape.corners[facet], shape.inward[facet]
+    # A start that rounding has put beyond an edge counts as on it.
     before = np.maximum(np.einsum("nei,nei->ne", inward, start[:, None] - corner), 0.0)
     change = np.einsum("nei,ni->ne", inward, way)
     out = before + change < -1e-12 * shape.radius
@@ -82,12 +86,12 @@ class Fold:
 
     @classmethod
     def of(cls, shape: Shape, facet: Whole, edge: Whole) -> "Fold":
-        """Those of edges of facets, by their number."""
         row, beyond = np.arange(len(facet)), shape.neighbours[facet, edge]
         corner, up, next_up = shape.corners[facet], shape.normals[facet], shape.normals[beyond]
         side = corner[row, (edge + 1) % 3] - corner[row, edge]
         along = unit(side)
         inward, onward = np.cross(up, along), np.cross(along, next_up)
+        # An arc cosine would lose the sign of the bend, and the digits of small ones.
         angle = np.arctan2(-np.einsum("ni,ni->n", onward, up), np.einsum("ni,ni->n", up, next_up))
         # A facet's middle lies a third of its height off its edge.
         far = [
@@ -97,7 +101,6 @@ class Fold:
         return cls(along, inward, onward, angle, (far[0] + far[1]) / 3.0, beyond)
 
     def of_some(self, some: NDArray[np.bool_]) -> "Fold":
-        """Some of them."""
         return Fold(**{field.name: getattr(self, field.name)[some] for field in fields(self)})
 
     def __call__(self, vectors: Array) -> Array:
@@ -107,6 +110,7 @@ class Fold:
         return folded
 
 
+# The way across a slope is then right to half a percent.
 TURN = 0.05  # rad by which the velocity may turn in a step
 FACET_STEP = 0.25  # of a facet's size: how far a step may go
 NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step
@@ -151,7 +155,6 @@ class OnGround:
     rolls: bool = False
 
     def of(self, some: NDArray[np.int64]) -> "OnGround":
-        """Some of them."""
         names = ("facet", "friction", "mass", "spin_period", "time")
         return replace(self, **{name: getattr(self, name)[some] for name in names})
 
@@ -204,6 +207,7 @@ def slide(ground: OnGround, position: Array, velocity: Array, duration: Array) -
     """
     count, corner = len(position), ground.body.shape.corners[ground.facet, 0]
     position, velocity = corner + ground.along(position - corner), ground.along(velocity)
+    # Stopped here, since in the equations infinite friction times a press of 0 is not a number.
     velocity[np.isinf(ground.friction)] = 0.0
     facet, time, length = ground.facet.copy(), np.zeros(count), np.zeros(count)
     rests, leaves = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
@@ -241,6 +245,7 @@ def _step(
     across = np.linalg.norm(push + slowing[:, None] * heading, axis=1)
     shape, facet = ground.body.shape, ground.facet
     with np.errstate(divide="ignore", invalid="ignore"):
+        # fmax and fmin pass over NaN, which stands where nothing turns the way or slows it down.
         turning = np.fmax(TURN * speed / across, _time_to_go(np.full_like(speed, NEAR), speed, slowing))
         stop = np.where((slowing > 0.0) & (speed > 0.0), speed / slowing, np.inf)
     step = np.fmin(turning, _time_to_go(FACET_STEP * shape.facet_sizes[facet], speed, slowing))
@@ -253,11 +258,13 @@ def _step(
     middle = velocity + half * push
     push, _ = ground.acceleration(middle, *ground.forces(position + half * velocity, middle))
     way = step[:, None] * velocity + 0.5 * step[:, None] ** 2 * push
+    # At a stop the velocity is 0 to the last bit, as only then the ground can hold the lander.
     return step, way, np.where((step == stop)[:, None], 0.0, velocity + step[:, None] * push)
 
 
 def _time_to_go(distance: Array, speed: Array, slowing: Array) -> Array:
     """Time [s] in which landers go a distance [m]; more than they have until they stop where they do not get there."""
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The root in the denominator: in the other form all digits cancel where friction takes little of the speed.
         time: Array = 2.0 * distance / (speed + np.sqrt(np.maximum(speed**2 - 2.0 * slowing * distance, 0.0)))
     return np.where(np.isnan(time), np.inf, time)

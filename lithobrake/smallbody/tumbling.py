@@ -95,12 +95,14 @@ def _principal(inertia: ArrayLike) -> tuple[Floats, Floats]:
     largest = np.abs(matrix).max()
     if largest == 0.0 or np.abs(matrix - matrix.T).max() > 1e-9 * largest:
         raise ValueError("inertia is 0 or not symmetric; give the tensor about the centroid in kg m2")
+    # Over the largest moment, so that inertias of any unit neither overflow nor underflow in their products.
     moments, axes = np.linalg.eigh(0.5 * (matrix + matrix.T) / largest)
     if moments[0] <= 0.0:
         raise ValueError(f"inertia has the principal moment {moments[0] * largest:g}, but each must be above 0")
     moments = moments / moments[2]
     moments[1] = 1.0 if 1.0 - moments[1] <= SAME_MOMENT else moments[1]
     moments[0] = moments[1] if moments[1] - moments[0] <= SAME_MOMENT else moments[0]
+    # Eigenvectors may be left-handed, and no quaternion mirrors.
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     return moments, axes
 
@@ -283,6 +285,7 @@ def turned_freely(
     [s].
     """
     turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
+    # The lander turns among the stars, while the axes that its attitude is against turn on with the body.
     back = about_z(-2.0 * math.pi / spin_period * time)
     if ground is not None:
         begin, end = (Rotation.from_matrix(ground.at(at).axes[0]) for at in (start, start + time))

@@ -61,6 +61,7 @@ def _top(grain: ConvexHull, turn: Floats, x: Floats, y: Floats) -> Floats:
     normals = grain.polyhedron.face_normals @ rotation_matrix(turn).T
     offsets = grain.polyhedron.face_offsets - grain.polyhedron.face_normals @ grain.centroid
     rest = offsets[:, None] - normals[:, :1] * x - normals[:, 1:2] * y
+    # Upright faces bound the ray from the side, and neither from above nor below: they are looked at apart.
     with np.errstate(divide="ignore", invalid="ignore"):
         crossing = rest / normals[:, 2:]
     top = np.where(normals[:, 2:] > 0.0, crossing, np.inf).min(axis=0)
@@ -74,6 +75,7 @@ FORMAT_VERSION = 2
 # A bed ends at the walls of a box, or goes on with its own image on every side.
 SIDES = ("walls", "periodic")
 # Friction of the floor under grains on a slope without walls, at least, over the tangent of the slope.
+# On such a floor grains settle and hold down to a friction of 0.4 of the tangent; studies that go lower are refused.
 HOLDING = 2.0
 
 
@@ -161,6 +163,8 @@ class Bed:
     @cached_property
     def elastic_energy_per_modulus(self) -> float:
         """Elastic energy of its contacts as they overlap, over the effective Young's modulus that they have [m3]."""
+        # At given overlaps elastic energy is in proportion to the modulus, so one assembly of the bed serves every soil
+        # it is landed with.
         unit = Material(young_modulus=1.0, poisson_ratio=0.0, restitution=1.0, friction=0.0, density=self.density)
         elastic = self.world(unit, self.gravity, ContactModel()).energy()["elastic"]
         return elastic / pair_law(unit, unit).young_modulus
@@ -230,7 +234,6 @@ SCALARS = (
 
 
 def plain(value: Any) -> Any:
-    """Return an HDF5 attribute as plain Python: tuples of floats, ints, floats."""
     return tuple(float(v) for v in value) if np.ndim(value) else value.item()
 
 
@@ -252,7 +255,6 @@ def write_hulls(file: Any, hulls: Sequence[Surface]) -> None:
 
 
 def read_hulls(file: Any) -> list[ConvexHull]:
-    """Read what `write_hulls` wrote."""
     vertices, start = file["vertices"][()], file["vertex_start"][()]
     return [ConvexHull(vertices[a:b]) for a, b in itertools.pairwise(start)]
 
@@ -271,6 +273,7 @@ def boxed_world(
     numbers = world.add_bodies(grains, material, position, orientation)
     along, aside, out = gravity if tilted is None else tilted
     slope = math.hypot(along, aside) / abs(out) if out != 0.0 else 0.0
+    # On level ground the floor keeps the material of the grains, and so their bits; between walls the box holds them.
     holds = sides == "walls" or slope == 0.0
     floor = material if holds else replace(material, friction=max(material.friction, HOLDING * slope), rough=True)
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), floor)
@@ -280,5 +283,6 @@ def boxed_world(
         for sign in (-1.0, 1.0):
             point, normal = np.zeros(3), np.zeros(3)
             point[axis], normal[axis] = 0.5 * sign * width[axis], -sign
+            # The lander meets no wall: one that crosses the rim has left the bed, which the judge has to see.
             world.add_plane(tuple(point), tuple(normal), material, bodies=numbers)
     return world

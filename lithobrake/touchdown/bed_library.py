@@ -79,7 +79,6 @@ def _code() -> list[str]:
 
 @cache
 def _library(gigabytes: str) -> DiskCache | None:
-    """The library of a size; None where beds are neither kept nor looked for."""
     try:
         limit = float(gigabytes)
     except ValueError:

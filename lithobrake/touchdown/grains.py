@@ -104,6 +104,7 @@ def make_grain(generator: np.random.Generator, point_count: int, diameter: float
     """Return the envelope of points drawn evenly in a ball, scaled to the volume of a sphere of a diameter [m]."""
     directions = generator.normal(size=(point_count, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
+    # A ball holds points in proportion to the cube of its radius.
     cloud = directions * np.cbrt(generator.random(point_count))[:, None]
     hull = ConvexHull(cloud)
     scale = np.cbrt(math.pi / 6.0 * diameter**3 / hull.volume)
@@ -112,6 +113,7 @@ def make_grain(generator: np.random.Generator, point_count: int, diameter: float
 
 def random_orientation(generator: np.random.Generator) -> Floats:
     """Return a unit quaternion (w, x, y, z) drawn evenly over all rotations."""
+    # Four normal numbers have no preferred direction, so their quaternion is even on the sphere of unit quaternions.
     quaternion = generator.normal(size=4)
     return quaternion / np.linalg.norm(quaternion)
 
@@ -161,6 +163,8 @@ class Boulders:
 
     def mean_count(self, area: float) -> float:
         """How many boulders ground of an area [m2] has in the mean."""
+        # The coverage is one of areas, so the count follows from the mean square of the diameters, and not from the
+        # mean diameter.
         square = float(np.mean(self.sizes.draw((np.arange(1000) + 0.5) / 1000) ** 2))
         return self.coverage * area / (0.25 * math.pi * square)
 
@@ -219,6 +223,7 @@ def free_places(
     """
     places: list[Floats] = []
     for radius in reach:
+        # Where the ground repeats a boulder may lie across a side: its image fills what is missing on the other one.
         slack = np.maximum(0.5 * np.array(width) - (0.0 if period else radius), 0.0)
         for _ in range(PLACES_TRIED):
             place = slack * generator.uniform(-1.0, 1.0, size=2)

@@ -88,6 +88,7 @@ class Lander:
             return min(self.shape.lengths)
         if isinstance(self.shape, Sphere):
             return 2.0 * self.shape.radius
+        # Over faces alone this is an upper bound of the least width, which may lie between two edges.
         heights = self.shape.polyhedron.face_normals @ self.shape.vertices.T
         return float((heights.max(axis=1) - heights.min(axis=1)).min())
 

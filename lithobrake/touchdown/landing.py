@@ -162,7 +162,6 @@ def picture(lander: Lander) -> Mesh:
 
 
 def hull_about_centroid(shape: Shape) -> ConvexHull:
-    """Return a hull about the centroid that looks like the shape."""
     if isinstance(shape, ConvexHull):
         return ConvexHull(shape.vertices - shape.centroid)
     assert isinstance(shape, Sphere)

@@ -66,8 +66,6 @@ def capture_lift(lander: Lander, gravity: float) -> float:
 
 
 class OutcomeJudge:
-    """Looks at the lander every few steps, until it can tell how the touchdown ended."""
-
     def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
@@ -123,6 +121,7 @@ class OutcomeJudge:
         if self.bed.period is None or self.world.first_touch is None:
             return
         self.path += math.hypot(*(self.motion.position - before)[:2])
+        # The path between touches in flight stirs no ground, so it counts only once another touch has followed.
         if self.world.watched["last_contact"] > self.last_time:
             self.path_in_contact = self.path
 
@@ -148,7 +147,6 @@ class OutcomeJudge:
         return max(ground, boulder), max(clear, boulder)
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
-        """Return how the touchdown ended, or None while it is open."""
         if self.rest is not None:
             return self.judge_to_rest(self.rest, height, has_touched)
         world, position, velocity = self.world, self.motion.position, self.motion.velocity
@@ -199,11 +197,12 @@ class OutcomeJudge:
         force = np.linalg.norm(world.contact_force, axis=1)
         frame = {"position": world.position, "orientation": world.orientation, "force": force}
         self.frames.append({"time": np.array(world.time - self.start_time), **frame})
+        # How long a landing lasts is not known, so every second frame goes as it gets longer: memory stays bounded and
+        # frames even.
         if len(self.frames) == 2 * self.frame_count:
             self.frames, self.stride = self.frames[::2], 2 * self.stride
 
     def outcome(self) -> Outcome:
-        """Return what came of the landing."""
         world, motion = self.world, self.motion
         assert self.ended is not None
         left = self.ended == TouchdownOutcome.CLEAR

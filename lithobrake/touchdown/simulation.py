@@ -81,6 +81,8 @@ def released_speed(bed: Bed, material: Material) -> float:
     what they lose as they sink to the overlaps of a soil k times as stiff: k - 5/2 + 3/2 k^(-2/3) of what they held,
     from Hertz' law for a constant load.
     """
+    # Relaxing a bed can take twenty times the CPU time of the landing, so it is left out where the landing would not
+    # feel what it removes.
     rest = replace(material, young_modulus=bed.young_modulus, poisson_ratio=bed.poisson_ratio)
     held, stiffness = (pair_law(one, one).young_modulus for one in (rest, material))
     k = stiffness / held

@@ -153,8 +153,6 @@ class Reactions(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a step needs beside the arrays."""
-
     time_step: float  # s
     drag: float  # 1/s, viscous damping of all motion, 0 but in settling
     gravity: tuple[float, float, float]  # m/s2
@@ -163,13 +161,11 @@ class Step(NamedTuple):
 
 @kernel
 def first_shape(pair: int, bodies: Bodies, pairs: Pairs) -> int:
-    """Return the shape of the first of a pair."""
     return bodies.shape[pairs.first_part[pair]]
 
 
 @kernel
 def both_shapes(pair: int, bodies: Bodies, pairs: Pairs) -> tuple[int, int]:
-    """Return the shapes of both of a pair of bodies."""
     return bodies.shape[pairs.first_part[pair]], bodies.shape[pairs.second_part[pair]]
 
 

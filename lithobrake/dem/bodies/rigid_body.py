@@ -80,8 +80,6 @@ class Part:
 
 
 class PlacedPart(NamedTuple):
-    """A part as contacts see it."""
-
     shape: Shape
     material: Material
     offset: Offset  # m, from the centre of mass of the body to the centroid of the shape, frame of the shape
@@ -129,11 +127,14 @@ class RigidBody:
         """Arm at which a spin moves the surface [m]: 0 for a ball about its centre, which looks the same."""
         if self.is_plain:
             return 0.0 if isinstance(self.shape, Sphere) else self.shape.bounding_radius
+        # A ball off the centre of mass is carried round with its centre, but its own turning moves none of its surface.
         return max(placed_radius(part) - isinstance(part.shape, Sphere) * part.shape.rounding for part in self.parts)
 
     @cached_property
     def smallest_masses_at_contact(self) -> tuple[float, ...]:
         """Smallest mass [kg] that a contact force meets on each part."""
+        # A push on a plain ball passes through its centre, whatever its inertia; for a uniform hull the fraction
+        # depends on the shape alone, which keeps it for all bodies that share it.
         if self.is_plain and (self.is_uniform or not isinstance(self.shape, ConvexHull)):
             return (self.mass * self.shape.smallest_mass_fraction,)
         per_mass, centre = self.inertia / self.mass, self.centre_of_mass
@@ -191,8 +192,6 @@ def _body_of_parts(
 
 
 class Assembly(NamedTuple):
-    """What parts come to together."""
-
     mass: float  # kg
     centre: Floats  # m, [3], of mass
     inertia: Floats  # kg m2, [3, 3], about that
@@ -216,10 +215,12 @@ def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
 def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:
     """Return bodies of one material, as new_body makes each."""
     volume = np.array([shape.volume for shape in shapes])
+    # The operations are those of `new_body` in the same order, so both ways give the same bits.
     mass = material.density * volume
     inertia = (
         np.array([shape.inertia_per_density for shape in shapes]).reshape(-1, 3, 3) * (mass / volume)[:, None, None]
     )
+    # `repeat` has no end, so the lengths cannot be compared.
     return [
         RigidBody(*one, is_uniform=True) for one in zip(shapes, repeat(material), mass.tolist(), inertia, strict=False)
     ]
@@ -272,6 +273,7 @@ def unit(value: ArrayLike, name: str) -> Floats:
 def units(vectors: Floats, name: str) -> Floats:
     """Return vectors of unit length, [count, 3 or 4]. Raises ValueError where one has none."""
     length = np.sqrt((vectors * vectors).sum(axis=1))
+    # Stated as what is allowed: NaN fails every comparison, so it would pass a test for what is not.
     if not ((length > 0.0) & (length < np.inf)).all():
         wrong = vectors[~((length > 0.0) & (length < np.inf))][0].tolist()
         raise ValueError(f"{name} is {wrong}; allowed is any finite vector other than zero: change it")

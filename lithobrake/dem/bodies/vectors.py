@@ -9,42 +9,37 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Floats, Period
 
+# Tuples of three numbers, since kernels allocate nothing: a product of arrays would make an array of its result.
 Vector = tuple[float, float, float]
 
 
 @kernel
 def dot(a: Vector, b: Vector) -> float:
-    """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
 def cross(a: Vector, b: Vector) -> Vector:
-    """Return a x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @kernel
 def plus(a: Vector, b: Vector) -> Vector:
-    """Return a + b."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @kernel
 def minus(a: Vector, b: Vector) -> Vector:
-    """Return a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 @kernel
 def scaled(factor: float, a: Vector) -> Vector:
-    """Return factor * a."""
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
 @kernel
 def tangential_part(vector: Vector, normal: Vector) -> Vector:
-    """Return the part of a vector across the normal."""
     return minus(vector, scaled(dot(vector, normal), normal))
 
 

@@ -39,6 +39,7 @@ def damping_ratio_of(restitution: float) -> float:
     """Return the damping ratio from which exactly this restitution comes out, at every speed."""
     if restitution == 1.0:
         return 0.0
+    # Restitution falls towards 0 as the damping ratio grows without end, so no bound serves for all.
     upper = 1.0
     while restitution_of(upper) > restitution:
         upper *= 2.0
@@ -52,8 +53,6 @@ TANGENTIAL_DASHPOTS = ("mindlin", "none")
 
 
 class PairLaw(NamedTuple):
-    """What two touching materials have in common."""
-
     young_modulus: float  # effective, Pa
     shear_modulus: float  # effective, Pa
     damping_ratio: float  # of the normal contact, -
@@ -81,7 +80,6 @@ def contact_options(
 
 
 def pair_value(a: float, b: float, rule: str) -> float:
-    """Combine a property of two materials: the smaller, the mean or the geometric mean."""
     if rule == "smaller":
         return min(a, b)
     return 0.5 * (a + b) if rule == "mean" else math.sqrt(a * b)
@@ -104,6 +102,7 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
             "restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy"
         )
     }  # fmt: skip
+    # A rough floor holds a bed on a slope that is steeper than the friction of its grains, against any rule for pairs.
     if a.rough or b.rough:
         shared["friction"] = max(one.friction for one in (a, b) if one.rough)
     return PairLaw(
@@ -115,7 +114,6 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
 
 @kernel
 def law_between(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws) -> PairLaw:
-    """Return the law of the materials of the members of a pair."""
     here, other = bodies.material[pairs.first_part[pair]], pairs.second_part[pair]
     there = bodies.material[other] if other >= 0 else planes.material[-1 - other]
     return PairLaw(

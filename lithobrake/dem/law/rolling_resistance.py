@@ -28,6 +28,7 @@ def resist_rolling(
         return torque
     before = turned_spring(row(pairs.roll, pair), row(pairs.normal, pair), normal, motion.twist * time_step)
     rolling = ROLLING_STIFFNESS * springs.secant * lever * lever
+    # The inertia that the couple really meets: it rings down at the material's own rate, whatever the lever.
     inverse_inertia = inverse_inertia_across(bodies, pairs.first[pair], pairs.second[pair], normal)
     dashpot = 2.0 * law.damping_ratio * (rolling / inverse_inertia) ** 0.5
     rate = tangential_part(motion.spin, normal)

@@ -46,8 +46,6 @@ class Flight(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """What holds for all bodies and contacts of a run."""
-
     gravity: Vector  # m/s2
     drag: float  # 1/s
     paper_mass: bool  # as in Step
@@ -87,6 +85,7 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     before = row(bodies.velocity, body)
     after = fall(bodies, body, before, time, rules)
     spin = spin_bound(bodies, flight, body)
+    # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
     fastest = max(dot(before, before), dot(after, after)) ** 0.5
     bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
     parts = 1 + int(spin * time / LARGEST_TURN)
@@ -108,6 +107,7 @@ def fall(bodies: Bodies, body: int, before: Vector, time: float, rules: Rules) -
         way = plus(scaled(time, last), scaled((1.0 - kept) / rules.drag, minus(before, last)))
         add(bodies.position, body, 1.0, way)
         momentum = row(bodies.angular_momentum, body)
+        # The motion is exact; the ledger takes the mean of the losses at both ends.
         turning = dot(momentum, spin_of(bodies, body)) * (1.0 + kept * kept)
         moving = bodies.mass[body] * (dot(before, before) + dot(after, after))
         bodies.dragged[body] += 0.5 * rules.drag * time * (moving + turning)
@@ -171,8 +171,6 @@ def time_to_close(gap: float, speed: float, acceleration: float) -> float:
 
 
 class Approach(NamedTuple):
-    """How near a pair is to touching."""
-
     gap: float  # m, of the feature that may touch first; not above 0 where one touches
     speed: float  # m/s, at which that one meets at most while the plans hold
     time: float  # s, before which none touches
@@ -237,7 +235,6 @@ def approach_to_plane(
     pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight,
     acceleration: float, approach: Approach,
 ) -> Approach:  # fmt: skip
-    """Return the soonest of an approach and of the listed corners near a plane."""
     body, plane = pairs.first[pair], -1 - pairs.second[pair]
     shape, outward, spin = first_shape(pair, bodies, pairs), row(planes.normal, plane), spin_of(bodies, body)
     level = dot(outward, row(bodies.position, body)) - planes.offset[plane] - cores.rounding[shape]
@@ -253,7 +250,6 @@ def approach_to_plane(
 def approach_to_body(
     pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, flight: Flight, acceleration: float, approach: Approach
 ) -> Approach:
-    """Return the soonest of an approach and of the listed features of two bodies."""
     first, second = pairs.first[pair], pairs.second[pair]
     apart, shapes = way_between(bodies, first, second), both_shapes(pair, bodies, pairs)
     between = minus(row(bodies.velocity, second), row(bodies.velocity, first))
@@ -284,6 +280,7 @@ def approach_of_spheres(
     """Return the sooner of an approach and of two spheres whose bodies move against each other, `between` [m/s]."""
     first, second = pairs.first[pair], pairs.second[pair]
     centre, apart, central = sphere_centres(pair, bodies, cores, pairs)
+    # A ball about its centre of mass turns without moving its surface; one off the centre is carried round.
     if not central:
         arm = minus(centre, row(bodies.position, first))
         other_arm = minus(plus(arm, apart), way_between(bodies, first, second))

@@ -109,6 +109,7 @@ def let_go(
     entry = flight.head[body]
     while entry >= 0:
         pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
+        # A contact that waited has not slid all that time: its next step begins now.
         if agenda.due[item] == np.inf:
             plans.last[pair] = now
             put_on(agenda, item, now)
@@ -143,5 +144,6 @@ def hold_what_is_slow(
             if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now
                 let_go(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)
+        # What touches nothing flies, however slowly, and held it would hang above the ground.
         elif far and surface_speed(bodies, flight, body) < CALM * limit and touches(pairs, flight, plans, body):
             hold(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)

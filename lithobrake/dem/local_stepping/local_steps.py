@@ -114,6 +114,7 @@ def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
     velocity, other_velocity = row(bodies.velocity, first), (0.0, 0.0, 0.0)
     touched = plans.interval[pair] > 0.0 and step.time_step > 0.0
     if touched:
+        # `contact_force` takes slip as velocity times step, so velocities of the mean motion stand in here.
         way = minus(way_to_second(bodies, first, second), row(plans.apart, pair))
         mean = scaled(1.0 / step.time_step, way)
         put(bodies.half_spin, first, scaled(0.5, plus(row(bodies.half_spin, first), row(plans.spin[pair], 0))))
@@ -140,6 +141,7 @@ def next_step(
 
     Writes to plans.
     """
+    # From the rate of the contact and not from its bodies, so that strong damping counts in it.
     plans.inverse_mass[pair] = rate * pairs.overlap[pair] / (1.5 * pairs.elastic_force[pair])
     plans.longest[pair] = pair_step(pair, bodies, planes, pairs, laws, rules.paper_mass, STABLE_PART)
     step = contact_step(pair, bodies, pairs, flight, plans, rules)
@@ -160,6 +162,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     if planned > 0.0:
         force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
         other_torque = row(reactions.second_torque, pair)
+    # A held body stands still, whatever kicks it has been given.
     predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
     if second >= 0:
         predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
@@ -171,6 +174,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     interval = 0.0
     if pairs.overlap[pair] > 0.0:
         interval = next_step(pair, bodies, planes, pairs, laws, flight, plans, planned, rate, rules)
+        # What passed before a contact begins was flight: at most half of the coming interval counts of it.
         time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))

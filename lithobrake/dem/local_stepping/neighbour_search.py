@@ -104,6 +104,7 @@ def add_pair(
         return False
     plans.free_count[0] -= 1
     pair = plans.free[plans.free_count[0]]
+    # The smaller number comes first, as in the lists for common steps.
     own, other = (1, 0) if 0 <= members[1] < members[0] else (0, 1)
     pairs.first[pair], pairs.second[pair] = members[own], members[other]
     pairs.first_part[pair], pairs.second_part[pair] = parts[own], parts[other]
@@ -163,6 +164,7 @@ def list_if_near(
     """
     bodies, cores, planes, pairs, laws, scratch, _ = system
     flight, plans, agenda, _ = schedule
+    # A stamp saves a walk through all pairs of the body for each candidate.
     if flight.stamp[stamp_of(bodies, parts[1])] == parts[0]:
         return True
     if not is_near(bodies, cores, planes, scratch, flight, members, parts, now, rules):
@@ -257,6 +259,7 @@ def drop_distant(system: System, schedule: Schedule, body: int, part: int, now: 
         if parts[0] != part:
             entry = after
             continue
+        # A pair that touches is never forgotten: its springs hold energy and history.
         is_apart = pairs.overlap[pair] == 0.0
         if is_apart and not is_near(bodies, cores, planes, scratch, flight, (body, other), parts, now, rules):
             forget_pair(pair, pairs, flight, plans, agenda, len(bodies.mass))

@@ -71,7 +71,6 @@ def band_along(
 
 @kernel
 def is_point(cores: Cores, shape: int) -> bool:
-    """Whether a core is a point: the shape is a sphere."""
     return cores.face_start[shape] == cores.face_start[shape + 1]
 
 
@@ -118,6 +117,7 @@ def list_edges(
         depth, climb = band.top - dot(begin, band.normal), -dot(along, band.normal)
         if min(depth, depth + climb) >= band.depth:
             continue
+        # Only the part of an edge in the band can be near enough, and its small box leaves few pairs to measure.
         low, high = box_in_band(begin, along, depth, climb, band.depth)
         for k in range(near):
             if beyond(low, row(turned.feature[:, 9:], k), band.farthest):
@@ -159,6 +159,7 @@ def box_in_band(begin: Vector, along: Vector, depth: float, climb: float, deepes
 
     Its begin is at a depth, its end deeper by `climb`; one of them at least is less deep.
     """
+    # At most one end is too deep, so where `climb` divides it is not 0.
     start = (deepest - depth) / climb if depth >= deepest else 0.0
     stop = (deepest - depth) / climb if depth + climb >= deepest else 1.0
     a, b = plus(begin, scaled(start, along)), plus(begin, scaled(stop, along))
@@ -278,6 +279,7 @@ def list_bodies(
     pairs.feature_count[pair] = 0
     apart = way_between(bodies, first, second)
     bound = dot(apart, apart) ** 0.5 - bodies.bounding_radius[first] - bodies.bounding_radius[second]
+    # Bounding spheres that far apart prove as much as a search would, at a fraction of the cost.
     if bound >= margin:
         return bound
     reach = both_roundings(cores, shapes)
@@ -303,4 +305,5 @@ def list_bodies(
     if not hulls:
         return margin
     list_edges(pair, cores, pairs, turned, relative, shapes, there, band)
+    # Once the bodies have moved by the distance of their cores these may cross, and all features count.
     return min(margin, distance)

@@ -60,7 +60,6 @@ def separation_by_first_faces(
 def separation_by_second_faces(
     cores: Cores, relative: Floats, shapes: tuple[int, int], there: Vector, best: Separation
 ) -> Separation:
-    """Try the faces of the second core."""
     for face in range(cores.face_start[shapes[1]], cores.face_start[shapes[1] + 1]):
         inward = times(relative, 0, row(cores.normal, face))
         distance = lowest_height(cores, shapes[0], inward) - cores.offset[face] - dot(inward, there)
@@ -199,6 +198,7 @@ def edges_to_edges(cores: Cores, relative: Floats, shapes: tuple[int, int], ther
             other_begin, other = plus(times(relative, 0, other_begin), there), times(relative, 0, other)
             normal, between = cross(along, other), minus(other_begin, begin)
             square = dot(normal, normal)
+            # Parallel edges are closest at an end of one of them, which `corners_to_cores` has tried.
             if square == 0.0:
                 continue
             # Written so that round-off counts by the gap of the edges, not by their length over their small angle.

@@ -43,7 +43,6 @@ PlacedShape = tuple[Shape, Offset]
 
 
 def parts_of(bodies: list[RigidBody]) -> list[PlacedPart]:
-    """Return the parts of all bodies, body by body."""
     return [part for body in bodies for part in body.parts]
 
 
@@ -69,7 +68,6 @@ def materials_of(parts: list[PlacedPart], planes: list[Plane]) -> list[Material]
 
 
 def material_numbers(made: list[PlacedPart] | list[Plane], materials: list[Material]) -> Integers:
-    """Return which of the materials each part or plane is made of."""
     return np.array([materials.index(one.material) for one in made], dtype=np.int64)
 
 
@@ -109,7 +107,6 @@ def placed(core: Polyhedron, offset: Offset) -> Polyhedron:
 
 
 def laws_of(materials: list[Material], options: dict[str, str]) -> Laws:
-    """Return the laws of all pairs of materials under the options of a world's contacts."""
     rules = options["shear_modulus_rule"], options["pair_rule"]
     table = np.array([[pair_law(a, b, *rules) for b in materials] for a in materials])
     laws = Laws(*(np.ascontiguousarray(table[:, :, k]) for k in range(table.shape[2])))
@@ -119,7 +116,6 @@ def laws_of(materials: list[Material], options: dict[str, str]) -> Laws:
 
 
 def planes_of(planes: list[Plane], materials: list[Material], body_count: int) -> Planes:
-    """Return planes as arrays."""
     meets = np.ones((len(planes), body_count), dtype=np.bool_)
     for k, plane in enumerate(planes):
         if plane.meets is not None:
@@ -146,6 +142,7 @@ def bodies_of(
 ) -> Bodies:  # fmt: skip
     """Return bodies and their parts as arrays, in a motion of position, velocity, quaternion and angular_momentum."""
     n, inertia = len(bodies), inertias(bodies)
+    # `isotropic` means equal to the last bit: motion.py then leaves out what would change nothing.
     arrays = Bodies(
         period=period,
         part_start=part_starts(bodies),
@@ -169,6 +166,7 @@ def bodies_of(
 
 
 # Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
+# A wider skin lasts longer but lists more pairs: from 0.2 to 0.3 landings gain 5 % and spheres at rest lose 10 %.
 SKIN = 0.25
 NO_REACTIONS = new_reactions(0)
 # What changes of bodies and does not follow from the rest; what a checkpoint keeps of them.
@@ -179,7 +177,6 @@ MOVING = (
 
 
 def pool_of(thread_count: int) -> ThreadPoolExecutor | None:
-    """Return the threads beside the one that calls, if there are any."""
     return ThreadPoolExecutor(thread_count - 1) if thread_count > 1 else None
 
 
@@ -237,7 +234,6 @@ class Engine:
         return steps, DONE
 
     def _advance(self, steps: int, drifted: bool, step: Step, watched: int) -> tuple[int, int, bool]:
-        """Take steps until the lists have to be renewed, on one thread or on several."""
         if self.team is None:
             return advance(
                 self.system(NO_REACTIONS), step, self.whole, steps, drifted, self._travel_limit, watched,
@@ -248,7 +244,6 @@ class Engine:
         )
 
     def system(self, reactions: Reactions) -> System:
-        """Return all that contact forces are computed from, with room for what pairs do."""
         return System(self.bodies, self.cores, self.planes, self.pairs, self.laws, self.scratch, reactions)
 
     def losses(self) -> Floats:
@@ -271,7 +266,6 @@ class Engine:
         self.gather(pairs)
 
     def use_threads(self, thread_count: int) -> None:
-        """Go on with so many threads."""
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
         self.gather(self.pairs)
 
@@ -285,7 +279,6 @@ class Engine:
             self.team = Team(self.pool, scratches, len(self.bodies.mass), pairs)
 
     def scratch_of(self, pairs: Pairs) -> Scratch:
-        """Return scratch with room for every contact of these pairs."""
         shape = self.bodies.shape
         vertices, edges = (
             np.sort(np.diff(start)[shape])[-2:] for start in (self.cores.vertex_start, self.cores.edge_start)
@@ -297,10 +290,12 @@ class Engine:
     @property
     def _travel_limit(self) -> float:
         """How far a surface may come nearer to others before neighbours are listed anew [m]."""
+        # Both members of a pair may move, each by half of the skin; the slack covers the round-off of summed travels.
         return 0.5 * (1.0 - BOUND_SLACK) * self.skin
 
     def list_neighbours(self) -> None:
         """List neighbours anew; contacts keep their history."""
+        # Pairs that leave the list would take along what they have lost so far.
         self.book()
         pairs = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
         self.gather(carry_over(self.pairs, pairs))

@@ -53,6 +53,7 @@ def forces_within_partition(system: System, step: Step, partition: Partition) ->
     for k in range(len(partition.outgoing)):
         pair = partition.outgoing[k]
         fastest, start = max(fastest, contact_forces(system, step, False, start, pair)), pair + 1
+        # The reactions of a pair that is apart are still those of its last touch.
         if pairs.overlap[pair] > 0.0:
             add_wrench(bodies, pairs.first[pair], -1.0, row(reactions.force, pair), row(reactions.first_torque, pair))
     return max(fastest, contact_forces(system, step, False, start, partition.last_pair))
@@ -75,7 +76,6 @@ PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT, TOUCHED, STEPS = 0, 1, 2, 3, 4
 
 
 def new_record() -> Floats:
-    """Return the record of a body that nothing has touched yet."""
     return np.array([0.0, np.nan, np.nan, 0.0, 0.0])
 
 
@@ -102,6 +102,7 @@ def apply_drag(bodies: Bodies, step: Step, start: int, stop: int) -> None:
         for axis in range(3):
             bodies.force[body, axis] -= step.drag * bodies.mass[body] * velocity[axis]
             bodies.torque[body, axis] -= step.drag * momentum[axis]
+        # Twice the kinetic energy: where velocities fall as exp(-drag t), energy is lost at the rate 2 drag E.
         energy = bodies.mass[body] * dot(velocity, velocity) + dot(spin, momentum)
         bodies.dragged[body] += step.drag * energy * step.time_step
 
@@ -183,21 +184,18 @@ def partitions_of(pairs: Pairs, body_count: int, count: int) -> list[Partition]:
 
 
 def new_reactions(count: int) -> Reactions:
-    """Return room for what so many pairs do."""
     return Reactions(*(np.zeros((count, 3)) for _ in range(3)))
 
 
 class Team:
-    """Threads that work on the bodies and pairs of an engine together."""
-
     def __init__(self, pool: ThreadPoolExecutor, scratches: list[Scratch], body_count: int, pairs: Pairs) -> None:
         self.pool, self.scratches = pool, scratches  # scratch, one for each thread and for the one that calls
         self.reactions = new_reactions(len(pairs.first))
         self.partitions = partitions_of(pairs, body_count, len(scratches))
 
     def each(self, work: Callable[[Partition, Scratch], Any]) -> list[Any]:
-        """Do a piece of work for every partition: work(partition, scratch); return what came of it."""
         parts = list(zip(self.partitions, self.scratches, strict=True))
+        # The first share is worked on by the thread that calls, which would otherwise only wait.
         others = [self.pool.submit(work, *part) for part in parts[1:]]
         return [work(*parts[0]), *(other.result() for other in others)]
 
@@ -234,6 +232,7 @@ class Team:
             if max(self.each(update_lists)) > 0:
                 return taken, FEATURES_OVERFLOW, True
             drifted = False
+            # Two rounds: no sum may begin before all reactions across partitions are known.
             rates = self.each(across) + self.each(end)
             if watched >= 0:
                 record_step(bodies, watched, watch_record)

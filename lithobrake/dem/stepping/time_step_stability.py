@@ -86,6 +86,8 @@ def shortest_contact_duration(
     bodies holds material, smallest mass at contact [kg] and contact radius [m] of each. Infinite where none can meet.
     Strong damping (restitution below about 0.3) counts as shortening, in proportion.
     """
+    # Of each material only the lightest and the smallest matter, so pairs of materials are tried and not pairs of
+    # thousands of grains.
     smallest: dict[Material, tuple[float, float, int]] = {}
     for material, mass, radius in bodies:
         known_mass, known_radius, count = smallest.get(material, (math.inf, math.inf, 0))
@@ -157,8 +159,6 @@ LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 
 class ContactStiffness(NamedTuple):
-    """How a contact holds its bodies against small changes."""
-
     normal: float  # N/m
     shear: float  # N/m
     tilt: float  # N m
@@ -168,8 +168,6 @@ class ContactStiffness(NamedTuple):
 
 
 class ContactRates(NamedTuple):
-    """A contact, and what it meets of its two bodies."""
-
     stiffness: ContactStiffness
     ours: Vector  # 1/kg along and across the normal, 1/(kg m2) for couples, of the first
     theirs: Vector  # the same of the second
@@ -233,6 +231,8 @@ def pair_rates(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: La
 @large_kernel
 def write_rates(bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, paper_mass: bool) -> None:
     """Sum up for every body how its contacts hold it. Writes to bodies."""
+    # All contacts of a body together: a light body clamped between two others has several, and each alone would let a
+    # step pass at which it jitters.
     bodies.rates[:] = 0.0
     for pair in range(len(pairs.first)):
         if pairs.overlap[pair] == 0.0:
