@@ -82,7 +82,7 @@ class LocalExecutor(Executor):
 
         Raises ValueError for a call that cannot be sent to a process.
         """
-        # Pickled in the thread of the caller, who is the one to be told of what cannot be sent.
+        # Pickled in the thread of the caller, so that a call that cannot be sent is refused where it was made.
         call, future = pickled("a call", (function, args, kwargs)), Future[Any]()
         with self._lock:
             if self._closing:

@@ -125,7 +125,7 @@ def follow_sites(job: Job, cells: EqualAreaCells, lander_count: int) -> SiteLand
     """
     begin = site_arrivals(job, cells, lander_count)
     landers = EmulatedLanders.of(job, TouchdownEmulator.read(job.design, job.folder), TITLE, begin)
-    # Landings for what the emulator does not know would cost what the map is to save.
+    # Landings at impacts outside the emulator's range would cost what the map is to save.
     landers.follow(0)
     there = directions(*job.site.body.shape.latitude_longitude(landers.position))
     distance = ways_from_aims(job.site.body, begin.site, there)

@@ -172,7 +172,7 @@ def boulder_width(study: Study, largest: float, lander_radius: float) -> float:
         return 2.0 * reach
     # Of the smallest a bed has most.
     count = section.coverage * study.bed.width[0] * study.bed.width[1] / (0.25 * math.pi * lower**2)
-    # A second boulder may lie next to the first; a lone one has grains or the lander beside it.
+    # A second boulder may lie next to the first; a single one has grains or the lander next to it.
     beside = reach if count > 1.0 else max(longest_reach(study.bed.cloud_point_count) * largest, lander_radius)
     return 2.0 * (reach + beside) + SKINS * largest
 
@@ -196,7 +196,7 @@ def soil_problems(study: Study) -> Iterator[str]:
     for name, soil in study.soil.items():
         yield from _region_problems(name, soil)
         if study.has_soil:
-            # What is wrong with [grain] itself has been said, and would come once more for each region.
+            # Problems of [grain] itself are reported already, and would be repeated for each region.
             known = list(contact_problems(study))
             yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
 

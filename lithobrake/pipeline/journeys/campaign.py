@@ -98,7 +98,7 @@ def make_journeys(job: Job) -> None:
         job.say(descents_in_words(job.design.descents))
     journeys = begun(job)
     rows = job.design.rows
-    # Before they are made, so that other processes can tell these runs from others of the ledger.
+    # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs("drawn", job.design.keys)
     chains = follow(job, journeys, rows)
     records = [record for chain in chains for record in chain]

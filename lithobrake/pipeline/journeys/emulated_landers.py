@@ -238,7 +238,7 @@ class EmulatedLanders:
         if number == 0:
             delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, AZIMUTH)}
             return attitude_inputs_of(terms, delivered)
-        # Drawn for all landers, so that one has the same numbers whoever else is still under way.
+        # Drawn for all landers, so that the numbers of one do not depend on which others are still under way.
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
         return self.emulator.attitude_of(Rotation.random(len(self.end), rng=random)[going])
 

@@ -186,7 +186,7 @@ class Journey:
 
     def _move(self, outputs: Mapping[str, float]) -> None:
         along, aside = outputs.get("displacement_x", 0.0), outputs.get("displacement_y", 0.0)
-        # A program of the user's own may know of the contact alone.
+        # A program of the user's own may give the duration of the contact alone.
         self.time += outputs.get("duration", outputs.get("contact_duration", 0.0))
         self.path_length += math.hypot(along, aside)
         self.contacts += max(1, round(outputs.get("contacts", 1.0)))

@@ -149,7 +149,7 @@ def make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]
     count, title = len(rows), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
     keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
-    # Before they are made, so that other processes can tell these runs from others of the ledger.
+    # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs(design, keys)
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
