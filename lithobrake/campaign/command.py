@@ -109,7 +109,6 @@ DECODERS: dict[str, Callable[[Path], Any]] = {
 
 
 def _is_number(value: Any) -> bool:
-    """Tell whether a value is a number that a float can hold."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return abs(value) <= sys.float_info.max
@@ -156,6 +155,7 @@ class Command:
     def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
         """Write `inputs.json` for a program, run it, and return what it wrote."""
         with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
+            # NaN and infinity are no JSON: what Python writes for them stops the parsers of other languages.
             text = json.dumps(question, indent=2, allow_nan=False)
             (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
             for template in self.templates:
@@ -189,6 +189,7 @@ class Command:
         self.folder.mkdir(parents=True, exist_ok=True)
         for left_over in self.folder.glob(f"{name}.*"):
             shutil.rmtree(left_over, ignore_errors=True)
+        # Named like the run, but unique: the loop above finds what an interrupted try has left.
         draft = Path(tempfile.mkdtemp(prefix=f"{name}.", dir=self.folder))
         try:
             yield draft
@@ -204,6 +205,8 @@ def _made(words: list[str], folder: Path) -> int:
 
     Raises OSError when it cannot be started or the log cannot be written.
     """
+    # Without standard input, as a program that asks for something would wait on the terminal of the campaign;
+    # unbuffered, so that the last words of a program that is killed are in its log.
     program = subprocess.Popen(
         words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, bufsize=0
     )

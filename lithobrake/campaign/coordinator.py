@@ -64,6 +64,8 @@ class Coordinator:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
         self.waiting = deque(sorted(self.pending))
         self.attempts = {key: run.attempts for key, run in self.pending.items()}
+        # Runs that have failed before are no random part of the design: they likely fail again. Of ten runs or fewer
+        # there is nothing to save by giving up.
         fresh = [key for key in self.waiting if not self.attempts[key]]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
@@ -100,10 +102,11 @@ class Coordinator:
             future = submit_limited(self.executor, self.limits, run_model, run.model, run.inputs, run.seed, run.log)
             self.submitted[future] = key
             self._not_begun.append(future)
+            # Called in a thread of the executor: the queue is all that it shares with this one, so the ledger has one
+            # writer.
             future.add_done_callback(self._ended.put)
 
     def _collect(self) -> None:
-        """Wait for a run to end, or for a moment, and take in all that have ended."""
         try:
             ended = [self._ended.get(timeout=_POLL_INTERVAL)]
         except queue.Empty:
@@ -131,6 +134,7 @@ class Coordinator:
         if result["status"] == RunStatus.FAILED:
             self._failed.add(key)
         else:
+            # One success shows that the model works; what fails from here on is a matter of single runs.
             self._trial.clear()
         for one, run in self.follow(key).items():
             self.pending[one], self.attempts[one] = run, run.attempts
@@ -144,6 +148,8 @@ class Coordinator:
         left = len(self.waiting) + len(self.submitted)
         if not self._trial or not self._trial <= self._failed or not left:
             return
+        # The cause is in the model or its installation; with their tries used up these runs would be holes in the
+        # design of the corrected study.
         self.ledger.forget_tries(self._failed)
         reasons = common_reasons(record.reason for record in self.ledger.find(self._failed).values())
         raise ValueError(

@@ -34,12 +34,11 @@ class WorkerDiedError(RuntimeError):
     """
 
     def __init__(self, reason: str, wall_s: float | None = None, host: str | None = None) -> None:
-        """Keep all three; it may be sent from one process to another."""
+        # All three go into args, from which pickle makes the exception again in another process.
         super().__init__(reason, wall_s, host)
         self.wall_s, self.host = wall_s, host
 
     def __str__(self) -> str:
-        """Give the reason."""
         return str(self.args[0])
 
 
@@ -60,6 +59,7 @@ class LocalExecutor(Executor):
         self.worker_count = available_cores() if worker_count is None else int(worker_count)
         self._waiting: deque[Call] = deque()
         self._workers: list[Worker] = []
+        # The thread waits on pipes; a new call or the end is announced through one more.
         self._wake_receiver, self._wake_sender = Pipe(duplex=False)
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
@@ -82,6 +82,7 @@ class LocalExecutor(Executor):
 
         Raises ValueError for a call that cannot be sent to a process.
         """
+        # Pickled in the thread of the caller, so that a call that cannot be sent is refused where it was made.
         call, future = pickled("a call", (function, args, kwargs)), Future[Any]()
         with self._lock:
             if self._closing:
@@ -119,6 +120,7 @@ class LocalExecutor(Executor):
                 busy = [worker for worker in self._workers if worker.call]
                 has_limits = any(worker.call.limits != Limits() for worker in busy if worker.call)
                 pipes = [self._wake_receiver, *(worker.connection for worker in busy)]
+                # Without limits there is nothing to look at between two messages.
                 ready = wait(pipes, timeout=_POLL_INTERVAL if has_limits else None)
                 if self._wake_receiver in ready:
                     self._wake_receiver.recv_bytes()
@@ -154,10 +156,10 @@ class LocalExecutor(Executor):
                     self._waiting.appendleft(call)
 
     def _receive(self, worker: Worker) -> None:
-        """Take in what a process says: that it has begun, or how its call ended."""
         try:
             said = worker.connection.recv_bytes()
         except (EOFError, OSError):
+            # A process that dies before it has begun with a call costs its run no try: the run had no part in it.
             if worker.begun is None:
                 self._pass_on_the_call_of(worker)
             else:
@@ -242,6 +244,8 @@ def limited(limits: Limits, function: Callable[..., Any], *args: Any) -> Any:
 
 @cache
 def _own_executor() -> LocalExecutor:
+    # One for all threads of a worker of the cluster; its processes keep the kernels that they have loaded for further
+    # runs.
     return LocalExecutor(available_cores())
 
 
@@ -270,6 +274,7 @@ class DaskExecutor(Executor):
             raise ValueError("the executor dask needs Dask; install it with: pip install lithobrake[dask]") from error
         try:
             security = _security(scheduler)
+            # A default client would send every other Dask computation of the user's script to this scheduler, too.
             self._client = Client(scheduler, timeout=_CONNECT_TIMEOUT, security=security, set_as_default=False)
         except OSError as error:
             raise ValueError(
@@ -290,6 +295,7 @@ class DaskExecutor(Executor):
         """Send a call to the scheduler; it counts as running from then on."""
         # Impure: a call that is made a second time must not get the answer to the first.
         there, here = self._client.submit(function, *args, **kwargs, pure=False), Future[Any]()
+        # Dask does not report when a worker begins with a call.
         here.set_running_or_notify_cancel()
         self._submitted[there] = here
         there.add_done_callback(self._forward_result)

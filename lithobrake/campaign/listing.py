@@ -39,7 +39,6 @@ def write_csv(records: Sequence[Record], file: TextIO, units: Mapping[str, str] 
 
 
 def _shown(value: Any) -> Any:
-    """A value as a cell; the words that a model drew are its own."""
     return value if isinstance(value, int | float) else plain(str(value))
 
 
@@ -197,5 +196,6 @@ def _corners(x: "np.ndarray", names: Sequence[str]) -> "Iterator[tuple[np.ndarra
 
 def _at_least(hit: int, inside: int, drawn: int, total: int) -> float:
     """Chance that of `drawn` out of `total`, at least `hit` are among the `inside` ones [-]."""
+    # Whole numbers of any size: as floats these coefficients overflow from a thousand runs on.
     ways = sum(comb(inside, k) * comb(total - inside, drawn - k) for k in range(hit, min(inside, drawn) + 1))
     return ways / comb(total, drawn)

@@ -181,7 +181,6 @@ class Spread:
     _squares: float = 0.0
 
     def add(self, value: float) -> None:
-        """Take one more number in."""
         self.count += 1
         step = value - self.mean
         self.mean += step / self.count
@@ -283,6 +282,7 @@ def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
         result.running += began is not None and entry.status == RunStatus.RUNNING
         if entry.status in ENDED:
             result.add(entry.status, entry.outputs)
+            # Both are UTC in ISO format, so their order as texts is their order in time.
             result.reused += began is not None and (entry.ended or "") < began
     if began is not None:
         result.seconds = (datetime.now(UTC) - datetime.fromisoformat(began)).total_seconds()

@@ -120,7 +120,6 @@ def queue_runs(
 
 
 def _state(keys: Sequence[str], known: Mapping[str, Record]) -> Tally:
-    """Where the campaign stands before it begins."""
     state = Tally(len(set(keys)), reused=len(known))
     for entry in known.values():
         state.add(entry.status, entry.outputs)
@@ -156,7 +155,6 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:
 
 @contextmanager
 def given_or_own(executor: Executor | None) -> Iterator[Executor]:
-    """The executor, or one of this machine's cores that ends with this."""
     if executor is not None:
         yield executor
         return
@@ -192,6 +190,7 @@ class _Links:
             keys = {self._key(row): (chain, row) for chain, row in rows.items()}
             if len(keys) < len(rows) or not keys.keys().isdisjoint(self.chains):
                 raise ValueError("two chains have runs with the same inputs; give each an input of its own")
+            # All chains go one link further together, with one query for all of them.
             found, rows = self.ledger.find(keys), {}
             for key, (chain, row) in keys.items():
                 entry = found.get(key)
@@ -206,7 +205,6 @@ class _Links:
         return pending
 
     def follow(self, key: str) -> dict[str, PendingRun]:
-        """Take in a run that has ended, and give what is to be made because of it."""
         record = self.ledger.find([key]).get(key)
         if record is None:
             raise ValueError(f"{self.ledger.path} lost run {key} while it was open; give the same command again")

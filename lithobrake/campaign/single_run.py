@@ -19,6 +19,8 @@ from typing import Any
 from lithobrake.campaign.record import RunStatus, utc_now
 
 # Bytes kept of the beginning, and at least of the end; the end may be twice as long until its first half is dropped.
+# A program that repeats a warning at every step would fill the disk; what it read stands at the beginning, and why it
+# ended at the end (docs/decisions/campaign.md).
 KEPT = 1 << 20
 
 
@@ -29,16 +31,13 @@ class CappedLog(io.RawIOBase):
     """
 
     def __init__(self, path: Path) -> None:
-        """Create or empty the file."""
         self._file = path.open("w+b")
         self._dropped = 0
 
     def writable(self) -> bool:
-        """Tell that it takes bytes."""
         return True
 
     def write(self, content: Any, /) -> int:
-        """Append bytes, and drop the middle where they are too many."""
         view = memoryview(content)
         for start in range(0, len(view), KEPT):
             self._file.write(view[start : start + KEPT])
@@ -61,7 +60,6 @@ class CappedLog(io.RawIOBase):
         return f"\n... {self._dropped} bytes are left out here ...\n".encode()
 
     def close(self) -> None:
-        """Close the file."""
         self._file.close()
         super().close()
 
@@ -131,6 +129,7 @@ def _logged(log: Path | None, inputs: Mapping[str, float], seed: int) -> Iterato
         return
     log.parent.mkdir(parents=True, exist_ok=True)
     with (
+        # A text that UTF-8 cannot hold must not end the run that prints it.
         io.TextIOWrapper(io.BufferedWriter(CappedLog(log)), "utf-8", "backslashreplace", line_buffering=True) as file,
         contextlib.redirect_stdout(file),
         contextlib.redirect_stderr(file),
@@ -172,6 +171,7 @@ class Limits:
 def memory_by_session() -> Counter[int]:
     """Resident memory of all processes [bytes], by the session that they belong to."""
     page = os.sysconf("SC_PAGE_SIZE")
+    # A worker leads a session of its own, so what its run has started is counted with it.
     memory: Counter[int] = Counter()
     for path in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -179,6 +179,7 @@ def memory_by_session() -> Counter[int]:
             fields = path.read_text(errors="replace").rpartition(")")[2].split()
         except (FileNotFoundError, ProcessLookupError):
             continue  # it ended while the list was read
+        # Fields 6 (session) and 24 (rss [pages]) of proc(5), of which two stand before the bracket.
         memory[int(fields[3])] += page * int(fields[21])
     return memory
 

@@ -55,6 +55,7 @@ class MainModule:
             MainModule.importing = False
         module = types.ModuleType(_IMPORTED)
         module.__dict__.update(names)
+        # Calls refer to what the script defines by the first name, objects that are made here by the second.
         sys.modules[MAIN] = sys.modules[_IMPORTED] = module
         self._is_there = True
 
@@ -80,6 +81,7 @@ def refuse_unreachable(sent: bytes) -> None:
     """Raise MainModuleError for a pickle with something of the script that is run here, where none can import that."""
     if MAIN.encode() not in sent or main_source() is not None:
         return
+    # The search of the bytes above saves going through the operations of every pickle.
     if any(argument == MAIN for _, argument, _ in pickletools.genops(sent)):
         raise MainModuleError(_UNREACHABLE)
 
@@ -143,7 +145,6 @@ class Worker:
     """
 
     def __init__(self) -> None:
-        """Start the process."""
         refuse_while_importing()
         self.connection, calls = Pipe()
         # With the only other end in the coordinator, this one tells its end, however it ends.
@@ -177,8 +178,8 @@ class Worker:
         return True
 
     def kill(self) -> None:
-        """End the process and all that it has started."""
         with contextlib.suppress(ProcessLookupError):
+            # The worker leads its session, so a program that its model has started ends with it.
             os.killpg(self.number, signal.SIGKILL)
         self._process.kill()
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -192,7 +193,6 @@ class Worker:
         self.kill()
 
     def ended(self) -> str:
-        """How the process ended, in words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=5)
         code = self._process.returncode
@@ -234,7 +234,6 @@ class _CallUnpickler(pickle.Unpickler):
         self._script = script
 
     def find_class(self, module_name: str, global_name: str) -> Any:
-        """What a name of a module stands for."""
         if module_name == MAIN:
             self._script.ensure()
         return super().find_class(module_name, global_name)

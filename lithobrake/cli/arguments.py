@@ -16,6 +16,7 @@ from lithobrake import __version__
 from lithobrake.vocabulary.plain_text import plain, wrapped
 from lithobrake.vocabulary.progress import Progress
 
+# 2 is the exit code of Click for wrong arguments, and 130 that of shells for a command ended by SIGINT (128 + 2).
 BAD_INPUT, INTERRUPTED = 2, 130
 
 
@@ -24,9 +25,11 @@ def one_sentence() -> Iterator[None]:
     """Turn an error that a user can fix into its sentence and exit code 2, and Ctrl-C into exit code 130."""
     try:
         yield
+    # Any other exception is a fault of this program, and keeps its traceback.
     except (ValueError, FloatingPointError, ImportError, OSError) as error:
         full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
         remedy = "; all finished work is kept: make room on the disk and run the same command again"
+        # Every relative path fails in a folder that is gone, and the error names the path alone.
         if isinstance(error, FileNotFoundError) and not _has_current_folder():
             leave("the current folder was removed; change to one that exists", BAD_INPUT)
         leave(f"{error}{remedy if full else ''}", BAD_INPUT)
@@ -80,6 +83,8 @@ def reader_may_leave() -> Iterator[None]:
     """
     try:
         yield
+        # A closed pipe or a full disk shows when the buffer is written, which would otherwise be after the command has
+        # ended.
         print(end="", flush=True)
     except OSError as error:
         # What is still buffered would be tried again at the end, and fail again.
@@ -94,6 +99,7 @@ def shown_progress(title: str) -> Iterator[Progress]:
     from lithobrake.progress import study_progress
 
     with study_progress() as shown:
+        # Without a bar for what ends at once or is refused.
         begun = False
 
         def tell_progress(done: float, what: str) -> None:
@@ -107,7 +113,6 @@ def shown_progress(title: str) -> Iterator[Progress]:
 
 
 def study_headline(folder: Path) -> list[str]:
-    """The headline of the summary and the path of the report, in lines."""
     with one_sentence():
         from lithobrake.results import open_study
 
@@ -136,6 +141,7 @@ def _show_version(asked: bool) -> None:
 @app.callback()
 def main(
     version: Annotated[
+        # Eager, so that it is answered before a missing command is complained of.
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
@@ -176,6 +182,7 @@ StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder 
 def study_folder(study: Path, out: str | None) -> Path:
     """The folder of a study: the one that is given, or runs/<study name>; a file in its place is refused."""
     folder = Path("runs") / study.stem if out is None else given_folder(out)
+    # The nearest path that exists decides: below a file no folder can be made.
     there = next((path for path in (folder, *folder.parents) if path.exists()), None)
     if there is not None and not there.is_dir():
         leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
@@ -194,7 +201,6 @@ def given_folder(out: str) -> Path:
 
 
 def refuse_written(path: Path, force: bool) -> None:
-    """Raise ValueError for a file that exists, unless it may be replaced."""
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
@@ -211,4 +217,5 @@ def scheduler_of(executor: str, scheduler: str | None) -> str | None:
 
 def run_of(text: str) -> str | int:
     """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    # A key may begin with digits alone; the keys that are listed have twelve characters, so a short number is a row.
     return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text

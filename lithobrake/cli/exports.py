@@ -159,6 +159,7 @@ def sites(
 
         place = folder / "sites"
         written = () if force else (*site_map_files(place), site_cells_file(place))
+        # Before the landers are followed, which takes minutes.
         refuse_existing(written, "move it away, or replace it with --force")
         with study_progress() as shown:
             found = map_sites(

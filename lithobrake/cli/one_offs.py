@@ -94,6 +94,7 @@ def serve(
     """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
     folder = study_folder(study, out)
     with one_sentence():
+        # Refused before the imports below, which take seconds.
         from lithobrake.serve.clients import refuse_empty_host
 
         refuse_empty_host(host)
@@ -135,11 +136,11 @@ def doctor(
 def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
-    """Land once; give what came out as JSON values and in lines."""
     from lithobrake.pipeline import land_one
     from lithobrake.view import refuse_other_kinds
 
     if out is not None:
+        # Refused before the landing, which may need a bed to be poured first.
         if out.suffix != ".h5":
             refuse_other_kinds(out)
         refuse_written(out, force)
@@ -168,7 +169,7 @@ def _motion_lines(paths: list[Path]) -> list[str]:
 
 
 def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
-    """Write a motion to a file of the kind that its name says, and open a window on it."""
+    # The file of a landing needs no library of the extra [view].
     if out is not None and out.suffix == ".h5":
         landed.save(out)
         out = None

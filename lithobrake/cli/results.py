@@ -67,7 +67,6 @@ def follow(
 
 
 def show_touchdowns(motion: "JourneyMotion") -> None:
-    """Open a window on each touchdown, the next one when it is closed."""
     from lithobrake.view import show
 
     for bodies in motion.bodies:
@@ -126,6 +125,7 @@ def runs(
         with reader_may_leave():
             write_csv(records, sys.stdout, units)
         return
+    # Of one width where there is no terminal, so that a list in a file is the same wherever it was made.
     width = min(shutil.get_terminal_size().columns, LISTED) if sys.stdout.isatty() else LISTED
     tell(run_lines(records, units, width, TOLD))
 
@@ -189,6 +189,7 @@ def film(
         from lithobrake.results import open_study
         from lithobrake.view import refuse_other_kinds, write_motion
 
+        # Before the landing is simulated again.
         refuse_other_kinds(path)
         refuse_written(path, force)
         with shown_progress("landing") as progress:
@@ -222,7 +223,6 @@ def compare(
 
 
 def _film_journey(folder: Path, number: int, run: str | None, path: Path, seconds: float, force: bool) -> None:
-    """Make all touchdowns of a journey again, and write them as the name of the file says."""
     with one_sentence():
         _refuse_both(number, run)
         from lithobrake.results import open_study
@@ -236,7 +236,6 @@ def _film_journey(folder: Path, number: int, run: str | None, path: Path, second
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
-    """Open a page about a journey in the browser, or windows on its touchdowns."""
     page = folder / "report" / f"journey_{number}.html"
     with one_sentence():
         _refuse_both(number, run)
@@ -248,6 +247,7 @@ def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> No
         if solid:
             show_touchdowns(motion)
             return
+        # A study that has not come to its report has no such folder yet.
         page.parent.mkdir(exist_ok=True)
         write_journey(motion, page)
     _open(page.resolve())
@@ -259,7 +259,6 @@ def _refuse_both(number: int, run: str | None) -> None:
 
 
 def _open(page: Path) -> None:
-    """Open a page in the browser, or say where it is."""
     import webbrowser
 
     if not webbrowser.open(page.as_uri()):
@@ -267,7 +266,6 @@ def _open(page: Path) -> None:
 
 
 def _landing(results: "StudyResults", run: str | None, progress: Progress = silent) -> "MovingBodies":
-    """The landing of a run, made again, or the one that the study keeps."""
     if run is None:
         return results.median_landing
     return results.landing_bodies(run_of(run), progress=progress)

@@ -64,6 +64,7 @@ def new(
         from lithobrake.study.template import template
 
         given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
+        # The template has no place for these options; ignored silently they would be missed only in its results.
         if first_bounce and (full or any(given.values())):
             raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
         text = template() if first_bounce else _journeys(body, lander, at, shape, full)
@@ -72,7 +73,6 @@ def new(
 
 
 def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) -> str:
-    """The text of a study of journeys."""
     from lithobrake.study.short_study import aim_point, all_keys, known_body, known_lander, short_study
 
     return short_study(known_body(body), known_lander(lander), aim_point(at), shape) + (all_keys() if full else "")
@@ -81,6 +81,7 @@ def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) ->
 def _write_new(path: Path, text: str) -> None:
     """Write a study file where there is none. Raises ValueError where there is one, or where none can be."""
     try:
+        # Mode x leaves no moment between the check and the write in which another process could make the file.
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
@@ -111,7 +112,6 @@ def examples(
 
 
 def _listed(known: Iterable["Shipped"]) -> list[str]:
-    """Studies and examples in two blocks, each on a line."""
     lines = ["Studies; run one with `lithobrake run NAME`, or copy it here with `lithobrake examples NAME`:"]
     known = list(known)
     lines += [f"  {one.name:<{NAMES}}{one.title}" for one in known if one.is_study]
@@ -120,7 +120,6 @@ def _listed(known: Iterable["Shipped"]) -> list[str]:
 
 
 def study_command(name: str, what: str, group: str, until: str | None = None) -> None:
-    """Add the command that runs a study up to a stage to a group of the help."""
     last = until or name
 
     def command(
@@ -181,11 +180,10 @@ def status(folder: StudyDirectory, json: Json = False) -> None:
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
-    """Make the files of a study up to a stage, with two lines of progress."""
     with one_sentence():
         from lithobrake.study import StudySource
 
-        # A study that is refused is refused at once: what follows brings NumPy and the compiler.
+        # A study that is refused is refused at once: what follows brings the engine and its compiler.
         source = StudySource.read(study)
         from lithobrake.pipeline import run_study
         from lithobrake.progress import study_progress

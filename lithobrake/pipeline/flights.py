@@ -68,7 +68,6 @@ class Ways:
 
     @classmethod
     def of_journeys(cls, folder: "StudyFolder") -> "Ways":
-        """All flights of the first journeys of landings, as arcs.csv has them."""
         ends = {row["journey"]: row["end"] for row in read_rows(folder / "journeys.csv", ("journey", "end"), AGAIN)}
         rows = read_rows(folder / "arcs.csv", tuple(ARC), AGAIN)
         rows = [row for row in rows if int(row["sample"]) < PATHS][:MOST_ARCS]
@@ -148,7 +147,6 @@ class Starts:
 
 
 def flight_dependencies(study: Study) -> dict[str, Any]:
-    """What the flights depend on beside the samples."""
     built_in = study.site.body in BUILT_IN_BODIES
     mesh = labelled_mesh(Path(study.site.body))
     body = study.site.body if built_in else content_hash(mesh)
@@ -167,6 +165,7 @@ def flight_dependencies(study: Study) -> dict[str, Any]:
             "body": body,
             "unit": "m" if built_in else mesh_unit(mesh, study.site.unit),
             "partner": study.site.partner,
+            # A distribution is no JSON value; as text it has its kind and all parameters.
             "site": {name: str(value) for name, value in study.site_values().items()},
         }
     )
@@ -181,7 +180,6 @@ def starts(site: Site, samples: Samples) -> Starts:
 
 
 def fly_samples(job: Job) -> None:
-    """Fly the samples that leave and write flights.csv in the order of the samples, and what the flights took."""
     study, body, samples = job.study, job.site.body, Samples.load(job.folder)
     start = starts(job.site, samples)
     if study.flight.gravity == "table":
@@ -263,7 +261,7 @@ def _checks(job: Job, start: Starts) -> dict[str, Any]:
 
 
 def write_shape(body: "Body", folder: StudyFolder) -> None:
-    """Write the body's shape beside the map, in metres, for whoever draws it."""
+    # repr has all digits, so that who reads the file has the same body; OBJ counts vertices from 1.
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
     with atomic_path(folder / "body.obj") as draft:

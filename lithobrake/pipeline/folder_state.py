@@ -23,7 +23,6 @@ class StageState:
 
     @property
     def is_current(self) -> bool:
-        """Tell whether all its files are there, whole, and of the present setting."""
         return set(self.files.values()) <= {FileState.CURRENT}
 
 
@@ -44,6 +43,7 @@ class FolderState:
 
 def read_state(path: Path) -> FolderState:
     """Look at every file of a study's folder. Raises ValueError for a damaged keys.json, or one of a later format."""
+    # Noted keys are compared and not computed again, which would need the study file, its meshes and a second.
     notes = Notes.read(path)
     study = notes.study_path(path)
     command = _command(path, study)
@@ -51,6 +51,7 @@ def read_state(path: Path) -> FolderState:
         reason = "is of an earlier format" if notes.files else "is not there"
         unknown = f"{path / NAME} {reason}, so it is unknown which files belong together; restore it with: {command}"
         return FolderState(notes, [], unknown, command, None)
+    # The copy of the study file is part of the folder: the report and the inference read it.
     stages = [StageState(0, "", "study file", {STUDY_FILE: _state_of_copy(path, notes.study["sha256"])})]
     writing = {name: stage for name, stage in notes.stages.items() if stage["files"]}
     for number, (name, stage) in enumerate(writing.items(), start=1):
@@ -103,7 +104,6 @@ def _differs(file: Path, sha256: str) -> bool:
 
 
 def _command(path: Path, study: Path | None) -> str:
-    """The command that makes the files of a folder again."""
     if study is None or not os.path.isfile(study):
         return f"lithobrake run STUDY.toml --out {shlex.quote(str(path))}"
     inside = study.is_relative_to(Path.cwd())

@@ -84,6 +84,7 @@ def _bounce(
     if outcome not in (None, *TouchdownOutcome):
         raise ValueError(f'{path} has the outcome "{outcome}" in row {number}; allowed: {", ".join(TouchdownOutcome)}')
     errors = {name.removeprefix(ERROR): value for name, value in given.items() if name.startswith(ERROR)}
+    # Inputs of a study have dotted names, outputs of a touchdown plain ones.
     known = {name: value for name, value in given.items() if "." in name and not name.startswith(ERROR)}
     outputs = {name: value for name, value in given.items() if name not in known and not name.startswith(ERROR)}
     return Observation(outputs, errors, known, outcome, (row.get(BED) or "").strip() or None)
@@ -97,7 +98,6 @@ class ExpectedInput:
     halved_by: float | None
 
     def words(self) -> str:
-        """Both in words."""
         after, count = self.left_of_sd.get("1"), self.halved_by
         first = "" if after is None else f"one bounce leaves {100 * after:.0f} % of its standard deviation; "
         return first + ("no number that was tried halves it" if count is None else f"{count:.0f} halve it")
@@ -191,6 +191,7 @@ class InferredStudy:
                 f"{bounces} gives {sorted(known - set(self.of_each_bounce))[0]} of a bounce; allowed: "
                 f"{', '.join(self.of_each_bounce) or 'none, as [impact] has no uncertain number'}"
             )
+        # An input that one bounce leaves out is unknown of that bounce, so it is inferred for all.
         anew = [name for name in self.of_each_bounce if any(name not in one.known for one in seen)]
         found = infer(self.model, seen, own=anew, bounds=self.bounds, seed=1)
         return self._content(found, seen)

@@ -25,8 +25,6 @@ class Progress(Protocol):
 
 
 class Silent:
-    """Shows nothing."""
-
     def begin(self, title: str, number: int, count: int) -> None:
         """Show nothing."""
 
@@ -82,7 +80,6 @@ def no_dependencies(study: Study) -> Any:
 
 
 def same_files(*names: str) -> Callable[[Study], list[str]]:
-    """These files, whatever the study says."""
     return lambda study: list(names)
 
 

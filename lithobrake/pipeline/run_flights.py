@@ -87,7 +87,6 @@ class RunFlights:
 
 
 def run_flight_dependencies(study: Study) -> dict[str, Any]:
-    """What the flights of the runs depend on apart from the runs."""
     return {name: value for name, value in flight_dependencies(study).items() if name != "flight_count"}
 
 
@@ -129,6 +128,7 @@ def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[li
     captured = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
     if captured.any():
         held = _held(job.site, {key: values[captured] for key, values in sites.items()}).sum(axis=1)
+        # A captured lander stays only where the ground holds it, which differs from site to site as flights do.
         fates[captured, FATES.index(JourneyStatus.SETTLED)] = held
         fates[captured, FATES.index(JourneyStatus.LOFTED)] = FLIGHT_COUNT - held
     left = np.flatnonzero(runs.has_outputs)

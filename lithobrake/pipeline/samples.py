@@ -87,6 +87,7 @@ class Samples:
         """Samples whose outcomes were drawn as those of runs; clear ones that cannot leave so become "outside"."""
         names = list(output_names)
         consistent, possible = outgoing(outputs, names)
+        # One byte each, as there may be 1e8.
         outcome = np.where((drawn == CLEAR) & ~possible, OUTSIDE, drawn).astype(np.uint8)
         alone = None if without_scatter is None else outgoing(without_scatter, names)[0]
         return cls(list(input_names), names, inputs, consistent, outcome, alone)
@@ -111,6 +112,7 @@ class Samples:
         """The samples without the scatter from run to run; themselves where none was added."""
         if self.without_scatter is None:
             return self
+        # What the scatter has made impossible may be possible without it, so these are judged again.
         drawn = np.where(self.outcome == OUTSIDE, CLEAR, self.outcome)
         return Samples.of(self.input_names, self.output_names, self.inputs, self.without_scatter, drawn)
 
@@ -151,7 +153,6 @@ class Samples:
 
 
 def sampling_seed(study: Study, purpose: str) -> int:
-    """Seed of the random numbers of one purpose."""
     return hashed_seed(study.seed, purpose)
 
 

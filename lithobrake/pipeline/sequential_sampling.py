@@ -41,6 +41,7 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     if key is None:
         return {}
     shares = read_shares(folder)
+    # The file is of the number of runs that there were, which enters its key; two is the least that a study has.
     made_for = study.with_run_count(max(len(shares), 2))
     if stage_keys(made_for)[ANSWERED_AFTER] != key:
         return {}
@@ -81,6 +82,7 @@ def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
     if asked.half_width is None:
         return design
     known, flown = known_runs(study, folder), flown_shares(study, folder)
+    # More than one step where a folder has runs of a larger count already.
     while known.keys() & flown.keys() >= set(design.keys):
         values, bed = answers_of_design(design, known, flown)
         count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
@@ -105,7 +107,6 @@ def grow(job: Job, make_runs: Callable[[Job], None]) -> Job:
 
 
 def width_sentence(job: Job) -> str:
-    """How well the answer is known by the runs of a study, beside what is asked."""
     width, design = _width(job), job.study.design
     known = "not known within any bound yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
@@ -129,5 +130,4 @@ def _width(job: Job) -> float | None:
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:
-    """On how many beds so many runs of a study come down."""
     return lambda run_count: study.with_run_count(run_count).bed_count

@@ -81,6 +81,7 @@ def _seen(job: Job, name: SkyBody, points: np.ndarray, up: np.ndarray, random: n
 
     body, mask, stands = job.site.body, job.study.sky.mask_of(name), where_it_stands(job.study, job.site, name)
     if isinstance(stands, Days):
+        # One day for each place of a cell, all different: as many days as places cover the year at the cost of one.
         days = (np.argsort(random.random((len(points) // PLACES, PLACES)), axis=1) + 0.5).ravel() / PLACES
         stands = Days(np.quantile(stands.latitude, days)[:, None])
     found = np.empty(len(points))
@@ -124,6 +125,7 @@ def follow_sites(job: Job, cells: EqualAreaCells, lander_count: int) -> SiteLand
     """
     begin = site_arrivals(job, cells, lander_count)
     landers = EmulatedLanders.of(job, TouchdownEmulator.read(job.design, job.folder), TITLE, begin)
+    # Landings at impacts outside the emulator's range would cost what the map is to save.
     landers.follow(0)
     there = directions(*job.site.body.shape.latitude_longitude(landers.position))
     distance = ways_from_aims(job.site.body, begin.site, there)
@@ -213,6 +215,7 @@ def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tu
     """Cells that cannot be told from the one of most landers at rest; none where refits say nothing of beds."""
     if fitted.why is not None or not answered.any():
         return ()
+    # The landers of one refit together, in the same order in all cells, as best_choice compares them draw by draw.
     order = np.argsort(landers.refit[0], kind="stable")
     rests = (landers.end == JourneyEnd.AT_REST)[:, order].reshape(len(answered), REFIT_COUNT, -1)
     return best_choice(rests, fitted.bed_count, answered).not_worse

@@ -138,9 +138,12 @@ def screens(body: "Body", count: int, blocks: int) -> "Iterator[Screen | None]":
     orbit, extents = body.orbit, np.ptp(body.partner.body.shape.vertices, axis=0)
     moves = abs(orbit.rate) * body.spin_period > 2.0 * np.pi / DIRECTIONS
     for block in range(blocks):
+        # Steps of an irrational part of a turn are spread evenly, however many directions there are.
         turn = (block * count + np.arange(count)) * np.sqrt(2.0) % 1.0 if moves else np.zeros(count)
         angle = orbit.angle + 2.0 * np.pi * turn
         centre = orbit.distance * np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
+        # A spheroid takes one root a direction; the partner's facets would move an edge of an eclipse by less than a
+        # direction.
         yield Screen(centre, 0.25 * float(extents[0] + extents[1]), 0.5 * float(extents[2]))
 
 
@@ -164,7 +167,6 @@ def sky_files(study: Study) -> list[str]:
 
 
 def sky_dependencies(study: Study) -> Any:
-    """What of the study the stage depends on, beside the journeys."""
     sky, site = study.sky.model_dump(mode="json"), study.site
     files = [*(site.kernels if study.sky.date else ()), *([sky["orbiter"]["states"]] if sky["orbiter"] else ())]
     pole = [site.pole_right_ascension_deg, site.pole_declination_deg, site.kernel_body]
@@ -175,7 +177,6 @@ def sky_dependencies(study: Study) -> Any:
 
 
 def look_up(job: Job) -> None:
-    """Write sky.csv, a row for each body in the sky and lander at rest."""
     sky, landers, body = job.study.sky, _at_rest(job), job.site.body
     rows = [
         row
@@ -207,7 +208,6 @@ def rows_of(
     mask_deg: float,
     beam_deg: float,
 ) -> list[list[Any]]:
-    """The rows of one body in the sky, in the order of the columns SKY."""
     from lithobrake.smallbody import seen_from
 
     if not landers:

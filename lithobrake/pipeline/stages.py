@@ -65,7 +65,6 @@ RUN_PARTS = (
 
 
 def drawn_dependencies(study: Study) -> Any:
-    """What the drawn runs depend on."""
     count = study.design.run_count
     return [design_dependencies(study), place_region(study), study.seed, count, beds_of_runs(study, count)]
 
@@ -88,6 +87,7 @@ SIDE_RUNS = Stage(
     lambda study: [study.design.side_runs, study.design.twin_shift],
     RUN_PARTS,
 )
+# Without parts of its own: the choice of the run is made by code that is among those of the runs.
 TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
 
 
@@ -97,6 +97,7 @@ FLIGHT_PARTS = (
     "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/quantities.py",
 )  # fmt: skip
 
+# After the side runs, since pairs and twins fly with the runs that they belong to.
 FLY_RUNS = Stage(
     "fly_runs",
     "flights of the runs",
@@ -116,7 +117,6 @@ EMULATOR_PARTS = (
 
 
 def sample_dependencies(study: Study) -> Any:
-    """What the samples depend on beside the model that they are of."""
     return study.monte_carlo.model_dump()
 
 
@@ -146,7 +146,7 @@ JOURNEY_PARTS = (
 
 
 def journey_dependencies(study: Study) -> Any:
-    """What the journeys depend on."""
+    # The count enters by the runs, and further emulated landers leave the journeys as they are.
     journey = None if study.journey is None else study.journey.model_dump(exclude={"count", "emulated_count"})
     return [drawn_dependencies(study), run_flight_dependencies(study), journey, *_delivery(study)]
 
@@ -162,6 +162,7 @@ def _delivery(study: Study) -> list[Any]:
     return [given] if given else []
 
 
+# Of the name of the drawn runs, as its first touchdowns take their place for all later stages.
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",

@@ -77,6 +77,7 @@ class Notes:
 
     def of_setting(self, study: dict[str, str], stages: dict[str, dict[str, Any]]) -> "Notes":
         """The same for a study that is to run now: designs that it no longer asks for like that are left out."""
+        # Runs of a stage that has changed are others; their keys would count as asked for until the stage is made.
         same = {name for name, stage in stages.items() if self.stages.get(name) == stage}
         kept = [design for design, stage in _STAGE_OF_DESIGN.items() if stage in same]
         designs = {design: self.designs[design] for design in kept if design in self.designs}
@@ -93,8 +94,6 @@ AGAIN = "give the same command again to remake it"
 
 
 class FileState(StrEnum):
-    """How a file stands to what a study says now."""
-
     CURRENT = "current"
     MISSING = "not there"
     EARLIER = "of an earlier setting or version"
@@ -105,7 +104,6 @@ class FileState(StrEnum):
 
 
 def file_state(folder: Path, notes: Notes, name: str, key: str) -> FileState:
-    """Say how a file stands to the key of all that it should have been made from."""
     if not (folder / name).is_file():
         return FileState.MISSING
     if name not in notes.files:
@@ -144,7 +142,6 @@ class StudyFolder:
         return locked(self / LOCK, refusal)
 
     def __truediv__(self, name: str) -> Path:
-        """Path of a file in the folder."""
         return self.path / name
 
     def begin(

@@ -59,6 +59,7 @@ def run(
             f"progress is {progress!r}, which has no {', '.join(lacking)}; allowed: None, or what "
             "lithobrake.progress.study_progress() gives"
         )
+    # Before the study is read, as the checks of a study depend on whether a function makes its touchdowns.
     function = None if model is None else function_identity(model)
     if isinstance(study, Mapping):
         if out is None:
@@ -67,6 +68,7 @@ def run(
     else:
         source = StudySource.read(Path(study), function)
     folder = Path("runs") / source.stem if out is None else Path(out)
+    # An empty text, as of a variable that is not set, would mean the current folder.
     if not str(out).strip():
         raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
     until = "report" if report else "summary"
@@ -75,7 +77,6 @@ def run(
 
 
 def _say_solver(command: str | None, shown: Progress) -> None:
-    """Say which program or server of the user's the runs ask, if any."""
     if command:
         what = "model of a server, which every remaining run calls"
         if not command.startswith(PREFIX):
@@ -105,6 +106,7 @@ def run_study(
     """
     shown = shown or Silent()
     study = with_site_gravity(source.study, source.name)
+    # Refuses a stage that the method does not have, before anything is made.
     stages_until(study, until)
     Soils(Site(study)).refuse(source.name)
     refuse_others_folder(source, out)
@@ -132,9 +134,8 @@ def run_study(
 
 
 def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., None]) -> None:
-    """Make the stages of a study up to one, with as many runs as its half width turns out to ask for."""
-
     def make_runs(job: Job) -> None:
+        # The setting follows from the number of runs, which grows.
         job.folder.begin(source.path, source.content, setting(job.study), job.say)
         # While further beds are poured, whoever looks still finds the runs that there are.
         job.folder.note_runs("drawn", job.design.keys)

@@ -26,6 +26,7 @@ NAME = r"[A-Za-z0-9][\w -]{0,39}"
 def body_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
     site = study.site
+    # Numbers of the site are read from the kernels below, and would raise there.
     if unread := list(kernel_problems(site)):
         yield from unread
         return
@@ -89,7 +90,6 @@ def _spin_problems(study: Study) -> Iterator[str]:
 
 
 def _lacking(study: Study) -> Iterator[str]:
-    """What a body from a mesh needs and has not."""
     if not os.path.isfile(study.site.body):
         names = ", ".join(f'"{name}"' for name in BUILT_IN_BODIES)
         meant = closest(Path(study.site.body).name, BUILT_IN_BODIES)
@@ -107,7 +107,6 @@ def _volume(study: Study) -> float:
         from lithobrake import smallbody
 
         return float(getattr(smallbody, site.body)(partner=False, extents=site.extents).shape.volume)
-    # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.geometry.mesh_files import read_mesh
 
@@ -134,6 +133,7 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     built_in = study.site.body in BUILT_IN_BODIES
     given = "m" if built_in else mesh_unit(labelled_mesh(Path(study.site.body)), study.site.unit)
     diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
+    # A wrong unit is the common slip, and a bulk density shows it: from metres to kilometres it changes by 1e9.
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
     if given in fitting:
         return
@@ -183,7 +183,6 @@ DAY = 86_400.0
 
 
 def rotation_problems(study: Study) -> Iterator[str]:
-    """One sentence for each thing that is wrong."""
     site = study.site
     if site.rotation is None:
         if site.rotation_time is not None:

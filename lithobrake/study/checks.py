@@ -77,6 +77,7 @@ def _touchdown_problems(study: Study) -> Iterator[str]:
         yield from contact_problems(study)
         yield from slope_problems(study)
     gravity = study.surface.gravity
+    # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).
     if not isinstance(gravity, str):
         yield from settling_problems(study, reach(gravity)[0])
 
@@ -169,6 +170,7 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
 
 def _shape_problems(study: Study) -> Iterator[str]:
     """A lander without a shape or with parts that are none, too large for the bed, or that no body can be."""
+    # Sizes and masses below are those of whole shapes: what is missing here would fail there in other words.
     found = [*shape_problems("lander", study.lander), *part_problems(study.lander)]
     yield from found
     if found:
@@ -268,6 +270,7 @@ def _solver_problems(study: Study) -> Iterator[str]:
     except ValueError as error:
         yield f"solver.command is {solver.command!r}; {str(error).lower()}: close every quotation mark"
         return
+    # The command is printed as the study begins, where escape sequences would act on the terminal.
     if not solver.command.isprintable():
         yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
         return
@@ -277,12 +280,12 @@ def _solver_problems(study: Study) -> Iterator[str]:
         except ValueError as error:
             yield f"solver.command is {error}"
         return
+    # Looked for on this machine alone; on a worker of a cluster that lacks it the runs fail.
     if not words or shutil.which(words[0]) is None:
         yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'
 
 
 def _solver_file_problems(study: Study) -> Iterator[str]:
-    """What is wrong with the files that go to a program and come back."""
     solver = study.solver
     if not solver.templates and solver.answer == "outputs.json":
         return
@@ -295,6 +298,7 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     for name in solver.templates:
         if not os.path.isfile(name):
             yield f"solver.templates has {name!r}; no such file; give its path from the study file"
+    # All of them are written to one folder for each run, where the second of one name would replace the first.
     stems = [os.path.basename(name) for name in (*solver.templates, "inputs.json", "log.txt", solver.answer)]
     for name in sorted({stem for stem in stems if stems.count(stem) > 1}):
         yield f"solver.templates and solver.answer: {name} would stand twice in the folder of a run; rename one"

@@ -36,6 +36,7 @@ def covariance_problems(matrix: Matrix) -> Iterator[str]:
     wrong = wrong or [text for row, column in pairs if (text := _pair(matrix, row, column))]
     if wrong:
         yield wrong[0]
+    # Entries that are off by ROUNDING move an eigenvalue by at most SIDE times that.
     elif (smallest := _smallest(matrix)) < -SIDE * ROUNDING:
         yield (
             f"has correlations whose matrix has the eigenvalue {smallest:.3g}; allowed: none below 0 (positive "
@@ -51,7 +52,6 @@ def _variance(matrix: Matrix, row: int) -> str | None:
 
 
 def _pair(matrix: Matrix, row: int, column: int) -> str | None:
-    """What is wrong with two entries that mirror each other."""
     one, other = matrix[row][column], matrix[column][row]
     size = math.sqrt(matrix[row][row] * matrix[column][column])
     where = f"row {row + 1}, column {column + 1}"
@@ -69,6 +69,8 @@ def _smallest(matrix: Matrix) -> float:
     """The smallest eigenvalue of its correlations; what has no variance is left out by being correlated with nothing"""
     import numpy as np
 
+    # Of the correlations and not of the covariance: m2 and m2/s2 may differ by ten powers of ten, and no one tolerance
+    # would suit both.
     variances = np.array([matrix[row][row] for row in range(SIDE)])
     scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
     return float(np.linalg.eigvalsh(np.array(matrix) / np.outer(scale, scale))[0])
@@ -79,7 +81,6 @@ ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 def delivery_problems(study: Study) -> Iterator[str]:
-    """One sentence for each thing that is wrong."""
     delivery = study.delivery
     if delivery is None:
         return
@@ -134,7 +135,6 @@ def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[s
 
 
 def _uncorrelated(study: Study, key: str) -> str | None:
-    """Why a key cannot be correlated."""
     if key not in SURFACE_KEYS:
         allowed = ", ".join(SURFACE_KEYS)
         return f"delivery.correlations names {show(key)}{closest(key, SURFACE_KEYS)}; allowed: {allowed}"
@@ -148,12 +148,12 @@ def _uncorrelated(study: Study, key: str) -> str | None:
 
 
 def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
-    """Keys that do not go together with states."""
     name = "delivery.states" if delivery.states is not None else "[delivery.release]"
     if delivery.states is not None and delivery.release is not None:
         yield "delivery.states and [delivery.release] are both given; keep one"
     for key in FLOWN:
         part = "site" if key in PLACE_KEYS else "impact"
+        # A flown study has these where its file gives nothing.
         if getattr(getattr(study, part), key) not in (None, 0.0, ANY_HEADING):
             yield f"{part}.{key} is given, and the flight from {name} tells it; leave it out"
     for key in AIM:
@@ -167,7 +167,6 @@ def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
 
 
 def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Iterator[str]:
-    """Axes that are not named, or not known."""
     if delivery.frame is None:
         yield f'delivery.frame is missing; allowed with {name}: "body_fixed" or "icrf"; write the axes of the states'
     lacking = [key for key in ICRF if getattr(study.site, key) is None]
@@ -183,7 +182,6 @@ def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Itera
         )
     if delivery.epoch is None:
         return
-    # Arrays come with it, and a study without states is read without them.
     from lithobrake.study.delivered_states import parsed_time
 
     try:
@@ -267,7 +265,6 @@ def drawn_together(study: "Study", columns: Mapping[str, np.ndarray]) -> dict[st
 
 
 def journey_problems(study: Study) -> Iterator[str]:
-    """One sentence for each thing that is wrong."""
     yield from delivery_problems(study)
     yield from sky_problems(study)
     if study.journey is None:

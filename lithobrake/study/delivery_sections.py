@@ -24,14 +24,10 @@ SIDE = 6
 
 
 class SquareMatrix:
-    """A list of six lists of six numbers."""
-
     def __get_pydantic_core_schema__(self, _source: object, _handler: object) -> core_schema.CoreSchema:
-        """Let the annotation itself check the value."""
         return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, value: Any) -> Matrix:
-        """Give back the matrix in its rows."""
         rows = value if isinstance(value, list | tuple) else ()
         if len(rows) != SIDE or not all(isinstance(row, list | tuple) and len(row) == SIDE for row in rows):
             raise refuse(value, f"{SIDE} rows of {SIDE} numbers", "write six lists of six numbers in square brackets")
@@ -41,14 +37,10 @@ class SquareMatrix:
 
 
 class CorrelatedPair:
-    """Two names and a number, in a list."""
-
     def __get_pydantic_core_schema__(self, _source: object, _handler: object) -> core_schema.CoreSchema:
-        """Let the annotation itself check the value."""
         return core_schema.no_info_plain_validator_function(self.read)
 
     def read(self, value: Any) -> tuple[str, str, float]:
-        """Give back the names and the correlation."""
         allowed = "two keys and a number between -1 and 1"
         if not isinstance(value, list | tuple) or len(value) != 3 or not all(isinstance(one, str) for one in value[:2]):
             raise refuse(value, allowed, 'write it as ["north_error", "east_error", 0.5]')
@@ -156,7 +148,6 @@ class DeliverySection(Section):
 
     @property
     def is_flown(self) -> bool:
-        """Whether landers are flown to the ground from states."""
         return self.states is not None or self.release is not None
 
 
@@ -199,8 +190,11 @@ def delivered_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     for key, value in delivery.items():
         if key in SURFACE_KEYS and value is not None:
             part = "site" if key in PLACE_KEYS else "impact"
+            # What is given in [impact] or [site] is kept, so that the checks can compare the two and refuse a
+            # contradiction.
             parts[part] = {key: value, **parts[part]}
     if any(delivery.get(key) is not None for key in ("states", "release")):
+        # The schema requires both keys, which follow from the flight to the ground.
         parts["impact"] = {"speed": None, "incidence_deg": None, **parts["impact"]}
         parts["site"] = {"heading_deg": ANY_HEADING, **parts["site"]}
     return {**tables, **parts}
@@ -214,6 +208,7 @@ def journey_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     filled: dict[str, dict[str, Any]] = {"surface": {"gravity": "site"}, "contact": {"held_speed": HELD_SPEED}}
     if journey.get("count") is not None:
         filled["design"] = {"run_count": journey["count"]}
+    # Grains are held in local stepping only: the default must not refuse a study that asks for common steps.
     if isinstance(contact := tables.get("contact"), Mapping) and contact.get("stepping", "local") != "local":
         filled.pop("contact")
     given = {name: tables.get(name, {}) for name in filled}

@@ -53,6 +53,7 @@ def contact_problems(study: Study) -> Iterator[str]:
     grain = _ball_mass(dense, largest)
     least, most = _ball_mass(thin, smallest) / GRAINS_PER_LANDER, grain * GRAINS_PER_LANDER
     low, high = usual_reach(study.lander.mass)
+    # Masses first: the overlap below is meaningless for one out of range.
     if low < least or high > most:
         masses = f"is {low:.4g} kg" if low == high else f"reaches from {low:.4g} to {high:.4g} kg"
         yield (
@@ -114,6 +115,7 @@ def widths_in_grains(study: Study) -> tuple[float, float]:
 
     The fewer its points, the longer a grain may be.
     """
+    # Two bodies meet through two images where the period is no longer than twice the sum of their reaches and a skin.
     longest = longest_reach(study.bed.cloud_point_count)
     return 4.0 * longest + SKINS, 2.0 * longest + SKINS_AT_LANDER
 
@@ -170,6 +172,7 @@ def boulder_width(study: Study, largest: float, lander_radius: float) -> float:
         return 2.0 * reach
     # Of the smallest a bed has most.
     count = section.coverage * study.bed.width[0] * study.bed.width[1] / (0.25 * math.pi * lower**2)
+    # A second boulder may lie next to the first; a single one has grains or the lander next to it.
     beside = reach if count > 1.0 else max(longest_reach(study.bed.cloud_point_count) * largest, lander_radius)
     return 2.0 * (reach + beside) + SKINS * largest
 
@@ -193,6 +196,7 @@ def soil_problems(study: Study) -> Iterator[str]:
     for name, soil in study.soil.items():
         yield from _region_problems(name, soil)
         if study.has_soil:
+            # Problems of [grain] itself are reported already, and would be repeated for each region.
             known = list(contact_problems(study))
             yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
 
@@ -201,6 +205,7 @@ def _emulator_problems(study: Study) -> Iterator[str]:
     """Questions to the emulator of all touchdowns, which knows one soil for the whole body."""
     asked = ["aim.grid"] if study.aim.names else []
     journey = study.journey
+    # The default asks for nothing: where there is no emulator such a study goes without, and reports that.
     if journey is not None and "emulated_count" in journey.model_fields_set and journey.emulated_count:
         asked.append(f"journey.emulated_count = {journey.emulated_count}")
     for key in asked:

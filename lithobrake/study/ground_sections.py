@@ -117,6 +117,7 @@ def default_bed_count(run_count: int, runs_a_bed: int) -> int:
 
     Source: [Cochran-1977], section 10.6.
     """
+    # Rounded up: to the nearest, the newest bed would be half full at each further 20 landings or 4 journeys.
     return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // runs_a_bed)))
 
 
@@ -215,7 +216,6 @@ class SoilSection(Section):
 
     @property
     def has_bounds(self) -> bool:
-        """Whether anything says where it lies."""
         return any(one is not None for one in (self.latitude_deg, self.longitude_deg, self.slope_deg, self.facets))
 
 

@@ -259,6 +259,8 @@ def kernel_values(site: SiteSection) -> dict[str, float]:
 
 def kernel_problems(site: SiteSection) -> Iterator[str]:
     """One sentence for each thing wrong; where nothing is, the kernels have been read."""
+    # Reading starts a process of its own, as NAIF's library may abort it, and takes half a second: keys are checked
+    # first.
     found = list(_key_problems(site))
     yield from found
     if site.kernels and not found:
@@ -269,7 +271,6 @@ def kernel_problems(site: SiteSection) -> Iterator[str]:
 
 
 def _key_problems(site: SiteSection) -> Iterator[str]:
-    """What is wrong between the keys, and files that are not there."""
     for key in ("kernel_body", "epoch"):
         if getattr(site, key) is not None and not site.kernels:
             yield f"site.{key} goes with site.kernels, of which there are none; name kernels, or leave it out"

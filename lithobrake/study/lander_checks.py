@@ -77,6 +77,8 @@ def _centres_of_mass(lander: LanderSection, own: Solid, parts: list[Solid]) -> I
     """The centre of mass at the ends of what is uncertain of it."""
     if lander.centre_of_mass is not None:
         given = lander.centre_of_mass
+        # The distance of a point is a convex function of the centre, so its largest value is at a corner of the box of
+        # centres.
         yield from product(*(usual_reach(getattr(given, axis)) for axis in "xyz"))
         return
     masses = [part_mass(part) for part in lander.part.values()]
@@ -90,7 +92,6 @@ def _centres_of_mass(lander: LanderSection, own: Solid, parts: list[Solid]) -> I
 
 
 def added(one: Place, other: Place) -> Place:
-    """The sum of two vectors."""
     return one[0] + other[0], one[1] + other[1], one[2] + other[2]
 
 
@@ -174,7 +175,10 @@ def inertia_problems(lander: LanderSection) -> Iterator[str]:
     x, y, z, slack = half - a, half - b, half - c, ROUNDING * half
     minors = (x * y - ab * ab, x * z - ac * ac, y * z - bc * bc)
     volume = x * (y * z - bc * bc) - ab * (ab * z + bc * ac) - ac * (ab * bc + ac * y)
+    # A semi-definite matrix needs all of its principal minors at or above 0, not the leading ones alone.
     below = min(x, y, z) < -slack or min(minors) < -slack * half or volume < -slack * half * half
+    # The sum of the minors is that of the products of two eigenvalues: 0 where two of these are 0, as of mass along a
+    # line, which has no moment about it.
     if below or sum(minors) <= 0.0:
         shown = ", ".join(f"{moment:g}" for moment in lander.inertia)
         yield (

@@ -129,6 +129,8 @@ class LanderSection(Section):
     @property
     def is_plain_box(self) -> bool:
         """Whether it has the symmetry of a box: no parts, and the centre of mass amid it."""
+        # Six elements of the tensor have products of inertia, which take the mirror planes of the box away; three have
+        # not.
         return self.edges is not None and not self.part and self.centre_of_mass is None and len(self.inertia or ()) < 6
 
 
@@ -193,7 +195,6 @@ def main_shape(section: LanderSection, values: Mapping[str, float]) -> "Sphere |
 
 
 def part_shape(section: PartSection) -> "Sphere | ConvexHull":
-    """The shape of a part where it stands."""
     from lithobrake.dem import Box, ConvexHull, Sphere, rotation_matrices
     from lithobrake.touchdown import read_hull
 

@@ -113,7 +113,6 @@ SKY_KEYS = {"spiceypy": "spiceypy", "erfa": "pyerfa"}
 
 
 def sky_problems(study: Study) -> Iterator[str]:
-    """One sentence for each thing that is wrong."""
     sky = study.sky
     if study.journey is None and sky.bodies:
         yield "[sky] asks what landers at rest see, and there is no [journey]; leave one out or add the other"
@@ -197,7 +196,6 @@ def _orbiter_problems(study: Study) -> Iterator[str]:
         if lacking:
             yield f"{lacking[0]} is missing; sky.orbiter.kernel_name is read from kernels, from sky.date to sky.until"
     if ways == ["states"]:
-        # Arrays come with it, and a study without states is read without them.
         from lithobrake.study.delivered_states import orbiter_states
 
         try:

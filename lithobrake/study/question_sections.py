@@ -20,12 +20,10 @@ _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 
 
 def aim_results(*, is_journey: bool) -> tuple[str, ...]:
-    """What comes of an aim, by the names of its limits."""
     return (AT_REST if is_journey else SETTLED, *AIM_RESULTS)
 
 
 def condition_text(given: object) -> str:
-    """Give back the text of a condition; refuse what is none."""
     if not isinstance(given, str):
         raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
     try:
@@ -40,11 +38,11 @@ class LimitStatesSection(Section):
     Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
     true or false (docs/reliability.md). With design.method = "drawn" only."""
 
+    # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
 
     def conditions(self) -> dict[str, str]:
-        """The conditions by their names."""
         given: dict[str, Any] = self.__pydantic_extra__ or {}
         return dict(given)
 
@@ -147,7 +145,6 @@ class OrbiterSection(Section):
 
     @property
     def ways(self) -> list[str]:
-        """In which ways it is given."""
         return [key for key in ("altitude", "states", "kernel_name") if getattr(self, key) is not None]
 
 
@@ -177,13 +174,11 @@ class SkySection(Section):
 
     @property
     def latitudes(self) -> dict[SkyBody, Scalar]:
-        """Latitudes that are given, by body."""
         given: dict[SkyBody, Scalar | None] = {"sun": self.sun_latitude_deg, "earth": self.earth_latitude_deg}
         return {name: latitude for name, latitude in given.items() if latitude is not None}
 
     @property
     def bodies(self) -> tuple[SkyBody, ...]:
-        """What is asked for."""
         far: tuple[SkyBody, ...] = tuple(self.latitudes) if self.date is None else ("sun", "earth")
         return far if self.orbiter is None else (*far, "orbiter")
 

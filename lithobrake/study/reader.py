@@ -38,12 +38,10 @@ class Shipped:
 
     @property
     def name(self) -> str:
-        """What it is asked for by."""
         return self.path.stem
 
     @property
     def is_study(self) -> bool:
-        """Whether it is a study file, which runs by its name."""
         return self.path.suffix == ".toml"
 
     @property
@@ -61,6 +59,7 @@ class Shipped:
         A file that is there already with the same content stays as it is.
         """
         pairs = [(path, folder / path.name) for path in (self.path, *self.beside)]
+        # All targets are looked at before the first is written, so that a refusal leaves no half of an example behind.
         for source, target in pairs:
             if target.exists() and not (target.is_file() and target.read_bytes() == source.read_bytes()):
                 raise ValueError(f"{target} exists, and is not replaced; rename it, or ask from another folder")
@@ -97,6 +96,7 @@ def shipped_studies() -> dict[str, Path]:
 
 def study_path(path: Path) -> Path:
     """The path of a study file as it is given; of a name that is no file, that of the shipped study of this name."""
+    # A file of the user's wins over a shipped study of its name, and a path with a folder is never taken as a name.
     is_name = len(path.parts) == 1 and not path.is_file()
     return shipped_studies().get(path.name, path) if is_name else path
 
@@ -112,7 +112,6 @@ class StudyError(ValueError):
     """A study file that is refused; `problems` has one sentence for each thing wrong."""
 
     def __init__(self, problems: list[str]) -> None:
-        """Join the sentences to one message."""
         super().__init__("\n".join(problems))
         self.problems = problems
 
@@ -137,6 +136,7 @@ def read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         reason, remedy = f"the study file cannot be read ({error.strerror or error})", "name an existing TOML file"
+        # Without a suffix it was likely meant as the name of a shipped study.
         if not path.suffix:
             known = shipped_studies()
             reason += closest(path.name, known)
@@ -174,6 +174,8 @@ def check_tables(
     Raises StudyError with one sentence for each problem.
     """
     try:
+        # The checks below compare values of several keys, so they need all of them in the right types: they run only
+        # where the schema has nothing to refuse.
         study = Study.model_validate(_absolute(tables, folder)).with_function(function)
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
@@ -201,7 +203,6 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
 
 
 def _with_file(table: Any, folder: Path, key: str = "file") -> Any:
-    """A table whose file, if it has one, is counted from a folder."""
     if not isinstance(table, Mapping) or not isinstance(table.get(key), str):
         return table
     return {**table, key: str(folder / table[key])}
@@ -209,6 +210,8 @@ def _with_file(table: Any, folder: Path, key: str = "file") -> Any:
 
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """The tables with each path of a mesh, kernel, program or template counted from the folder of the study file."""
+    # Nothing has been validated yet: what is of a wrong type is passed on as it is, for the schema to refuse it by its
+    # key.
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
     for section, key in (("lander", "file"), ("site", "body"), ("delivery", "states")):
         table = result.get(section)
@@ -235,7 +238,8 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
         from lithobrake.campaign import absolute_words
 
-        # Quotes that do not match are told by study_checks.
+        # Quotes that do not match are refused by the checks (checks.py).
         with contextlib.suppress(ValueError):
+            # The program is started in a folder of each run, where a relative path would lead elsewhere.
             solver["command"] = shlex.join(absolute_words(solver["command"], folder))
     return result

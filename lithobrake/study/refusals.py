@@ -40,6 +40,7 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         return f"{key} is not a known key{closest(place[-1], known)}" + (
             f"; allowed: {', '.join(known)}" if known else ""
         )
+    # [journey] fills this table in (journey_tables), so a missing [journey] is as likely the slip.
     if kind == "missing" and key == "surface":
         return "surface is missing, and so is [journey], which needs no surface; add one of the two tables"
     if kind == "missing":
@@ -61,8 +62,6 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
 
 
 class Named(Protocol):
-    """What has a name as it is printed."""
-
     @property
     def name(self) -> str:
         """The name."""

@@ -152,6 +152,7 @@ def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float]
     """
     diameter = float(f"{GRAIN_SIZE * max(lander.edges):.2g}")
     diagonal = math.hypot(*lander.edges)
+    # Rounded up to a centimetre: rounded down it might fall below the least width.
     width = math.ceil(100.0 * max(WIDTH * diagonal, diagonal + FREE * diameter)) / 100.0
     speeds = [min(part * escape_speed(body), FASTEST * part / SPEEDS[1]) for part in SPEEDS]
     softest = max(SOFTEST, STIFFNESS * DENSITY * speeds[1] ** 2)
@@ -180,13 +181,13 @@ def aim_point(text: str) -> tuple[float, float]:
 
 
 def all_keys() -> str:
-    """Every key of a study file with its meaning, behind comment signs."""
     return "\n".join(["\n" + _ALL_KEYS + DISTRIBUTION_WORDS, *map(commented, sections())])
 
 
 def rounded_up(value: float) -> str:
     """A number to one digit that is not smaller."""
     power = 10.0 ** math.floor(math.log10(value))
+    # The division may come out above a whole number by its rounding, which would cost a digit.
     return f"{math.ceil(value / power * (1.0 - 1e-12)) * power:.0e}"
 
 
@@ -196,7 +197,6 @@ def escape_speed(body: KnownBody) -> float:
 
 
 def _site(body: KnownBody, shape: str | None) -> str:
-    """The table of the body."""
     if shape is None and not body.is_built_in:
         raise ValueError(
             f"the package has no shape of {body.name}; give a closed mesh (OBJ, STL, PDS plates, ICQ) with --shape FILE"
@@ -206,6 +206,7 @@ def _site(body: KnownBody, shape: str | None) -> str:
     if shape is None:
         return f'[site]\nbody = "{body.name.lower()}"    # or a mesh with mass and spin_period\n'
     missing = LOST_PARTNER if body.is_built_in else body.missing
+    # A JSON string is a basic string of TOML, so backslashes and quotes of a path are escaped as TOML reads them.
     head, quoted = f"# {missing}\n" if missing else "", json.dumps(shape, ensure_ascii=False)
     pole = ""
     if body.pole is not None:

@@ -54,6 +54,7 @@ class StudySource:
         import tomli_w
 
         plain = plain_tables(tables, f"{TABLES}.toml")
+        # Tables are turned into a file, since a folder is matched to its study by a copy with the same bytes.
         study = check_tables(plain, Path.cwd(), function=function)
         return cls(study, plain, tomli_w.dumps(plain).encode(), None)
 
@@ -80,7 +81,6 @@ def plain_tables(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 def _plain(value: Any, key: str, name: str, levels: int) -> Any:
     """One value, at a dotted key, in so many more levels."""
-    # A study file is refused without a wait for it.
     import numpy as np
 
     if isinstance(value, np.ndarray | np.generic):
@@ -88,6 +88,7 @@ def _plain(value: Any, key: str, name: str, levels: int) -> Any:
         value = float(value) if isinstance(value, np.longdouble) else value.tolist()
     elif isinstance(value, os.PathLike):
         value = os.fspath(value)
+    # Tables that hold themselves would go on for ever.
     if levels == 0:
         raise StudyError([f"{name}: {key} is nested too deeply; no key takes more than a few levels"])
     if isinstance(value, Mapping):
@@ -111,7 +112,6 @@ def _plain(value: Any, key: str, name: str, levels: int) -> Any:
 
 
 def _text(value: str, key: str, name: str) -> str:
-    """A text that a file can hold."""
     if any("\ud800" <= letter <= "\udfff" for letter in value):
         raise StudyError([f"{name}: {key} is {show(value)}, which UTF-8 cannot hold; leave out lone surrogates"])
     return value
@@ -142,6 +142,8 @@ def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
     for key, value in values.items():
         _put(tables, key, value)
     try:
+        # Through the schema and the checks of a study file: a number of a client or of --set is refused in the same
+        # words.
         fixed = Study.model_validate(tables).with_function(study.function)
     except ValidationError as error:
         raise StudyError(sentences(error.errors(), known_keys())) from error
@@ -165,7 +167,6 @@ def _table(section: Any) -> Any:
 
 
 def _put(tables: dict[str, Any], key: str, value: Any) -> None:
-    """Put a number where the study file has it."""
     section, _, name = key.partition(".")
     table = tables.setdefault(section, {})
     if not isinstance(table, dict):
@@ -189,6 +190,7 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
     elif key.startswith(INPUTS):
         table["inputs"] = {**table["inputs"], key.removeprefix(INPUTS): value}
     elif section == "site":
+        # A number next to kernels that give it would be refused as given twice.
         table |= {name: value, "kernels": [], "kernel_body": None, "epoch": None}
     else:
         table[name] = value

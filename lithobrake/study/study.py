@@ -46,6 +46,7 @@ class Study(Section):
 
     title: str = ""
     """Title of the study, one line."""
+    # JSON numbers are doubles to most readers, exact up to 2**53.
     seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
     """Seed of all random numbers of the study."""
     bed: BedSection
@@ -82,14 +83,18 @@ class Study(Section):
             return tables
         filled, bed, impact = dict(tables), tables.get("bed"), tables.get("impact")
         if isinstance(bed, Mapping):
+            # Values of the file take precedence over every default.
             filled["bed"] = {"sides": "periodic", **bed}
         if isinstance(impact, Mapping):
+            # An error of pointing is about an attitude that is given, and a random one has none.
             attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
             filled["impact"] = {"azimuth_deg": "random", **attitude, **impact}
         return filled
 
     def with_function(self, identity: str | None) -> "Study":
         """The same study, its touchdowns made by a Python function of this identity in place of the soil."""
+        # The section models are frozen, and a private attribute is no key of the file: neither schema nor template
+        # shows it.
         study = self.model_copy()
         study._function = identity
         return study
@@ -135,6 +140,7 @@ class Study(Section):
         # What a run is given is the attitude that it draws with that error.
         values.pop("impact.pointing_error_deg", None)
         if self.impact.region is None and self.impact.place is None:
+            # draw() takes the place of a run without a region from here.
             values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
         return values
 

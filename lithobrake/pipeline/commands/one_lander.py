@@ -131,6 +131,7 @@ def bed_of(study: Study, number: int, progress: Callable[[float, str], None]) ->
     from lithobrake.touchdown import pour_bed, stored_or_poured
     from lithobrake.touchdown.bed import Bed
 
+    # A folder of its own, since no file of a study is read or written here.
     with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
         recipe, path = bed_recipe(study, number), Path(folder) / "bed.h5"
 
@@ -154,7 +155,6 @@ def landed(
 
 
 def _values(study: Study, number: int) -> dict[str, float]:
-    """What the run of a number reads."""
     if study.design.method == "paper":
         return draw(study, DrawnDesign(study).medians, study.seed)
     last = study.design.most_runs - 1
@@ -164,7 +164,6 @@ def _values(study: Study, number: int) -> dict[str, float]:
 
 
 def _refuse(study: Study, values: Mapping[str, float]) -> None:
-    """Raise ValueError for numbers that the study file may not have."""
     try:
         fixed_study(study, {key: value for key, value in values.items() if key != "bed"})
     except StudyError as error:
@@ -243,10 +242,10 @@ def follow_one(
 
 
 def _begun(study: Study, values: Row) -> Journey:
-    """The journey before its first touchdown, on the ground or after its flight to it."""
     number, design = round(values["journey"]), DrawnDesign(study)
     if not design.is_flown:
         return begin(JourneyModel(design, Site(study)), [values], number)[0]
+    # Journeys of a longer study begin with those of this one.
     design = design.with_run_count(max(study.design.run_count, number + 1))
     assert design.descents is not None
     return begun_aloft(JourneyModel(design, Site(study)), design.descents)[number]
@@ -254,8 +253,10 @@ def _begun(study: Study, values: Row) -> Journey:
 
 def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Record:
     """A landing as the ledger of the study has it; context: what it depends on beside its values."""
+    # As in the ledger, where an output that is NaN is absent.
     outputs = {name: value for name, value in landing.outcome.outputs.items() if not math.isnan(value)}
     return Record(
+        # All that is random is among the inputs, so the seed of the run has no effect.
         key=run_key(landing.values, study.seed, 0, context), status=RunStatus.DONE,
         outcome=str(landing.outcome.status), inputs=landing.values, outputs=outputs, draws={}, seed=0, replicate=0,
         attempts=1, reason=None, wall_s=None, cpu_s=None, host=None, version=touchdown_version(), started=None,
@@ -264,7 +265,6 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
 
 
 def _line(journey: Journey, landing: OneLanding) -> str:
-    """The last touchdown of a journey in a line."""
     facts, there = _facts(journey.touchdowns[-1], landing), None
     if journey.end is None:
         latitude, longitude = journey.model.body.shape.latitude_longitude(journey.origin)

@@ -72,6 +72,7 @@ def rare_failure(
         try:
             found = landings.simulation(landing_count)
         except BaseException:
+            # What is under way would be waited for otherwise; finished landings are in the ledger.
             executor.shutdown(cancel_futures=True)
             raise
         if landings.reused_count:
@@ -103,7 +104,6 @@ class Landings:
         return len(self.job.design.coordinates) + 1
 
     def simulation(self, landing_count: int) -> SubsetResult:
-        """Subset simulation with so many landings a level."""
         return subset_simulation(
             self.margins,
             self.dimension,
@@ -117,6 +117,7 @@ class Landings:
     def beds(self, points: np.ndarray) -> np.ndarray:
         """Beds of points [count, dimension], [count]."""
         shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        # Below 1, as the clip above keeps the last bed from being passed.
         return (shares * self.job.study.bed_count).astype(int)
 
     def margins(self, points: np.ndarray) -> np.ndarray:
@@ -136,6 +137,7 @@ class Landings:
         self.made_count += len(made.records)
         self.reused_count += made.reused_count
         values = values_of_runs(DesignRuns.of(made))
+        # The thresholds of all levels are compared with each other, so margins keep the scale of the first.
         self.scale = self.scale or {output: self._spread(output, values[output]) for output in self.state.outputs}
         self.unknown_count += int(np.isnan(limit_state_met(self.state, values)).sum())
         return limit_state_margin(self.state, values, self.scale)
@@ -150,7 +152,6 @@ class Landings:
         return float(np.nanstd(values)) or 1.0
 
     def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
-        """What rare_NAME.json holds."""
         study, why = self.job.study, why_no_interval(self.job.study)
         content = {
             "condition": self.state.text,
@@ -202,7 +203,6 @@ def _limit_state(study: Study, name: str) -> LimitState:
 
 
 def _statement(name: str, found: dict[str, Any]) -> str:
-    """The result in a sentence."""
     said = f"probability {found['probability']:.2g}"
     if found["lower"] is not None:
         said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
@@ -218,7 +218,6 @@ def _statement(name: str, found: dict[str, Any]) -> str:
 
 
 def _few_origins(origins: float, bed_count: int) -> str | None:
-    """What to say where equal runs of the command would scatter much."""
     if origins >= FEW_ORIGINS:
         return None
     what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")

@@ -70,12 +70,12 @@ class ServedStudy:
         return found
 
     def _has_touchdown_emulator(self) -> bool:
-        """Whether the study has journeys, and these an emulator of all their touchdowns."""
         path = self.folder / TOUCHDOWN_EMULATOR_FILE
         return path.is_file() and why_no_emulator(self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
+        # A file that was edited would be served as if it were the study's.
         intact_file(self.folder.path, TOUCHDOWN_EMULATOR_FILE, REMEDY)
         return TouchdownEmulator.read(self.design, self.folder)
 
@@ -90,6 +90,7 @@ class ServedStudy:
         emulator, seed = self._touchdowns, _seed(config)
         inputs = {name: np.array([value]) for name, value in zip(emulator.plain_inputs, point, strict=True)}
         inputs |= emulator.attitude_of(_attitude(config, seed))
+        # One refit a draw, so that draws over many seeds contain the scatter between beds.
         refit = np.array([seed % len(emulator.refits)])
         answers = emulator.answers(inputs, np.zeros((1, 3)), refit, seed)
         if not answers.is_known[0]:
@@ -111,6 +112,7 @@ class ServedStudy:
         Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
+        # All draws are made first and then replaced, so that a number that is given changes none of the others.
         values = draw(self.study, self.design.medians | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
@@ -189,7 +191,6 @@ def landing_vector(outcome: str, outputs: Mapping[str, float]) -> list[float]:
 
 
 def _refuse(study: Study, values: Mapping[str, Any]) -> None:
-    """Raise ValueError, on one line, for numbers that the study file may not have."""
     try:
         fixed_study(study, values)
     except StudyError as error:
@@ -203,7 +204,6 @@ def _refuse_keys(config: Mapping[str, Any], allowed: Sequence[str]) -> None:
 
 
 def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The inputs of a configuration of RUN_KEYS."""
     _refuse_keys(config, RUN_KEYS)
     given = config.get("inputs", {})
     if not isinstance(given, Mapping):
@@ -212,9 +212,9 @@ def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _attitude(config: Mapping[str, Any], seed: int) -> Rotation:
-    """The attitude of a touchdown in its frame: as given, or a random one."""
     given = config.get("orientation")
     if given is None:
+        # A stream of its own, so that the attitude and the draw of the touchdown are independent.
         return Rotation.random(1, rng=np.random.default_rng([seed, 1]))
     if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)) or not any(given):
         raise ValueError(f"config.orientation is {show(given)}; allowed: a quaternion of four numbers w, x, y, z")
@@ -247,6 +247,7 @@ class EvaluationProcess:
         if time_limit is not None and not time_limit > 0.0:
             raise ValueError(f"the time limit is {time_limit:g} s; allowed: above 0")
         self.time_limit = time_limit or study.study.campaign.wall_limit or TIME_LIMIT
+        # Pickled once: the process recognises the study by these bytes, and keeps what it has read of it.
         self._content = pickle.dumps(study)
         self._worker: Worker | None = None
 
@@ -299,13 +300,11 @@ class EvaluationProcess:
             self._worker = None
 
     def __enter__(self) -> Self:
-        """Give the evaluations."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the process."""
         self.end()
 
 

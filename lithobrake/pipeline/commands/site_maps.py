@@ -42,7 +42,6 @@ NOT_COMPARED = "The emulator was not compared with landings: journey.emulated_co
 
 
 def with_words(site_map: SiteMap) -> SiteMap:
-    """The same map with its sentences."""
     return replace(site_map, statement=_statement(site_map), of=_population(site_map))
 
 
@@ -53,7 +52,6 @@ def place_words(latitude_deg: float, longitude_deg: float) -> str:
 
 
 def _statement(found: SiteMap) -> str:
-    """How many rest, where most do, and whether landings agree."""
     total, answered = len(found.cells), [site for site in found.cells if site.ends is not None]
     if not answered or found.at_rest is None:
         return (
@@ -78,7 +76,6 @@ def _statement(found: SiteMap) -> str:
 
 
 def _compared(found: SiteMap) -> str:
-    """Whether emulator and landings agree."""
     if not found.agreement:
         return NOT_COMPARED
     whole, *regions = found.agreement
@@ -95,7 +92,6 @@ def _compared(found: SiteMap) -> str:
 
 
 def _population(found: SiteMap) -> str:
-    """Which landers the numbers hold over."""
     intervals = (
         f"{percent(found.level)} intervals cover other landers and other beds, by the scatter between {found.refits} "
         f"refits of the emulator to {found.beds} beds sampled with replacement ({found.touchdowns} touchdowns), and "
@@ -137,6 +133,7 @@ def map_sites(
     """
     shown = shown or Silent()
     cells = EqualAreaCells.of(cell_count)
+    # Before the journeys of the study are made.
     _refuse(source.study, cell_count, lander_count)
     run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
@@ -164,10 +161,13 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
             "give the arrival conditions there instead (delivery.speed, delivery.incidence_deg)"
         )
+    # Sites are compared refit by refit, so each refit has as many landers; two of one refit are the fewest that
+    # scatter.
     if lander_count < 2 * REFIT_COUNT or lander_count % REFIT_COUNT:
         raise ValueError(
             f"--landers is {lander_count}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 200"
         )
+    # All landers of all cells are followed at once, in arrays.
     if cell_count * lander_count > MOST_LANDERS:
         raise ValueError(
             f"--cells {cell_count} with --landers {lander_count} makes {cell_count * lander_count} landers; allowed: "
@@ -176,7 +176,6 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
 
 
 def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> SiteMap:
-    """The map of a study whose emulator is there."""
     study, runs = job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN)
     fitted = Refits(len(np.unique(runs.inputs["bed"])), runs.run_count, why_no_interval(study))
     ground, landers = SiteGround.of(job, cells), follow_sites(job, cells, lander_count)
@@ -195,6 +194,7 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         refits=REFIT_COUNT,
         beds=fitted.bed_count,
         touchdowns=fitted.run_count,
+        # The cells are of equal area on a sphere, which here has the volume of the body.
         area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
         at_rest=all_at_rest(landers, fitted),
         cells=site_cells(cells, landers, ground, fitted, journeys),

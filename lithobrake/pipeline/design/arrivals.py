@@ -60,6 +60,7 @@ def icrf_to_body(site: SiteSection, time: Array, spin_period: Array) -> Array:
 
 def turned(rotations: Array, vectors: Array) -> Array:
     """Vectors [count, 3] turned by rotations [count, 3, 3]; a row depends on no other."""
+    # Not by a matrix product, whose rounding depends on how many rows there are.
     found: Array = (rotations * vectors[:, None, :]).sum(axis=2)
     return found
 
@@ -121,6 +122,7 @@ def met_ground(
     from lithobrake.smallbody import incidence_on, met_normals
     from lithobrake.smallbody.hopping import impact_frame
 
+    # Flat facets take no random numbers.
     if not study.site.roughness_deg:
         return impact_frame(velocity, up), incidence
     normal = met_normals(velocity, up, roughness(study), uniforms())
@@ -184,7 +186,10 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
     along, aside, outward = (float(one) for one in acceleration)
     strength, sign = math.hypot(along, aside, outward), -1.0 if outward > 0.0 else 1.0
     slope = math.atan2(math.hypot(along, aside), abs(outward))
+    # An acceleration below 0 turns its component along the ground round as well, which the sign takes back.
     downhill = math.degrees(math.atan2(sign * aside, sign * along)) + azimuth_deg
+    # A study with such a slope is refused; a journey has the slopes of the body, so its bed is tilted no more than it
+    # holds.
     tilt = min(slope, math.radians(STEEPEST_DEG), math.atan(friction / LEAST_FRICTION))
     return dict(zip(GROUND, (sign * strength, math.degrees(tilt), downhill % 360.0), strict=True))
 
@@ -240,6 +245,7 @@ def place_region(study: Study) -> tuple[Interval, Interval] | None:
     if study.bed.sides == "periodic":
         along, across = (0.5 * width for width in study.bed.width)
         return (-along, along), (-across, across)
+    # Nearer to a wall its reflection would meet the lander within the first contact (docs/decisions/touchdown.md).
     along, across = (max(0.0, 0.5 * (width - smallest_width(study))) for width in study.bed.width)
     return (-along, along), (-across, across)
 

@@ -48,6 +48,7 @@ def released_states(release: ReleaseSection, uniforms: Array, first: int, pole: 
     from scipy.special import ndtri
 
     mean = np.array([*release.position, *release.velocity])
+    # Clipped, as ndtri is infinite at 0 and 1, where a point of the sequence may lie.
     states = mean + spread(release, pole, ndtri(np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53)))
     source = [f"the release of journey {first + row}" for row in range(len(states))]
     return DeliveredStates(source, np.full(len(states), release.time), states[:, :3], states[:, 3:])
@@ -86,7 +87,9 @@ def _root(covariance: Array) -> Array:
     """The symmetric root of a covariance, by that of its correlations: entries have different units."""
     variances = np.diag(covariance)
     scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    # Made symmetric, as what was written may differ by rounding, and eigh reads one half only.
     values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T) / np.outer(scale, scale))
+    # Rounding takes an eigenvalue of 0 below it.
     root: Array = scale[:, None] * (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     return root
 
@@ -182,14 +185,12 @@ class Descents:
         )  # fmt: skip
 
     def _impact(self, lander: int) -> Row:
-        """Speed and incidence of a first touchdown, on the ground that is met."""
         met = impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
         if not self.study.site.roughness_deg:
             return met
         return met | {MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
 
     def _attitude(self, lander: int, row: Row) -> Row:
-        """Attitude and spin of a lander at its first touchdown, where its state has them."""
         if self.attitude is None or self.spin is None:
             return {}
         period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
@@ -224,7 +225,6 @@ def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.nd
 
 
 def _states(study: Study, first: int, uniforms: np.ndarray) -> DeliveredStates:
-    """The states of these journeys in the axes that the study names."""
     delivery = study.delivery
     assert delivery is not None
     if delivery.release is None:
@@ -237,12 +237,12 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     """Attitudes and spins at the start, fixed to the body."""
     if states.attitude is None or states.rates is None:
         return None, None
+    # The scalar stands first in the file and last in SciPy.
     given = Rotation.from_quat(np.roll(states.attitude, -1, axis=1))
     return Rotation.from_matrix(into_body) * given, turned(into_body, given.apply(states.rates))
 
 
 def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequence[str]) -> None:
-    """Raise StudyError for a state below the ground."""
     shape = site.body.shape
     for place, where in zip(position, source, strict=True):
         height = float(shape.height(place))
@@ -262,6 +262,7 @@ def _refuse_fast(study: Study, speed: np.ndarray) -> None:
     if not len(speed) or not study.has_soil:
         return
     fastest = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": float(speed.max())})})
+    # The overlap depends on the stiffness, and a region may have softer grains than [grain].
     for one in (fastest, *map(fastest.on_soil, study.soil)):
         if wrong := list(contact_problems(one)):
             raise StudyError(wrong)

@@ -52,6 +52,7 @@ FLOWN = ("impact.speed", "impact.incidence_deg")
 SIDE_DESIGNS = ("soil_pairs", "twins")
 
 
+# Compared by identity: a study has dicts, which cannot be hashed, and cached properties belong to one object.
 @dataclass(frozen=True, eq=False)
 class DrawnDesign:
     """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
@@ -77,7 +78,6 @@ class DrawnDesign:
 
     @property
     def is_flown(self) -> bool:
-        """Whether landers are flown to their first touchdown from states."""
         return self.study.delivery is not None and self.study.delivery.is_flown
 
     @cached_property
@@ -89,6 +89,7 @@ class DrawnDesign:
         if not self.is_flown:
             return None
         found = self._descents(0, self._points(len(self.beds)))
+        # A study without a touchdown has no run, and every later stage would fail for another reason.
         if not found.touches_down.any():
             raise StudyError(
                 [
@@ -100,19 +101,16 @@ class DrawnDesign:
 
     @cached_property
     def region(self) -> tuple[Interval, Interval] | None:
-        """The rectangle out of which places are drawn, as `place_region` has it."""
         return place_region(self.study)
 
     @cached_property
     def one_place(self) -> bool:
-        """Whether all runs come down at the same place of their bed."""
         if self.inputs.keys() & set(PLACE):
             return False
         return not any(low < high for low, high in self.region or ())
 
     @cached_property
     def beds(self) -> list[int]:
-        """Number of the bed of each run."""
         return beds_of_runs(self.study, self.study.design.run_count)
 
     @cached_property
@@ -162,6 +160,7 @@ class DrawnDesign:
 
     def _row(self, run: int) -> dict[str, float] | None:
         """The same as `row`; None for a lander that never touches down."""
+        # A point of the sequence follows from its number, so the runs before need not be made.
         points = self._points(1, skip=run)
         rows = self.rows_at(beds_of_runs(self.study, run + 1)[-1:], points)
         descents = self._descents(run, points) if self.is_flown else None
@@ -197,6 +196,8 @@ class DrawnDesign:
     def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
         rows, known = [], medians(self.study)
+        # A point has the inputs first, then what a run draws, then what a release draws: each zip takes the part that
+        # it needs.
         for bed, point in zip(beds, x.tolist(), strict=True):
             soil = dict(zip(self.inputs, point, strict=False))
             uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=False))
@@ -227,7 +228,6 @@ class DrawnDesign:
         return arriving_together(self.study, numbered, first)
 
     def _descents(self, first: int, points: np.ndarray) -> Descents:
-        """The flights of the journeys from `first` on, at these points of the sequence."""
         return Descents.flown(self.study, first, points[:, -len(RELEASE) :])
 
     def _soil_pairs(self) -> list[dict[str, float]]:
@@ -264,6 +264,7 @@ def beds_of_runs(study: Study, count: int) -> list[int]:
     if study.bed.bed_count is not None:
         return _in_blocks(study.seed, study.bed.bed_count, count)
     few, many = FEWEST_BEDS * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
+    # Blocks leave every run on its bed however many follow, and at each full block all beds have equally many.
     first = _in_blocks(study.seed, FEWEST_BEDS, min(count, few))
     growing = [run // study.runs_a_bed for run in range(few, min(count, many))]
     # A bed is as new as any other, so the order in which they were filled so far says nothing.

@@ -63,6 +63,7 @@ def independent_terms(design: DrawnDesign, inputs: Mapping[str, np.ndarray]) -> 
     if terms is None or not tells_attitude(inputs):
         return None
     found, law = terms.at(*seen(inputs)), terms.uniform_law
+    # Attitudes that are pointed or propagated follow no law in closed form.
     if design.study.impact.orientation != "random" or design.is_flown:
         own = found - found.mean(axis=0)
         law = found.mean(axis=0), own.T @ own / len(own)

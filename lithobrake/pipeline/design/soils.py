@@ -132,6 +132,7 @@ class Soils:
     @cached_property
     def _map(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Latitudes and longitudes [deg] of a grid, and the place among `names` of each of its points."""
+        # Longitudes overlap by a column on either side, so that outlines reach the edges of a map.
         latitude, longitude = np.arange(-89.5, 90.0), np.arange(-180.5, 181.0)
         points, facets = self._shape.locate(latitude[:, None], longitude)
         numbers = self._numbers(points.reshape(-1, 3), facets.ravel())
@@ -164,6 +165,7 @@ class Soils:
         """The place among `names` of the region of each point [m], [count, 3], on its facet, [count]."""
         latitude, longitude = self._shape.latitude_longitude(points)
         found = np.full(len(points), len(self.site.study.soil))
+        # From the last to the first, since where regions overlap the first of the file applies.
         for number, (name, soil) in reversed(list(enumerate(self.site.study.soil.items()))):
             inside = np.full(len(points), True)
             if soil.latitude_deg is not None:
@@ -173,6 +175,7 @@ class Soils:
                 inside &= (longitude - west) % 360.0 <= (east - west) % 360.0
             if soil.facets is not None:
                 inside &= np.isin(facets, self._facets[name])
+            # Last, and only of what the other bounds leave: a slope takes the gravity of the body.
             if soil.slope_deg is not None and inside.any():
                 inside[inside] = _between(self._slopes_deg(facets[inside]), soil.slope_deg)
             found[inside] = number
@@ -180,12 +183,12 @@ class Soils:
 
     @cached_property
     def _facets(self) -> dict[str, tuple[int, ...]]:
-        """The facets that regions name by their numbers."""
         named = {name: soil.facets for name, soil in self.site.study.soil.items() if soil.facets is not None}
         return {name: facet_numbers(Path(path)) for name, path in named.items()}
 
     def _slopes_deg(self, facets: np.ndarray) -> np.ndarray:
         """Slope of each of these facets at its centre [deg], [count]."""
+        # Many places share a facet, and the gravity is worked out once for each.
         own, place = np.unique(facets, return_inverse=True)
         columns, centres = self.site.columns(len(own)), self._shape.corners[own].mean(axis=1)
         pull = felt(self.site.body, centres, self.site.clock(columns), columns["mass"], columns["spin_period"])
@@ -214,7 +217,6 @@ def _triangle_parts(count: int) -> np.ndarray:
 
 
 def _region(key: str) -> str:
-    """The region that a dotted key is of."""
     return key.split(".")[1]
 
 

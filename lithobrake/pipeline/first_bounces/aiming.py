@@ -29,7 +29,6 @@ def aim_files(study: Study) -> list[str]:
 
 
 def aim_dependencies(study: Study) -> dict[str, Any]:
-    """What the landers at the aims depend on beside the emulator and the site."""
     # Which aims are allowed is asked of what is already there.
     return {"rest": journey_dependencies(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
 
@@ -85,6 +84,7 @@ def ways_from_aims(body: "Body", site: Mapping[str, np.ndarray], there: np.ndarr
     Of the radius at the aim. site: columns of SITE_KEYS, [count] each.
     """
     latitude, longitude = site["latitude_deg"], site["longitude_deg"]
+    # All landers of an aim share its radius, which takes a search among the facets.
     aims, inverse = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
     radius = np.linalg.norm(body.shape.surface_point(*aims.T), axis=1)
     ways: np.ndarray = radius[inverse.ravel()] * angles(directions(latitude, longitude), there)

@@ -222,7 +222,6 @@ class SlowArrivals:
     gyration: np.ndarray
 
     def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
-        """Ask the bounce, then answer what is too slow for it."""
         from lithobrake.smallbody import Rebounds
         from lithobrake.touchdown.outcome_judge import CAPTURED_APEX
 

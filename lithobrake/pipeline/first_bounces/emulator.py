@@ -37,7 +37,6 @@ MARGIN = 1e-6
 
 
 def fit_emulator(job: Job) -> None:
-    """Fit the emulator to the drawn runs and write it; a run that failed says nothing."""
     from lithobrake.emulator.training import FEWEST
 
     runs = DesignRuns.load(job.folder, "drawn")
@@ -71,6 +70,7 @@ def fitted(
     bed = runs.inputs["bed"].astype(int)[ended]
     upper = np.full((runs.run_count, len(outputs)), np.inf)
     upper[:, list(outputs).index(ELEVATION)] = STEEPEST
+    # Between 0 and the bound the emulator works in the logit, so that no draw exceeds the energy of the impact.
     if _is_kept(job, runs, bound):
         upper[:, list(outputs).index(SPEED)], upper[:, list(outputs).index(SPIN)] = bound.speed, bound.spin()
     modelled = (SPEED, ELEVATION, SPIN)
@@ -78,6 +78,7 @@ def fitted(
         inputs,
         runs.columns(list(inputs))[ended],
         np.column_stack(list(outputs.values()))[ended],
+        # One bed cannot be left out of itself, so its runs are then left out singly.
         groups=bed if len(np.unique(bed[runs.has_outputs[ended]])) > 1 else None,
         outcome=np.array(runs.outcomes)[ended],
         outcomes=outcomes,
@@ -175,7 +176,6 @@ EXPLORER_FILE = "explorer.h5"
 
 
 def write_explorer(job: Job) -> None:
-    """Write explorer.h5, of the refits that samples are drawn of."""
     bound = bound_numbers(job.design, height_of_beds(job.study, job.folder))
     save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(refits(job), bound))
 
@@ -202,7 +202,6 @@ def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -
 
 
 def save_explorer(path: Path, explorer: ExplorerTables) -> None:
-    """Write tables for `ExplorerTables.read`: a data set each, and all else as attributes."""
     import h5py
 
     with atomic_path(path) as draft, h5py.File(draft, "w") as file:
@@ -238,6 +237,7 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
     for number, model in enumerate(models):
         job.progress(number, len(models), "samples")
+        # Interleaved, so that the first samples, which are flown, are of all refits.
         part = slice(number, None, REFIT_COUNT)
         drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, purpose, number))
         table = drawn.table()
@@ -248,6 +248,5 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
 
 
 def make_emulator(job: Job) -> None:
-    """Fit the emulator of the drawn runs, and write its tables for the explorer of the page."""
     fit_emulator(job)
     write_explorer(job)

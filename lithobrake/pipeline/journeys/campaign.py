@@ -47,7 +47,6 @@ def begun_aloft(model: JourneyModel, descents: Descents) -> list[Journey]:
 
 
 def _descent(descents: Descents, number: int, touches_down: bool) -> dict[str, Any]:
-    """The flight of a lander to its first touchdown as a row of the table of flights."""
     flights, start = descents.flights, descents.flights.start
     time = float(flights.time[number])
     begin = -time if touches_down else 0.0
@@ -61,7 +60,6 @@ JOURNEY_FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE)
 
 
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
-    """Write journeys.csv, touchdowns.csv and arcs.csv."""
     write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
     columns = JOURNEY_TOUCHDOWN | (SOIL if any(journey.model.design.study.soil for journey in journeys) else {})
@@ -71,7 +69,6 @@ def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
 
 
 def _flights(journey: Journey) -> list[dict[str, Any]]:
-    """The flights of a journey in their order, with that to its first touchdown."""
     rows = [*([] if journey.descent is None else [journey.descent]), *journey.flights]
     return [{**row, "arc": number} for number, row in enumerate(rows)]
 
@@ -94,7 +91,6 @@ INTERVAL_ERRORS = 1.645
 
 
 def make_journeys(job: Job) -> None:
-    """Follow every lander and write its touchdowns, flights and end."""
     for words in (job.site.warning, job.site.rotation_words):
         if words:
             job.say(words)
@@ -102,12 +98,14 @@ def make_journeys(job: Job) -> None:
         job.say(descents_in_words(job.design.descents))
     journeys = begun(job)
     rows = job.design.rows
+    # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs("drawn", job.design.keys)
     chains = follow(job, journeys, rows)
     records = [record for chain in chains for record in chain]
     _say_what_was_known(job, records)
     first = Runs([chain[0] for chain in chains], 0)
     account(job, "drawn", first, tuple(job.design.inputs))
+    # First touchdowns are what the drawn runs of other studies are, so all that reads those serves journeys as well.
     DesignRuns.of(first).save(job.folder, "drawn")
     DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
     write_journeys(job.folder, journeys)
@@ -116,13 +114,11 @@ def make_journeys(job: Job) -> None:
 
 
 def begun(job: Job) -> list[Journey]:
-    """The journeys of a study before their first touchdowns; of those that never touch down, at their end."""
     model, descents = JourneyModel(job.design, job.site), job.design.descents
     return begin(model, job.design.rows, 0) if descents is None else begun_aloft(model, descents)
 
 
 def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> list[Journey]:
-    """Journeys, numbered from `first` on, whose first touchdowns have these inputs."""
     site = model.site
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, mean_axes = site.frames(columns)
@@ -139,6 +135,7 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
 
     rows: first touchdowns, in the order of the journeys that have one.
     """
+    # A lander that never touches down has no chain; the others keep their order.
     landing = [journey for journey in journeys if journey.end is None]
 
     def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
@@ -146,6 +143,7 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
 
     def show(state: Tally) -> None:
         ended, said = sum(one.end is not None for one in journeys), progress_words(journeys, state.ended)
+        # Other processes read this from the lock: the tables are written when all journeys have ended.
         job.note(journeys=said)
         job.progress(ended, len(journeys), "journeys", f"{said}\n{state.sentence()}")
 

@@ -49,7 +49,6 @@ TOUCHDOWN_EXPLORER_FILE = "touchdown_explorer.h5"
 
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
-    """Write touchdown_explorer.h5, of the refits that landers follow."""
     runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
     # Only the size of the spin counts for the energy: an arrival without one of its own has that of the median.
     spin = np.linalg.norm([runs.inputs[name] for name in SPIN], axis=0)
@@ -64,7 +63,6 @@ def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
 
 
 def _attitude(study: Study, terms: AttitudeTerms | None) -> ExplorerAttitude | None:
-    """What draws attitudes in the explorer."""
     if terms is None:
         return None
     names = tuple(f"{PREFIX}{name}" for name in terms.ranges)
@@ -73,7 +71,6 @@ def _attitude(study: Study, terms: AttitudeTerms | None) -> ExplorerAttitude | N
 
 
 def write_reason(job: Job, why: str) -> None:
-    """Write touchdown_explorer.h5 of a study without an emulator: the reason alone."""
     import h5py
 
     with atomic_path(job.folder / TOUCHDOWN_EXPLORER_FILE) as draft, h5py.File(draft, "w") as file:
@@ -91,12 +88,10 @@ LANDINGS_ALONE = "Landers that are delivered as states are followed by landings 
 
 
 def emulated_dependencies(study: Study) -> Any:
-    """What emulated journeys depend on beside the journeys."""
     return [None if study.journey is None else study.journey.emulated_count, tuple(EMULATED)]
 
 
 def make_emulated(job: Job) -> None:
-    """Fit the emulator to all touchdowns, follow landers by it, and write touchdown_emulator.json and emulated.csv."""
     why = fit_touchdowns(job)
     rows = _followed(job) if why is None else []
     if why is not None:
@@ -106,7 +101,6 @@ def make_emulated(job: Job) -> None:
 
 
 def _followed(job: Job) -> list[list[Any]]:
-    """Write the explorer of the emulator, and follow landers by it where the study asks for any."""
     emulator = TouchdownEmulator.read(job.design, job.folder)
     write_explorer(job, emulator)
     assert job.study.journey is not None
@@ -117,13 +111,12 @@ def _followed(job: Job) -> list[list[Any]]:
 
 
 def most_landings(job: Job) -> int:
-    """How many landings may be made where the emulator has no answer."""
     return int(MOST_LANDINGS * DesignRuns.load(job.folder, JOURNEY_DESIGN).run_count)
 
 
 def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
-    """Rows of landers that come after those of the journeys."""
     assert job.study.journey is not None
+    # Numbers behind those of the journeys: other points of the sequence, so other landers.
     followed = len(job.design.rows)
     begin = Arrivals.drawn(job.design, job.site, followed, job.study.journey.emulated_count)
     return _rows(job, emulator, FRESH, begin, most_landings(job))
@@ -136,6 +129,8 @@ def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     pairs = [
         (lander, refit)
         for lander, row in enumerate(begin.rows)
+        # Some (1 - 1/B)^B of the refits, about a third, have not seen one of B beds: where these are fewer, some are
+        # taken twice.
         for refit in np.resize(unseen[int(row["bed"])], COPIES).tolist()
     ]
     which, refit = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
@@ -143,7 +138,6 @@ def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
 
 
 def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, most: int) -> list[list[Any]]:
-    """Follow landers, and give their rows of emulated.csv."""
     landers = EmulatedLanders.of(job, emulator, f"{name} landers by the emulator", begin)
     landers.follow(most)
     columns = (
@@ -166,7 +160,6 @@ def option_files(study: Study) -> list[str]:
 
 
 def option_dependencies(study: Study) -> Any:
-    """What the landers at the options depend on beside the emulator."""
     return [study.aim.grid, study.aim.sides, study.aim.lander_count]
 
 
@@ -183,6 +176,7 @@ def follow_options(job: Job) -> None:
         landers = EmulatedLanders.of(
             job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
         )
+        # At most a tenth as many landings as the journeys had touchdowns, so that the cost stays theirs.
         landers.follow(most_landings(job))
         there = directions(*job.site.body.shape.latitude_longitude(landers.position))
         end, time, distance = landers.end, landers.time, ways_from_aims(job.site.body, begin.site, there)
@@ -217,7 +211,6 @@ def option_arrivals(design: DrawnDesign, place: Site) -> Arrivals:
 
 
 def _attitudes(study: Study, side: str, landers: Arrivals) -> list[dict[str, float]]:
-    """Attitudes of landers with a side toward the ground, as inputs of their first touchdowns."""
     random = np.random.default_rng(hashed_seed(study.seed, "attitudes of options"))
     directions, count = np.array(directions_of_sides(study.lander)[side]), len(landers.rows)
     down = directions[random.integers(len(directions), size=count)]

@@ -76,7 +76,6 @@ class LandingsBetween:
 
     @cached_property
     def model(self) -> JourneyModel:
-        """Site and design of the study."""
         return JourneyModel(self.job.design, self.job.site)
 
     def answers(self, impacts: NextImpacts, number: int) -> Answers:
@@ -95,6 +94,7 @@ class LandingsBetween:
         """Inputs of a landing: the lander's own soil and bed, at a fresh place, in a random direction and attitude."""
         lander = int(impacts.lander[place])
         row, acceleration = self.begin.rows[lander], impacts.acceleration[place].tolist()
+        # The first touchdown is that of the design, whose attitude and place are the lander's own.
         if number == 0:
             return row | ground_inputs(acceleration, row[AZIMUTH], friction_of(row))
         seed = hashed_seed(self.model.seed, "landings between", self.title, lander, number)
@@ -116,7 +116,6 @@ class LandingsBetween:
 
 
 def _take_in(found: Answers, place: int, record: Record) -> None:
-    """Note how a landing ended."""
     outputs = record.outputs
     if record.status == RunStatus.FAILED:
         found.outcome[place] = RunStatus.FAILED.value
@@ -163,7 +162,6 @@ class EmulatedLanders:
 
     @classmethod
     def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
-        """Landers at their first touchdowns."""
         count = len(begin.rows)
         names = [name for name in emulator.plain_inputs if name not in emulator.ranges]
         return cls(
@@ -177,14 +175,15 @@ class EmulatedLanders:
             speed=begin.column(SPEED),
             incidence=begin.column(INCIDENCE),
             time=np.zeros(count),
+            # As wide as the longest of its words: NumPy cuts longer ones without notice.
             end=np.full(count, "", dtype="<U10"),
             landings=np.zeros(count, dtype=np.int64),
+            # The same of the names of OF_TOUCHDOWN.
             beyond=np.full(count, "", dtype="<U24"),
             soil={name: begin.column(name) for name in names},
         )
 
     def follow(self, most_landings: int) -> None:
-        """Follow all to their ends, with at most so many landings where the emulator has no answer."""
         between = LandingsBetween(self.job, self.title, self.begin, most_landings)
         for number in range(MOST_TOUCHDOWNS):
             going = np.flatnonzero(self.end == "")
@@ -213,8 +212,8 @@ class EmulatedLanders:
         return np.einsum("nij,nj->ni", self.axes[going], local)
 
     def _answers(self, going: np.ndarray, acceleration: np.ndarray, number: int) -> Answers:
-        """What the emulator has for the impacts of some landers."""
         rows = (self.begin.rows[one] for one in going.tolist())
+        # The emulator reads the size of the acceleration and the slope, for which any azimuth will do.
         ground = [ground_inputs(one, 0.0, friction_of(row)) for one, row in zip(acceleration, rows, strict=True)]
         inputs = {name: values[going] for name, values in self.soil.items()} | {
             SPEED: self.speed[going],
@@ -239,11 +238,11 @@ class EmulatedLanders:
         if number == 0:
             delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, AZIMUTH)}
             return attitude_inputs_of(terms, delivered)
+        # Drawn for all landers, so that the numbers of one do not depend on which others are still under way.
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
         return self.emulator.attitude_of(Rotation.random(len(self.end), rng=random)[going])
 
     def _go_on(self, going: np.ndarray, answers: Answers, number: int) -> None:
-        """Take in how touchdowns of a number ended, and fly what left to its next impact."""
         duration = self.duration
         self.time[going] += answers.duration
         self.position[going] += np.einsum("nji,nj->ni", self.axes[going], answers.way)
@@ -251,6 +250,7 @@ class EmulatedLanders:
         left = answers.outcome == TouchdownOutcome.CLEAR
         self.end[going[left]] = np.where(self.time[going[left]] < duration, "", JourneyEnd.UNDER_WAY.value)
         flying = self.end[going] == ""
+        # Only those that a touchdown has moved: the search for the ground takes one lander at a time.
         for lander in going[flying & answers.way.any(axis=1)].tolist():
             self.position[lander] = on_ground(self.job.site.body.shape, self.position[lander])
         if flying.any():
@@ -287,6 +287,7 @@ class EmulatedLanders:
         """Lay the frames of the next impacts: velocities [m/s] and normals of the facets, [count, 3]."""
 
         def uniforms() -> np.ndarray:
+            # For all landers, as the attitudes.
             seed = hashed_seed(self.job.study.seed, self.title, "roughness", number)
             return np.random.default_rng(seed).random((len(self.end), 2))[down]
 

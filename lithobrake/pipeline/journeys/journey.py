@@ -38,21 +38,18 @@ if TYPE_CHECKING:
 PROJECTIONS = 8
 
 
+# Compared by identity, as the design.
 @dataclass(frozen=True, eq=False)
 class JourneyModel:
-    """The site and the design of a study that follows journeys."""
-
     design: DrawnDesign
     site: Site
 
     @cached_property
     def body(self) -> "Body":
-        """The body with its partner."""
         return self.site.body
 
     @property
     def seed(self) -> int:
-        """Of the study."""
         return self.design.study.seed
 
     @property
@@ -63,7 +60,6 @@ class JourneyModel:
 
     @property
     def is_ball(self) -> bool:
-        """Whether the lander has no sides."""
         return self.design.study.lander.is_ball
 
     def inertia(self, row: Mapping[str, float]) -> np.ndarray:
@@ -79,7 +75,6 @@ class JourneyModel:
 
     @cached_property
     def soils(self) -> Soils:
-        """The soils of the regions of the body."""
         return Soils(self.site)
 
     def soil(self, journey: int, place: np.ndarray) -> dict[str, float]:
@@ -104,6 +99,7 @@ class JourneyModel:
 
         return fly(
             self.body, position, velocity, left, gravity=self.design.study.flight.gravity, start_time=start,
+            # One flight has nothing to share among threads, and starting them would take longer.
             mass=np.array([mass]), spin_period=np.array([spin_period]), threads=1,
         )  # fmt: skip
 
@@ -189,8 +185,8 @@ class Journey:
             self.end, self.reason = JourneyEnd.FAILED, f"a touchdown ended as {outcome}"
 
     def _move(self, outputs: Mapping[str, float]) -> None:
-        """Go where the touchdown ended, and to when."""
         along, aside = outputs.get("displacement_x", 0.0), outputs.get("displacement_y", 0.0)
+        # A program of the user's own may give the duration of the contact alone.
         self.time += outputs.get("duration", outputs.get("contact_duration", 0.0))
         self.path_length += math.hypot(along, aside)
         self.contacts += max(1, round(outputs.get("contacts", 1.0)))
@@ -199,7 +195,7 @@ class Journey:
 
     @property
     def is_on_ground(self) -> bool:
-        """Whether the lander is on the ground of the body, and not aloft or on the partner."""
+        # A flight without a touchdown behind it has ended aloft or on the partner.
         return len(self.touchdowns) > len(self.flights)
 
     def _felt(self) -> np.ndarray:
@@ -209,7 +205,6 @@ class Journey:
         return found
 
     def _fly(self, outputs: Mapping[str, float]) -> None:
-        """Fly to the next impact and prepare its touchdown, or end."""
         left = self.model.duration - self.time
         if left <= 0.0 or len(self.touchdowns) == MOST_TOUCHDOWNS:
             self.end = JourneyEnd.UNDER_WAY
@@ -232,6 +227,7 @@ class Journey:
         ground, start = self.model.body.rotation, self.clock + self.time
         (turning,) = ground_spin(ground, np.array([start]), np.array([self.spin_period]))
         attitude = from_frame(self.axes) * attitude_of(outputs)
+        # A touchdown gives the spin against the ground, and torque-free rotation is that against axes that do not turn.
         spin = spin_of(outputs) @ self.axes + turning
         inertia = self.model.inertia(self.row)
         return turned_in_flight(inertia, attitude, spin, self.spin_period, time, ground=ground, start=start)
@@ -239,7 +235,9 @@ class Journey:
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
         number = len(self.touchdowns)
+        # The numbers of a touchdown follow from journey and touchdown, so more journeys change none.
         random = np.random.default_rng(hashed_seed(self.model.seed, "touchdowns", self.number, number))
+        # Five in every study: where the ground is flat or the place is given the others stay the same.
         x, y, turn, *gradient = random.random(5).tolist()
         incidence = self._meet_ground(flight, gradient)
         azimuth = 360.0 * turn
@@ -272,7 +270,6 @@ class Journey:
         )
 
     def _touchdown(self, record: Record, began: float, place: np.ndarray) -> dict[str, Any]:
-        """A row of the table of touchdowns."""
         latitude, longitude = (float(one) for one in self.model.body.shape.latitude_longitude(place))
         return {
             "journey": self.number,

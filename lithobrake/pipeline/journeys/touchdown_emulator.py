@@ -44,7 +44,6 @@ class Answers:
 
     @classmethod
     def unknown(cls, count: int) -> "Answers":
-        """Of so many touchdowns of which nothing is known."""
         velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
         return cls(np.full(count, UNKNOWN_END, dtype="<U16"), velocity, spin, way, np.zeros(count))
 
@@ -55,7 +54,6 @@ class Answers:
         return known
 
     def fill(self, which: np.ndarray, others: "Answers") -> None:
-        """Put answers in the places of some of these."""
         for one in fields(self):
             getattr(self, one.name)[which] = getattr(others, one.name)
 
@@ -120,7 +118,6 @@ class TouchdownEmulator:
 
     @property
     def plain_inputs(self) -> tuple[str, ...]:
-        """The same without the terms of the attitude."""
         return tuple(name for name in self.inputs if not name.startswith(PREFIX))
 
     def attitude_of(self, attitude: "Rotation") -> dict[str, np.ndarray]:
@@ -165,7 +162,6 @@ class TouchdownEmulator:
     def _draw(
         self, found: Answers, which: np.ndarray, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int
     ) -> None:
-        """Put answers of one refit in their places."""
         drawn = DrawnLandings.of(model, x, bound, seed)
         names = np.array(model.outcome_names)
         found.outcome[which] = names[drawn.outcome]
@@ -220,7 +216,6 @@ def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
 
 
 def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
-    """The same touchdowns with the terms of their attitudes among their inputs."""
     terms = attitude_terms(study)
     return runs if terms is None else replace(runs, inputs={**runs.inputs, **attitude_inputs_of(terms, runs.inputs)})
 

@@ -58,6 +58,7 @@ class SoilBounce:
         outside |= ~captured & ~((drawn == CLEAR) & possible)
         velocity = outputs[:, [names.index(name) for name in VELOCITY]]
         velocity[captured] = 0.0
+        # An expansion of a size may fall below 0.
         spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
         return Rebounds(velocity, spin, captured, outside)
 
@@ -67,13 +68,13 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
     from lithobrake.chaos import load
 
     refined = load(job.folder / "refined.json")
+    # In the refined runs the inputs that the screening drops are at their medians, and have no range.
     ranges = DesignRuns.load(job.folder, "screening").ranges(inputs)
     scatter = Scatter.of(job, refined) if job.study.monte_carlo.scatter else None
     return SoilBounce(refined, outcome_model(job), inputs, ranges, scatter)
 
 
 def follow_expansion_samples(job: Job) -> None:
-    """Follow the first samples of the expansion from bounce to bounce."""
     follow(job, "screening", _soil)
 
 

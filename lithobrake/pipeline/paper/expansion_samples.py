@@ -38,7 +38,6 @@ class Scatter:
 
     @classmethod
     def of(cls, job: Job, refined: "Surrogate") -> "Scatter":
-        """That of the runs of the refined design."""
         from lithobrake.chaos import joint_scatter
 
         runs = DesignRuns.load(job.folder, "refined")
@@ -63,7 +62,6 @@ _BLOCK = 1 << 20
 
 
 def draw_samples(job: Job) -> None:
-    """Sample all inputs, evaluate the expansion, and draw for each sample how the touchdown ends."""
     from lithobrake.analysis import sample_inputs
     from lithobrake.chaos import load
 
@@ -114,7 +112,6 @@ POINTS_PER_TERM = 3
 
 
 def sample_expansion(job: Job) -> None:
-    """Draw the samples, and write what the explorer evaluates."""
     draw_samples(job)
     write_expansion_explorer(job)
 

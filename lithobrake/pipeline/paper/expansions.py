@@ -40,11 +40,13 @@ def points(drawn: DrawnDesign, design: str, kept: Sequence[str]) -> np.ndarray:
 
     study, inputs = drawn.study, drawn.inputs
     varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
+    # Of its own for each design, so that test points are independent of training points.
     seed = hashed_seed(study.seed, design)
     if design.startswith("test"):
         x = sample_inputs(varied, study.design.test_count, seed=seed)
     else:
         x = _training_points(study, design, varied, seed)
+    # All inputs stand in every row, so that a run that two designs share has one key and is made once.
     full = np.tile([distribution.median for distribution in inputs.values()], (len(x), 1))
     full[:, [list(inputs).index(name) for name in varied]] = x
     return full
@@ -64,24 +66,20 @@ def _training_points(study: Study, design: str, varied: "dict[str, Distribution]
 
 
 def replicate_count(study: Study, design: str) -> int:
-    """Runs at every point of a design; the test sets have one."""
     return 1 if design.startswith("test") else study.design.replicate_count
 
 
 def fit_screening(job: Job) -> None:
-    """Fit all inputs at medium order."""
     runs = DesignRuns.load(job.folder, "screening")
     _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / "screening.json")
 
 
 def fit_refined(job: Job) -> None:
-    """Fit the inputs that matter at higher order."""
     runs = DesignRuns.load(job.folder, "refined")
     _fit(job, "refined", runs, screened_inputs(job)).save(job.folder / "refined.json")
 
 
 def screened_inputs(job: Job) -> tuple[str, ...]:
-    """The inputs that the screening keeps."""
     from lithobrake.chaos import load
 
     return kept_inputs(job.study, load(job.folder / "screening.json"))
@@ -94,6 +92,7 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
     study, found = job.study, int(runs.has_outputs.sum())
     degree = getattr(study.design, f"{design}_degree")
     least_squares = study.design.fit == "ols"
+    # The sparse fits choose as many terms as their runs support.
     terms = term_count(len(names), degree) if least_squares else 1
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
@@ -120,7 +119,6 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
 
 
 def score_all(job: Job) -> None:
-    """Score both expansions on what they have seen and on what they have not."""
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
@@ -151,22 +149,20 @@ def _score(surrogate: "Surrogate", design: DesignRuns) -> dict[str, Any]:
 def _finite(value: Any) -> Any:
     if isinstance(value, list):
         return [_finite(entry) for entry in value]
+    # JSON has neither NaN nor infinity, as Q2 may be of an output that does not vary.
     return float(value) if np.isfinite(value) else None
 
 
 def make_screening_runs(job: Job) -> None:
-    """Make the runs in which all inputs vary, at the nodes of the screening design."""
     say_gravity(job)
     make_runs(job, "screening")
 
 
 def make_refined_runs(job: Job) -> None:
-    """Make the runs in which the inputs vary that the screening keeps."""
     make_runs(job, "refined", screened_inputs(job))
 
 
 def make_test_runs(job: Job) -> None:
-    """Make the runs that no expansion is fitted to: the kept inputs vary, then all of them."""
     kept = screened_inputs(job)
     for design in ("test_kept", "test_all"):
         make_runs(job, design, kept)

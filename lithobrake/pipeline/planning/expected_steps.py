@@ -42,12 +42,10 @@ class PlannedRuns:
 
     @property
     def total(self) -> int:
-        """All of them."""
         return self.screening + self.refined + self.test + self.drawn + self.side
 
     @property
     def new(self) -> int:
-        """Those that are to be made."""
         return self.total - len(self.known)
 
 
@@ -90,6 +88,7 @@ def _planned_points(drawn: DrawnDesign, kept_count: int, most: int) -> np.ndarra
     parts = [points(drawn, one, kept) for one in PAPER_DESIGNS if _point_count(drawn, one, kept_count) <= MOST_NAMED]
     if not parts:
         return sample_inputs(drawn.inputs, most, seed=0)
+    # A fixed seed: the same plan whenever it is asked for.
     return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
 
 
@@ -174,13 +173,13 @@ class ExpectedSoil:
 
     @classmethod
     def of(cls, design: DrawnDesign, kept_count: int) -> "ExpectedSoil":
-        """That of a study in which so many inputs are kept."""
         from lithobrake.touchdown.grains import make_grain
 
         study, recipe = design.study, bed_recipe(design.study, 0)
         generator = np.random.default_rng(recipe.seed)
         diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
         grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)
+        # The landing that is shown comes first, as it has a time of its own in the plan.
         drawn = [landing_values(design), *planned_rows(design, kept_count, LANDING_COUNT)]
         return cls(recipe, grains, tuple((lander(study, one), landing(study, one)) for one in drawn))
 
@@ -196,7 +195,6 @@ class ExpectedSoil:
         return volume / (SOLID_FRACTION * math.prod(self.recipe.width))
 
     def pour_steps(self) -> float:
-        """Steps to pour and settle it."""
         from lithobrake.touchdown.pouring import FALL_STEPS
 
         recipe = self.recipe

@@ -82,7 +82,6 @@ def machine_pace() -> float | None:
 
 
 def engine_is_compiled() -> bool:
-    """Whether the compiled engine lies on the disk."""
     from lithobrake.compilation.compiled import lies_on_disk
     from lithobrake.dem.stepping.time_loop import advance
 
@@ -168,12 +167,12 @@ def expected_seconds(
     if flying:
         found["flights and bounces"] = spread(pace * flying / cores)
     found["fits, samples and report"] = spread(pace * REPORT_SECONDS)
+    # The upper ends alone: the other work may end before this study does.
     slower = busy_factor()
     return {what: span and (span[0], span[1] * slower) for what, span in found.items()}
 
 
 def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
-    """Where the expected times come from, in a sentence."""
     if made["touchdowns"][1] and len(walls_of(ended)) >= RUNS_THAT_TELL:
         said = f"Touchdowns by the times of the {len(walls_of(ended))} finished ones, all else estimated"
     elif _engine_works(made) and soil is not None:
@@ -298,5 +297,4 @@ def journeys_time(site: Site) -> float:
 
 
 def spread(seconds: float) -> Span:
-    """The range in which an estimated time lies."""
     return seconds / SPREAD, seconds * SPREAD

@@ -61,7 +61,6 @@ class ExpectedHalfWidth:
     level: float
 
     def lines(self) -> list[str]:
-        """The half width in words."""
         width = f"{_points(self.lower)} to {_points(self.upper)} points in nine of ten such studies"
         if self.lower == self.upper:
             width = f"{_points(self.lower)} points"
@@ -121,7 +120,6 @@ def expected_width(
 
 
 def expected_correlation(study: Study) -> float:
-    """Correlation of two runs on one bed to expect before a study has runs."""
     from lithobrake.analysis.half_width import CORRELATION, JOURNEY_CORRELATION
 
     return CORRELATION if study.journey is None else JOURNEY_CORRELATION
@@ -213,7 +211,6 @@ class RunsABed:
     correlation: float
 
     def line(self) -> str:
-        """All of it in a sentence."""
         one, more = self.runs
         cost = f"{self.bed_cost:.2g} {one if self.bed_cost == 1.0 else more}"
         judged = "is as good"

@@ -135,27 +135,23 @@ def brief_lines(plan: Plan, command: str) -> list[str]:
 
 
 def _made(plan: Plan) -> str:
-    """Beds, touchdowns and what follows, in numbers."""
     counts = [f"{_range(*ends)} {NAMES[what][ends[1] > 1]}" for what, ends in plan.made.items() if ends[1]]
     return ", ".join(counts) or "summary and report"
 
 
 def _beds(plan: Plan) -> str:
-    """How many beds there are to be, and how many of them need not be poured."""
     fewest, most = plan.beds[0], plan.beds[-1]
     there = f"{most.in_folder} in the folder, {most.in_library} in the library of beds"
     return f"{_range(fewest.total, most.total)}; {there}, {_range(fewest.new, most.new)} to pour"
 
 
 def _site(slope_deg: float) -> str:
-    """How the ground at the site lies."""
     if slope_deg > 90.0:
         return "Site: gravity and rotation together eject objects that rest on the ground."
     return f"Site: the ground slopes by {slope_deg:.0f} deg against gravity and rotation together."
 
 
 def _designs(plan: Plan) -> str:
-    """How many touchdowns each design asks for, and how many of all are there."""
     fewest, most = plan.runs[0], plan.runs[-1]
     if most.drawn:
         side = f", {most.side} side runs" if most.side else ""
@@ -175,7 +171,6 @@ def _designs(plan: Plan) -> str:
 
 
 def _time(plan: Plan) -> str:
-    """The expected time in all."""
     workers = plan.process_count
     where = f" on {workers} process{'es' * (workers != 1)}" if workers else ""
     unknown = [what for what, span in plan.seconds.items() if span is None]
@@ -186,7 +181,6 @@ def _time(plan: Plan) -> str:
 
 
 def _seconds(lower: float, upper: float) -> str:
-    """A span of time, each end in the unit that suits it."""
     (first, unit), (last, other) = (_in_unit(seconds) for seconds in (lower, upper))
     if unit == other:
         return f"{_range(first, last)} {unit}"
@@ -201,7 +195,6 @@ def _in_unit(seconds: float) -> tuple[float, str]:
 
 
 def bytes_in_words(count: float) -> str:
-    """A size on the disk."""
     for limit, unit, size in ((1e6, "kB", 1e3), (1e9, "MB", 1e6), (1e12, "GB", 1e9)):
         if count < limit:
             return f"{_rounded(count / size)} {unit}"

@@ -32,7 +32,6 @@ class PlannedBeds:
 
     @property
     def new(self) -> int:
-        """Those that are to be poured."""
         return self.total - self.in_folder - self.in_library
 
 
@@ -58,7 +57,6 @@ class PlannedTile:
     smallest: float
 
     def line(self) -> str:
-        """All of it in a line of text."""
         along, across = self.width
         return (
             f"Ground: repeats after {along:g} m along x and {across:g} m along y; the smallest tile for this lander "
@@ -89,7 +87,6 @@ class PlannedGrains:
     count_per_m2: float
 
     def line(self) -> str:
-        """All of it in a line of text."""
         return (
             f"Grains: {self.smallest:.3g} to {self.largest:.3g} m in diameter, mean {self.mean:.3g} m; "
             f"{self.count_per_m2:.3g} per m2 of bed, of which {LARGE_FRACTION * self.count_per_m2:.3g} are larger than "
@@ -109,7 +106,6 @@ class PlannedBoulders:
     coverage: float
 
     def line(self) -> str:
-        """All of it in a line of text."""
         sizes = f"{self.smallest:.3g} to {self.largest:.3g}" if self.smallest < self.largest else f"{self.largest:.3g}"
         return (
             f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {100.0 * self.coverage:.3g} % "
@@ -160,7 +156,6 @@ class PlannedGround:
     roughness_deg: float
 
     def line(self) -> str:
-        """All of it in a line of text."""
         low, middle, high = self.gravity
         median, most = self.slope_deg
         rough = f", with a roughness of {self.roughness_deg:g} deg rms" if self.roughness_deg else ""
@@ -185,6 +180,7 @@ def planned_ground(design: DrawnDesign) -> PlannedGround | None:
     held = [min(STEEPEST_DEG, math.degrees(math.atan(friction_of(row) / LEAST_FRICTION))) for row in design.rows]
     low, middle, high = np.quantile(strength, [LOW, MEDIAN, HIGH]).tolist()
     median, most = np.quantile(slope, [MEDIAN, HIGH]).tolist()
+    # A tilt that was cut at the limit equals it but for the rounding of degrees and radians.
     steeper = float(np.mean(slope > np.array(held) - 1e-9))
     return PlannedGround((low, middle, high), (median, most), steeper, study.site.roughness_deg or 0.0)
 
@@ -197,7 +193,6 @@ class PlannedSoils:
     aim: str
 
     def line(self) -> str:
-        """All of it in a line of text."""
         shares = [f"{name} {percent(share, 1)}" for name, share in self.area_shares.items()]
         where = "outside of these regions, on [grain]" if self.aim == ELSEWHERE else f"in {self.aim}"
         return f"Soils: {', '.join(shares)} of the surface; the aim point is {where}."

@@ -62,7 +62,6 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
-    """What observed bounces would say, or what is to be run before that can be told."""
     why = None
     if study.design.method == "paper":
         why = 'their information follows from an emulator, which needs design.method = "drawn"'
@@ -75,20 +74,19 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
 
 
 def _delivery(design: DrawnDesign) -> str | None:
-    """Where and when the landers that are delivered as states reach the ground, in sentences."""
     return None if design.descents is None else descents_in_words(design.descents)
 
 
 def plan_of(
     design: DrawnDesign, site: Site, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
 ) -> Plan:
-    """The plan of a study that has been read."""
     study, keys = design.study, stage_keys(design.study)
     old = [one for one in stages_of(study) if not folder.is_current(one.files(study), keys[one.name])]
     stale = {stage.name: stage.title for stage in old}
     known = known_runs(study, folder)
     runs = tuple(possible_runs(design, folder, "screen" not in stale, known))
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
+    # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds)
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
@@ -124,7 +122,6 @@ def plan_of(
 def _made(
     study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...]
 ) -> dict[str, tuple[int, int]]:
-    """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
@@ -136,13 +133,13 @@ def _made(
         "touchdowns": touchdowns,
         "journeys to rest": journeys,
         "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
+        # How many samples leave the surface is known when they are drawn.
         "flights": (0, flight_count(study) if "fly" in stale else 0),
         "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),
     }
 
 
 def _no_room(needed: int, free: int) -> list[str]:
-    """A disk that is too small."""
     if needed <= free:
         return []
     return [
@@ -152,6 +149,6 @@ def _no_room(needed: int, free: int) -> list[str]:
 
 
 def _free(path: Path) -> int:
-    """Free bytes where a folder is, or will be."""
+    # The folder need not be there yet.
     place = next(parent for parent in (path.absolute(), *path.absolute().parents) if parent.is_dir())
     return shutil.disk_usage(place).free

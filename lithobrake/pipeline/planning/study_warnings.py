@@ -32,7 +32,6 @@ SHARED = ("restitution", "friction", "rolling_friction", "spinning_friction", "c
 
 
 def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -> list[str]:
-    """What to know before the study runs, in sentences, the most important first."""
     study, ground = design.study, [warning for warning in (site.warning, site.gravity_warning) if warning]
     touchdown = (
         [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
@@ -224,7 +223,6 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
 
 
 def _reach(value: Scalar) -> tuple[float, float]:
-    """Smallest and largest possible value."""
     return value.support() if isinstance(value, Uncertain) else (value, value)
 
 

@@ -64,6 +64,7 @@ def compile_flights(job: Job) -> int:
 
     if not isinstance(job.executor, LocalExecutor) or job.executor.worker_count == 1:
         return 0
+    # Without a cache on the disk no other process would find what was compiled.
     if lies_on_disk(integrate_flights) or not disk_cache("smallbody").keeps:
         return 0
     job.executor.submit(_quietly, fly_briefly, job.study)
@@ -158,6 +159,7 @@ def _pour_on_workers(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> 
         job.progress(done, total, "pouring beds", detail)
         ended, pending = wait(pending, _POLL_INTERVAL, FIRST_COMPLETED)
         for future in ended:
+            # The other beds go on: when the study is run again only those that failed are poured.
             if error := future.exception():
                 failures.setdefault(_reason(error), []).append(numbers[future])
     job.progress(total, total, "pouring beds")
@@ -196,6 +198,7 @@ def pour_beds(job: Job) -> None:
     if found:
         job.say(f"bed: {found} of {len(names)} {'was' if found == 1 else 'were'} in the library of beds")
     if new:
+        # Absolute, as a worker may have another current folder.
         pour_at_once(job, {index: (recipe, job.folder.path.absolute() / names[index]) for index, recipe in new.items()})
 
 

@@ -134,13 +134,12 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
 
 
 def make_drawn_runs(job: Job) -> None:
-    """Make the drawn runs."""
+    # Before the landings, since it may be a reason not to make them.
     say_gravity(job)
     make_rows(job, "drawn", [job.design.rows])
 
 
 def make_side_runs(job: Job) -> None:
-    """Make the runs beside the drawn ones: on a second soil, and at places a little beside."""
     for design in SIDE_DESIGNS if job.study.design.side_runs else ():
         make_rows(job, design, [job.design.rows_of(design)])
 
@@ -150,6 +149,7 @@ def make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]
     count, title = len(rows), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
     keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
+    # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs(design, keys)
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
     runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
@@ -183,29 +183,27 @@ FIRST, TELLING = "landing.h5", "telling_landing.h5"
 
 
 def landing_files(study: Study) -> list[str]:
-    """Name of the file of the landing to look at before all runs."""
     return [FIRST] if study.has_soil else []
 
 
 def telling_files(study: Study) -> list[str]:
-    """Name of the file of the landing that the runs have shown to be telling."""
     return [TELLING] if study.has_soil and study.design.method == "drawn" else []
 
 
 def landing_dependencies(study: Study) -> dict[str, Any]:
-    """What the landing to look at depends on."""
     return {"touchdown": touchdown_dependencies(study), "values": landing_values(DrawnDesign(study))}
 
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if design.study.design.method == "paper":
+        # The paper's method has no first drawn run; its landing is that of the medians.
         return draw(design.study, design.medians, design.study.seed)
     return design.shown_row
 
 
 def land_once(job: Job) -> None:
-    """Land once before all runs and keep the pictures."""
+    # Beds that come from the library have compiled nothing.
     compile_kernels(job.progress)
     _land(job, landing_values(job.design), FIRST)
 
@@ -229,13 +227,13 @@ def telling_run(runs: DesignRuns) -> int:
     """
     left = np.flatnonzero(runs.has_outputs)
     if len(left):
+        # Stable, so that of runs of one speed the same is taken on every machine.
         by_speed = left[np.argsort(runs.output("speed_out")[left], kind="stable")]
         return int(by_speed[(len(left) - 1) // 2])
     return next(row for row, outcome in enumerate(runs.outcomes) if outcome in list(TouchdownOutcome))
 
 
 def _land(job: Job, values: dict[str, float], file: str, **notes: str) -> str:
-    """Land with all these inputs, keep the pictures with notes, and return how it ended."""
     from lithobrake.touchdown import land
 
     bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
