@@ -3,19 +3,24 @@
 import hashlib
 import json
 import os
+import shlex
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.atomic import atomic_path, locked
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK
 
+if TYPE_CHECKING:
+    from lithobrake.study import StudySource
+
 NAME = KEYS
+_ANOTHER = "choose another folder with --out"
 FORMAT_VERSION = 2
 REMEDY = "make the files of this folder again with: lithobrake run STUDY.toml --out DIR"
 _FORM = {
@@ -215,3 +220,57 @@ def _path_from(folder: Path, file: Path) -> str:
     except ValueError:
         # On Windows nothing leads from one drive to another.
         return str(target)
+
+
+def refuse_others_folder(source: "StudySource", out: Path) -> None:
+    """Raise ValueError, with what to do, unless a study file may have its files written into a folder.
+
+    The folder is the study's own when it notes this study file, or has a copy of it with the same bytes. So a study is
+    edited and run again where it was, and one that was moved or renamed takes its folder over once it is copied there.
+    """
+    study = source.path
+    # A link is overwritten where it lies, and what it leads to where that lies.
+    if study is not None and any(
+        out.resolve() in path.parents for path in (study.resolve(), study.parent.resolve() / study.name)
+    ):
+        raise ValueError(
+            f"{study} lies in {out}, where results would overwrite it and its neighbours; {_ANOTHER}, "
+            f"such as --out {shlex.quote(str(Path('runs') / study.stem))}"
+        )
+    strangers = _visible(out)
+    if not strangers:
+        return
+    if not any((out / name).is_file() for name in (NAME, LOCK)):
+        more = f" and {len(strangers) - 3} more" if len(strangers) > 3 else ""
+        raise ValueError(
+            f"{out} holds {', '.join(strangers[:3])}{more}, and no study made it; {_ANOTHER}, one that is empty or "
+            "does not exist"
+        )
+    owner, copy = _noted_study(out), out / "study.toml"
+    if owner == (study and study.resolve()) or (copy.is_file() and copy.read_bytes() == source.content):
+        return
+    unknown = f"does not record which study it belongs to, and its study.toml is not that of {source.name}"
+    whose = f"has the files of another study, {owner}" if owner else unknown
+    if study is None:
+        raise ValueError(f"{out} {whose}; {_ANOTHER}")
+    raise ValueError(
+        f"{out} {whose}; {_ANOTHER}, or, if they are one study that was moved, renamed or edited, copy {study} over "
+        f"{copy} and give the same command again"
+    )
+
+
+def _visible(folder: Path) -> list[str]:
+    """What a folder holds, without the hidden files that systems and a study that had no time leave behind."""
+    if not folder.is_dir():
+        return []
+    return sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
+
+
+def _noted_study(folder: Path) -> Path | None:
+    """The study file that a folder notes; None where it notes none that can be read, or has a study of tables."""
+    try:
+        noted = Notes.read(folder).study_path(folder)
+    except DamagedFileError:
+        # The user is told when the study begins; here only its own copy can still say whose the folder is.
+        return None
+    return noted.resolve() if noted else None

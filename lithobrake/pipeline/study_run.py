@@ -13,7 +13,7 @@ from lithobrake.chaos.training import one_thread
 from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder_state import grouped, read_state, refuse_others_folder
+from lithobrake.pipeline.folder_state import grouped, read_state
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.outdated_files import make, setting
 from lithobrake.pipeline.planning.plan import brief_lines
@@ -22,7 +22,7 @@ from lithobrake.pipeline.runs.solver import Model, function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_until
-from lithobrake.pipeline.study_folder import NAME, StudyFolder
+from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 

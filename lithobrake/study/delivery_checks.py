@@ -4,8 +4,6 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from lithobrake.study.delivery_sections import (
     ANY_HEADING,
     FLOWN,
@@ -23,6 +21,8 @@ from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from lithobrake.chaos import GaussianCopula
 
 # Of numbers that were written with ten digits.
@@ -235,6 +235,8 @@ def correlated_keys(study: "Study") -> tuple[str, ...]:
 
 def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
     """The distribution of these keys together. Raises ValueError for correlations that contradict each other."""
+    import numpy as np
+
     from lithobrake.chaos import GaussianCopula
 
     laws, matrix = {}, np.eye(len(keys))
@@ -250,7 +252,7 @@ def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
     return GaussianCopula(laws, matrix)
 
 
-def drawn_together(study: "Study", columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def drawn_together(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict[str, np.ndarray]":
     """Columns by key, each [count], of which those that are correlated go together; all else stays as it is.
 
     columns: independent draws. A key follows from those before it alone, so that the place of a lander is the same
@@ -260,6 +262,8 @@ def drawn_together(study: "Study", columns: Mapping[str, np.ndarray]) -> dict[st
     # One alone goes with nothing here.
     if len(keys) < 2:
         return dict(columns)
+    import numpy as np
+
     table = np.column_stack([columns[key] for key in keys])
     return {**columns, **dict(zip(keys, copula_of(study, keys).dependent(table).T, strict=True))}
 

@@ -1,10 +1,7 @@
 """The table of the study file of the lander: its shape, its mass, its sides, and parts fixed to it."""
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
 from lithobrake.geometry.attitude import alike
@@ -12,9 +9,7 @@ from lithobrake.study.ground_sections import Cohesion, Friction, PoissonRatio, R
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
 
 if TYPE_CHECKING:
-    from lithobrake.dem import Box, ConvexHull, Part, Sphere
-
-    Array = np.ndarray
+    import numpy as np
 
 Along = Annotated[Scalar, MaybeUncertain("m")]
 
@@ -180,60 +175,3 @@ def _alike(edges: tuple[float, float, float], axis: int) -> str:
     """The axes of a box whose faces are like those of one."""
     names = [name for name, edge in zip("xyz", edges, strict=True) if alike(edge, edges[axis])]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
-
-
-def main_shape(section: LanderSection, values: Mapping[str, float]) -> "Sphere | Box | ConvexHull":
-    """The shape of the lander without its parts; values: of the study by dotted key."""
-    from lithobrake.dem import Box, Sphere
-    from lithobrake.touchdown import read_hull
-
-    if section.edges is not None:
-        return Box(section.edges)
-    if section.file is not None:
-        return read_hull(Path(section.file), section.unit)
-    return Sphere(values["lander.diameter"] / 2)
-
-
-def part_shape(section: PartSection) -> "Sphere | ConvexHull":
-    from lithobrake.dem import Box, ConvexHull, Sphere, rotation_matrices
-    from lithobrake.touchdown import read_hull
-
-    if section.diameter is not None:
-        return Sphere(section.diameter / 2, section.centre)
-    own = Box(section.edges) if section.edges is not None else read_hull(Path(str(section.file)), section.unit)
-    turn = np.array(section.orientation)
-    rotation = rotation_matrices((turn / np.linalg.norm(turn))[None])[0]
-    return ConvexHull(own.vertices @ rotation.T + np.array(section.centre))
-
-
-def lander_parts(
-    section: LanderSection, values: Mapping[str, float], properties: Mapping[str, float]
-) -> "tuple[Part, ...]":
-    """The parts of the lander; properties: of its own material, which a part has unless others are given."""
-    from lithobrake.dem import Material, Part
-
-    parts = []
-    for name, part in section.part.items():
-        shape = part_shape(part)
-        density = part.density if part.mass is None else part.mass / shape.volume
-        own: dict[str, Any] = {key: values.get(f"lander.part.{name}.{key}", value) for key, value in properties.items()}
-        parts.append(Part(shape, Material(density=float(density or 0.0), **own)))
-    return tuple(parts)
-
-
-def given_centre(section: LanderSection, values: Mapping[str, float]) -> "Array | None":
-    """The centre of mass [m], [3], where the study gives it."""
-    if section.centre_of_mass is None:
-        return None
-    return np.array([values[f"lander.centre_of_mass.{axis}"] for axis in "xyz"])
-
-
-def given_inertia(section: LanderSection) -> "Array | None":
-    """The inertia [kg m2], [3, 3], where the study gives it."""
-    if section.inertia is None:
-        return None
-    tensor = np.diag(section.inertia[:3])
-    if len(section.inertia) == 6:
-        for (i, j), element in zip(((0, 1), (0, 2), (1, 2)), section.inertia[3:], strict=True):
-            tensor[i, j] = tensor[j, i] = element
-    return tensor

@@ -15,7 +15,7 @@ from lithobrake.files.reading import source_hash
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
 from lithobrake.study.ground_sections import Constant, PowerLaw
-from lithobrake.study.lander_section import given_centre, given_inertia, lander_parts, main_shape
+from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import ORIENTATION
@@ -115,11 +115,9 @@ ENGINE_PARTS = (
     "dem",
     "touchdown",
     "geometry/grain_limits.py",
-    "geometry/grain_limits.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
-    "geometry/mesh_files.py",
-    "study/lander_section.py",
+    "study/lander_shapes.py",
     "study/touchdown_model.py",
 )
 

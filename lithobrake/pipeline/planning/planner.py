@@ -10,7 +10,6 @@ from lithobrake.campaign import available_cores
 from lithobrake.pipeline.design.descents import descents_in_words
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder_state import refuse_others_folder
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
@@ -37,7 +36,7 @@ from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_of
-from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
