@@ -61,7 +61,6 @@ class CappedLog(io.RawIOBase):
         return f"\n... {self._dropped} bytes are left out here ...\n".encode()
 
     def close(self) -> None:
-        """Close the file."""
         self._file.close()
         super().close()
 
