@@ -67,7 +67,6 @@ class Proposal:
 
 
 def can_walk() -> bool:
-    """Whether emcee is installed."""
     return find_spec("emcee") is not None
 
 

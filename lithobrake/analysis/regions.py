@@ -175,8 +175,9 @@ class _Density:
 
     def grid(self) -> tuple[Array, Array, Array]:
         """Coordinates of the cells along both axes [bandwidths], and the density there; 0 beyond the map."""
-        ends = zip(self.points.min(axis=0) - MARGIN, self.points.max(axis=0) + MARGIN, strict=True)
-        x, y = (np.linspace(low, high, _cell_count(high - low)) for low, high in ends)
+        low, high = self.points.min(axis=0) - MARGIN, self.points.max(axis=0) + MARGIN
+        counts = np.clip(np.ceil(3.0 * (high - low)), FEWEST_CELLS, MOST_CELLS).astype(int)
+        x, y = (np.linspace(*ends) for ends in zip(low, high, counts, strict=True))
         along, across = (
             np.exp(-0.5 * (cells - own[:, None]) ** 2) for cells, own in zip((x, y), self.points.T, strict=True)
         )
@@ -237,7 +238,6 @@ def _density(places: Array) -> _Density | None:
 
 
 def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -> DensityRegion:
-    """The region of a share."""
     from contourpy import contour_generator
 
     x, y, values = grid
@@ -252,10 +252,6 @@ def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -
     extent = _extent(np.concatenate([*edges, cells])) * density.map.radius
     outlines = tuple(part for edge in edges for part in _cut(latitude_longitude(edge)))
     return DensityRegion(share, area, extent, outlines)
-
-
-def _cell_count(length: float) -> int:
-    return int(min(max(math.ceil(3.0 * length), FEWEST_CELLS), MOST_CELLS))
 
 
 def _enclosed(line: Array) -> float:

@@ -18,9 +18,8 @@ from typing import Any
 
 from lithobrake.campaign.single_run import CappedLog, last_words, run_key
 from lithobrake.files.reading import content_hash
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.plain_text import closest
-
-INSTALL_YAML = 'pip install "lithobrake[yaml]"'
 
 
 def read_answer(path: Path) -> dict[str, Any]:
@@ -74,10 +73,7 @@ def _csv(path: Path) -> dict[str, Any]:
 
 
 def _yaml(path: Path) -> Any:
-    try:
-        import yaml
-    except ImportError as error:
-        raise ImportError(f"PyYAML, which reads {path.name}, is not installed: {INSTALL_YAML}") from error
+    yaml = extra_library("yaml", f"PyYAML, which reads {path.name},", "yaml")
     try:
         return yaml.safe_load(path.read_text(encoding="utf-8-sig"))
     except (ValueError, yaml.YAMLError) as error:
@@ -162,8 +158,8 @@ class Command:
                 fill_template(template, folder, question)
             code = _made(self.words(), folder)
             if code:
-                said = last_words(folder / "log.txt")
-                raise RuntimeError(f"the program ended with {_how(code)}; its last words: {said}")
+                how, said = f"exit code {code}" if code > 0 else f"signal {-code}", last_words(folder / "log.txt")
+                raise RuntimeError(f"the program ended with {how}; its last words: {said}")
             return read_answer(folder / self.answer)
 
     def words(self) -> list[str]:
@@ -247,10 +243,6 @@ def absolute_words(command: str, folder: Path) -> list[str]:
     """
     # A link stays one: the interpreter of a virtual environment is a link, and finds its packages from where it lies.
     return [os.path.abspath(folder / word) if os.path.isfile(folder / word) else word for word in shlex.split(command)]
-
-
-def _how(code: int) -> str:
-    return f"exit code {code}" if code > 0 else f"signal {-code}"
 
 
 def fill_template(template: Path, folder: Path, question: Mapping[str, Any]) -> None:

@@ -38,17 +38,12 @@ class PendingRun:
     attempts: int
 
 
-def _nothing_follows(key: str) -> Mapping[str, PendingRun]:
-    """No run is to be made because another has ended."""
-    return {}
-
-
 @dataclass
 class Coordinator:
     """A campaign under way.
 
     pending: the runs to make, by their keys; retry_count: further tries of a failed one; follow: gives the runs to make
-    because the one with this key has ended, which the ledger has queued by then.
+    because the one with this key has ended, which the ledger has queued by then; none, by default.
     """
 
     ledger: Ledger
@@ -58,7 +53,7 @@ class Coordinator:
     limits: Limits
     retry_count: int
     progress: Callable[[Tally], None]
-    follow: Callable[[str], Mapping[str, PendingRun]] = _nothing_follows
+    follow: Callable[[str], Mapping[str, PendingRun]] = lambda key: {}
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.

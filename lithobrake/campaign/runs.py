@@ -87,7 +87,7 @@ def run(
         if key not in known
     }
     queue_runs(ledger, pending, context, options)
-    state, show = _state(keys, known), progress or _silent
+    state, show = _state(keys, known), progress or (lambda state: None)
     with given_or_own(executor) as workers:
         Coordinator(ledger, workers, pending, state, limits or Limits(), options.retry_count, show).compute()
     records = ledger.find(keys)
@@ -124,10 +124,6 @@ def _state(keys: Sequence[str], known: Mapping[str, Record]) -> Tally:
     for entry in known.values():
         state.add(entry.status, entry.outputs)
     return state
-
-
-def _silent(state: Tally) -> None:
-    """Show nothing."""
 
 
 def _callable(model: Model) -> Model:

@@ -150,9 +150,11 @@ class Worker:
         # With the only other end in the coordinator, this one tells its end, however it ends.
         life, self._life = Pipe(duplex=False)
         ends = [calls.fileno(), life.fileno()]
+        # Options of this interpreter, as for warnings, are those of the process too.
+        options = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
         # It leads a session of its own: Ctrl-C is the coordinator's, which keeps what is finished and then ends it.
         self._process = subprocess.Popen(
-            [sys.executable, *_interpreter_options(), "-c", _START, *map(str, ends)],
+            [sys.executable, *options, "-c", _START, *map(str, ends)],
             stdin=subprocess.DEVNULL,
             pass_fds=ends,
             env=os.environ | dict.fromkeys(_THREAD_COUNTS, "1"),
@@ -197,12 +199,6 @@ class Worker:
             self._process.wait(timeout=5)
         code = self._process.returncode
         return f"signal {-code}" if code is not None and code < 0 else f"exit code {code}"
-
-
-def _interpreter_options() -> list[str]:
-    """Options of this interpreter that a process of its own takes too, as for warnings."""
-    options: list[str] = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
-    return options
 
 
 def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main: Source | None) -> None:

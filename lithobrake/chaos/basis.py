@@ -205,14 +205,11 @@ def smolyak_count(input_count: int, level: int) -> int:
         following: dict[int, int] = {}
         for spent, count in ways.items():
             for extra in range(1, level - spent + 1):
-                following[spent + extra] = following.get(spent + extra, 0) + count * _new_node_count(extra)
+                # Clenshaw-Curtis nodes that a level adds to the one below: m(0) = 1, m(l) = 2**l + 1.
+                added = 2 if extra == 1 else 2 ** (extra - 1)
+                following[spent + extra] = following.get(spent + extra, 0) + count * added
         ways = following
     return total
-
-
-def _new_node_count(level: int) -> int:
-    """Number of Clenshaw-Curtis nodes that a level adds to the one below: m(0) = 1, m(l) = 2**l + 1."""
-    return 2 if level == 1 else int(2 ** (level - 1))
 
 
 def check_level(level: int) -> None:

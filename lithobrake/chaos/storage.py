@@ -12,7 +12,7 @@ import numpy as np
 from lithobrake.chaos.basis import LOOKED_AT, Indices
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import distribution
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_whole
 from lithobrake.files.reading import UNREADABLE
 from lithobrake.vocabulary.arrays import Array
 
@@ -38,8 +38,7 @@ def write(kind: str, content: dict[str, Any], path: str | os.PathLike[str]) -> N
     from lithobrake import __version__
 
     heading = {"format": kind, "format_version": FORMAT_VERSION, "written_by": f"lithobrake {__version__}"}
-    with atomic_path(path) as draft:
-        draft.write_text(_readable({**heading, **content}) + "\n", encoding="utf-8")
+    write_whole(path, _readable({**heading, **content}) + "\n")
 
 
 def inputs_to_json(inputs: Mapping[str, Distribution]) -> list[dict[str, Any]]:

@@ -75,6 +75,14 @@ def tell_json(content: Any) -> None:
         print(plain(dumps(content, indent=2, allow_nan=False)))
 
 
+def tell_result(is_json: bool, content: Any, lines: Iterable[str]) -> None:
+    """Print a result as JSON or in lines, as the user chose."""
+    if is_json:
+        tell_json(content)
+    else:
+        tell(lines)
+
+
 @contextmanager
 def reader_may_leave() -> Iterator[None]:
     """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error.

@@ -25,7 +25,7 @@ from lithobrake.cli.arguments import (
     shown_progress,
     study_folder,
     tell,
-    tell_json,
+    tell_result,
 )
 
 Kinds = Annotated[
@@ -97,10 +97,7 @@ def export(
             again = None if run is None else run_of(run)
             choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
             written = export_study(results, place, to, choices)
-    if json:
-        tell_json({"files": [str(path.resolve()) for path in written]})
-    else:
-        tell(f"Wrote {path}" for path in written)
+    tell_result(json, {"files": [str(path.resolve()) for path in written]}, (f"Wrote {path}" for path in written))
 
 
 @app.command(
@@ -167,7 +164,5 @@ def sites(
                 shown=shown,
             )  # fmt: skip
         paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
-    if json:
-        tell_json(to_json(found))
-        return
-    tell([*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {', '.join(one.name for one in paths[1:])}"])
+    beside = ", ".join(one.name for one in paths[1:])
+    tell_result(json, to_json(found), [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"])

@@ -21,7 +21,7 @@ from lithobrake.cli.arguments import (
     shown_progress,
     study_folder,
     tell,
-    tell_json,
+    tell_result,
 )
 from lithobrake.vocabulary.plain_text import plain
 
@@ -67,10 +67,7 @@ def land(
         values = landing_inputs(checked, change or (), number)
         found = _landed if checked.journey is None else _followed
         told, lines = found(checked, values, out, show, force, json)
-    if json:
-        tell_json(told)
-    else:
-        tell(lines)
+    tell_result(json, told, lines)
 
 
 @app.command(rich_help_panel=EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242")
@@ -125,10 +122,7 @@ def doctor(
         from lithobrake.doctor import examine
 
         found = examine(quick)
-    if json:
-        tell_json(found.to_json())
-    else:
-        tell(found.lines())
+    tell_result(json, found.to_json(), found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
 

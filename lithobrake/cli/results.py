@@ -25,6 +25,7 @@ from lithobrake.cli.arguments import (
     study_headline,
     tell,
     tell_json,
+    tell_result,
 )
 from lithobrake.vocabulary.progress import Progress, silent
 
@@ -181,21 +182,26 @@ def film(
     force: Force = False,
 ) -> None:
     """Simulate a landing or a journey of a study again, and write it as a film."""
-    if journey is not None:
-        _film_journey(folder, journey, run, out or folder / f"journey_{journey}.mp4", seconds, force)
-        return
-    path = out or folder / "landing.mp4"
+    what = "landing" if journey is None else "journey"
+    path = out or folder / ("landing.mp4" if journey is None else f"journey_{journey}.mp4")
     with one_sentence():
+        _refuse_both(journey, run)
         from lithobrake.results import open_study
-        from lithobrake.view import refuse_other_kinds, write_motion
+        from lithobrake.view import refuse_other_kinds, write_journey, write_motion
 
-        # Before the landing is simulated again.
-        refuse_other_kinds(path)
-        refuse_written(path, force)
-        with shown_progress("landing") as progress:
-            bodies = _landing(open_study(folder), run, progress)
-            write_motion(bodies, path, seconds, progress)
-    tell([f"Film: {path.resolve()}"])
+        if journey is None:
+            refuse_other_kinds(path)
+            refuse_written(path, force)
+        else:
+            refuse_journey_file(path, force)
+        paths = [path]
+        with shown_progress(what) as progress:
+            results = open_study(folder)
+            if journey is None:
+                write_motion(_landing(results, run, progress), path, seconds, progress)
+            else:
+                paths = write_journey(results.journey(journey).motion(progress=progress), path, seconds, progress)
+    tell(f"Film: {one.resolve()}" for one in paths)
 
 
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
@@ -216,23 +222,8 @@ def compare(
             refuse_written(path, force)
         comparison = compare_studies(first, second)
         page, numbers = write_compared(comparison, place)
-    if json:
-        tell_json(to_json(comparison))
-    else:
-        tell([*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"])
-
-
-def _film_journey(folder: Path, number: int, run: str | None, path: Path, seconds: float, force: bool) -> None:
-    with one_sentence():
-        _refuse_both(number, run)
-        from lithobrake.results import open_study
-        from lithobrake.view import write_journey
-
-        refuse_journey_file(path, force)
-        with shown_progress("journey") as progress:
-            motion = open_study(folder).journey(number).motion(progress=progress)
-            paths = write_journey(motion, path, seconds, progress)
-    tell(f"Film: {path.resolve()}" for path in paths)
+    lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]
+    tell_result(json, to_json(comparison), lines)
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
@@ -253,8 +244,8 @@ def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> No
     _open(page.resolve())
 
 
-def _refuse_both(number: int, run: str | None) -> None:
-    if run is not None:
+def _refuse_both(number: int | None, run: str | None) -> None:
+    if number is not None and run is not None:
         raise ValueError(f"--run {run} and --journey {number} are given, and one thing is shown; omit one of them")
 
 

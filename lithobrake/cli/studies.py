@@ -26,7 +26,7 @@ from lithobrake.cli.arguments import (
     study_folder,
     study_headline,
     tell,
-    tell_json,
+    tell_result,
 )
 
 if TYPE_CHECKING:
@@ -156,10 +156,7 @@ def plan(
         from lithobrake.pipeline import plan_lines, plan_study
 
         found = plan_study(study, folder, workers, infers=infer)
-    if json:
-        tell_json(found.to_json())
-    else:
-        tell(plan_lines(found))
+    tell_result(json, found.to_json(), plan_lines(found))
 
 
 study_command("run", "Run a study from its file to its report.", RUN, until="report")
@@ -173,10 +170,7 @@ def status(folder: StudyDirectory, json: Json = False) -> None:
 
         found = study_status(folder)
         lines, content = found.lines(), found.to_json()
-    if json:
-        tell_json(content)
-    else:
-        tell(lines)
+    tell_result(json, content, lines)
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:

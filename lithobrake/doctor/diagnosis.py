@@ -55,7 +55,6 @@ class NeededLibrary:
 
     @property
     def remedy(self) -> str:
-        """The command that installs it."""
         return f'pip install --upgrade "lithobrake{f"[{self.extra}]" if self.extra else ""}"'
 
 
@@ -97,7 +96,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 class FoundCache:
     """The folder of compiled kernels, gravity tables and beds (None: none to be trusted), and what it has of them."""
 
-    folder: Path | None
+    folder: str | None
     is_kept: bool
     is_compiled: dict[str, bool]
 
@@ -111,11 +110,7 @@ class FoundCache:
 
         cache = DiskCache("beds", "beds")
         compiled = {"soft-surface engine": lies_on_disk(advance), "flights": lies_on_disk(integrate_flights)}
-        return cls(cache.folder and cache.folder.parent, cache.keeps, compiled)
-
-    def to_json(self) -> dict[str, Any]:
-        """All of it as JSON values."""
-        return asdict(self) | {"folder": self.folder and str(self.folder)}
+        return cls(str(cache.folder.parent) if cache.folder else None, cache.keeps, compiled)
 
 
 @dataclass(frozen=True)
@@ -136,20 +131,16 @@ class FoundMachine:
     @classmethod
     def look(cls, has_libraries: bool) -> "FoundMachine":
         """Look at this machine, with its cache where the libraries are all there."""
+        from lithobrake.campaign import available_cores
+
         return cls(
             system=f"{platform.machine()}, {sys.platform}",
-            cores=_cores() if has_libraries else os.cpu_count() or 1,
+            cores=available_cores(),
             load=os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
             free_bytes=shutil.disk_usage(Path.cwd()).free,
             browser=next(filter(None, map(shutil.which, BROWSERS)), None),
             cache=FoundCache.look() if has_libraries else None,
         )
-
-
-def _cores() -> int:
-    from lithobrake.campaign import available_cores
-
-    return available_cores()
 
 
 # A load above this part of the cores is other work, which makes all of this slower.
@@ -186,7 +177,6 @@ class Diagnosis:
 
     def to_json(self) -> dict[str, Any]:
         """The same for a program."""
-        machine, cache = self.machine, self.machine.cache
         return {
             "version": __version__,
             "python": platform.python_version(),
@@ -195,7 +185,7 @@ class Diagnosis:
                  "serves": one.serves, "remedy": None if one.serves else one.remedy}
                 for one in self.libraries
             ],
-            "machine": asdict(machine) | {"cache": cache and cache.to_json()},
+            "machine": asdict(self.machine),
             "speeds": [asdict(one) for one in self.speeds],
         }  # fmt: skip
 

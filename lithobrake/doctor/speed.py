@@ -30,11 +30,6 @@ class MeasuredSpeed:
     here: float
     reference: float
 
-    @property
-    def ratio(self) -> float:
-        """Speed here over that of the reference machine."""
-        return self.here / self.reference
-
 
 def measured_speeds() -> Iterator[MeasuredSpeed]:
     """Measure steps of grains, landings and flights, one after the other, which takes some ten CPU seconds."""

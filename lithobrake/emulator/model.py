@@ -219,14 +219,11 @@ class Emulator(Parts):
     def _matrix(self, x: ArrayLike) -> Array:
         return self.terms.matrix(checked_points(self.runs.inputs, x))
 
-    def _linear(self, matrix: Array) -> Array:
-        return matrix[:, : len(self.runs.inputs)]
-
     def _block(
         self, matrix: Array, count: int, lower: Array, upper: Array, random: np.random.Generator
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
         """Draws at some points: y, outcome and row, as in Draws."""
-        linear, columns = self._linear(matrix), list(self.runs.modelled)
+        linear, columns = matrix[:, : len(self.runs.inputs)], list(self.runs.modelled)
         outcome = drawn_rows(self.classes.chances(matrix), count, random)
         chances = row_weights(linear, self.row_points, self.law.weights, self.choices.widths)
         row = drawn_rows(chances, count, random)

@@ -118,7 +118,6 @@ def parts_of(content: dict[str, Any]) -> Parts:
 
 
 def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
-    """Runs as JSON values."""
     return {
         "inputs": inputs_to_json(runs.inputs),
         "output_names": list(runs.output_names),

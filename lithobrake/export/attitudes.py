@@ -8,12 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from lithobrake.export.flown import Flown, has_journeys
 from lithobrake.export.oem import RESOLUTION, Frame, comment_lines, epoch_texts, header_lines, number_texts
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_whole
 from lithobrake.geometry.frames import arriving, attitude_of, from_frame, quaternion, spin_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.motions import landing_study
@@ -22,10 +21,10 @@ from lithobrake.smallbody.hopping import impact_frame
 from lithobrake.smallbody.tumbling import turned_freely
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, VELOCITY_OUT
 
-Floats = NDArray[np.float64]
 Row = Mapping[str, Any]
 # An impact with so small a part of its velocity along the ground has no direction there.
 VERTICAL = 1e-9
@@ -46,8 +45,8 @@ class Turn:
     begin: float
     duration: float
     attitude: Rotation
-    spin: Floats
-    inertia: Floats | None
+    spin: Array
+    inertia: Array | None
     rate: float
     what: str
 
@@ -66,7 +65,7 @@ class Turn:
         # Energy is kept, and all of it may be about the smallest moment.
         return speed * math.sqrt(float(moments[-1] / moments[0]))
 
-    def at(self, time: Floats, axes: Frame) -> Rotation:
+    def at(self, time: Array, axes: Frame) -> Rotation:
         """Attitudes at times since its beginning [s], [count], against these axes."""
         rate = np.array([0.0, 0.0, self.rate])
         if self.inertia is None:
@@ -137,12 +136,12 @@ def _rest(results: StudyResults, flown: Flown, flights: list[int], sample: int) 
     yield Turn(begin, 2.0 * math.pi / rate, attitude, spin, None, rate, "rest, over a turn of the body")
 
 
-def _axes(normal: Floats, incoming: Floats, outgoing: Floats, local: Floats) -> Floats:
+def _axes(normal: Array, incoming: Array, outgoing: Array, local: Array) -> Array:
     """Axes of a touchdown in rows, [3, 3]; local: the outgoing velocity along them [m/s]."""
     level = incoming - (incoming @ normal) * normal
     ahead = outgoing - (outgoing @ normal) * normal
     if np.linalg.norm(level) > VERTICAL * np.linalg.norm(incoming) or not np.any(ahead):
-        found: Floats = impact_frame(incoming[None], normal[None])[0]
+        found: Array = impact_frame(incoming[None], normal[None])[0]
         return found
     # A vertical impact has no direction along the ground, and what leaves has one.
     ahead /= np.linalg.norm(ahead)
@@ -151,7 +150,7 @@ def _axes(normal: Floats, incoming: Floats, outgoing: Floats, local: Floats) -> 
     return np.stack([x, np.cross(normal, x), normal])
 
 
-def _inertia(study: Study, row: Row) -> Floats:
+def _inertia(study: Study, row: Row) -> Array:
     """Of the lander about its centroid [kg m2], [3, 3]."""
     body = lander(study, row)
     whole = body.shape.inertia_per_density * (body.mass / body.shape.volume)
@@ -159,7 +158,6 @@ def _inertia(study: Study, row: Row) -> Floats:
 
 
 def _rows(table: Table) -> list[Row]:
-    """The rows of a table, by column."""
     return [{name: table[name][row] for name in table} for row in range(table.row_count)]
 
 
@@ -207,8 +205,7 @@ def write_attitudes(
         for turn in turns_of(results, flown, sample):
             lines += _segment(turn, sample, axes, step)
         written.append(folder / f"{attitude_name(sample)}.aem")
-        with atomic_path(written[-1]) as draft:
-            draft.write_text("\n".join(lines), encoding="ascii")
+        write_whole(written[-1], "\n".join(lines), "ascii")
     return written
 
 

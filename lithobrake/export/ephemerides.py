@@ -1,22 +1,21 @@
 """Flights of chosen samples as Orbit Ephemeris Messages, and as kernels of SPICE (SPK, PCK)."""
 
-import importlib
 import logging
 import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.export.flown import Flown
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
-from lithobrake.files.atomic import atomic_path
-from lithobrake.geometry.naif_kernels import DAY, INSTALL, NUMBERS, spice
+from lithobrake.files.atomic import atomic_path, write_whole
+from lithobrake.geometry.naif_kernels import DAY, NUMBERS, spice
 from lithobrake.results import StudyResults
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
 
 STEPS = 100
@@ -37,7 +36,7 @@ def flight_segments(chosen: Flown, axes: Frame, step: float, progress: Progress)
     ends = axes.states(chosen, chosen.end_time, *chosen.ends()) if keys else np.empty((0, 6))
     last = dict(zip(keys, chosen.end_time.tolist(), strict=True))
     times: dict[tuple[int, int], list[float]] = {key: [] for key in keys}
-    states: dict[tuple[int, int], list[NDArray[np.float64]]] = {key: [] for key in keys}
+    states: dict[tuple[int, int], list[Array]] = {key: [] for key in keys}
     for aloft in stepped(chosen, step, 1, progress, "flights of the chosen samples"):
         here = axes.states(aloft, aloft.time, aloft.position, aloft.velocity)
         for key, state in zip(_keys(aloft), here, strict=True):
@@ -208,26 +207,18 @@ def write_spk(
     segments = flight_segments(chosen, axes, checked_step(flown, step), progress)
     with atomic_path(folder / FLIGHTS) as draft:
         _write_segments(draft, segments, number, start)
-    with atomic_path(folder / CONSTANTS) as draft:
-        period = float(np.median(flown.spin_period))
-        draft.write_text(_constants(results, axes, number, start, period, list(segments)), encoding="ascii")
+    period = float(np.median(flown.spin_period))
+    write_whole(folder / CONSTANTS, _constants(results, axes, number, start, period, list(segments)), "ascii")
     return [folder / FLIGHTS, folder / CONSTANTS]
 
 
 def ephemeris_time(epoch: datetime) -> float:
     """Time of SPICE, TDB since J2000 [s], of a UTC epoch. Raises ImportError without pyerfa."""
-    erfa = _erfa()
+    erfa = extra_library("erfa", "pyerfa, which knows the time scales of SPICE,", "spice")
     second = epoch.second + 1e-6 * epoch.microsecond
     utc = erfa.dtf2d("UTC", epoch.year, epoch.month, epoch.day, epoch.hour, epoch.minute, second)
     whole, part = erfa.taitt(*erfa.utctai(*utc))
     return float(((whole - J2000) + part) * DAY + erfa.dtdb(whole, part, 0.0, 0.0, 0.0, 0.0))
-
-
-def _erfa() -> Any:
-    try:
-        return importlib.import_module("erfa")
-    except ImportError as error:
-        raise ImportError(f"pyerfa, which knows the time scales of SPICE, is not installed: {INSTALL}") from error
 
 
 def _number(results: StudyResults) -> int:
@@ -252,7 +243,7 @@ def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int,
             # A flight that ends as it begins has no way between states.
             if part.interpolation_degree is None:
                 continue
-            times: NDArray[np.float64] = start + part.time
+            times: Array = start + part.time
             states, name = np.ascontiguousarray(part.state * 1e-3), f"SAMPLE {sample} FLIGHT {flight}"
             ends, degree = (times[0], times[-1]), part.interpolation_degree
             library.spkw13(

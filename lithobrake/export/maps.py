@@ -1,6 +1,5 @@
 """Where flights end, and the sites of a map, in the formats of geographic programs: GeoTIFF and GeoJSON."""
 
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.export.flown import body_name, has_journeys, plain_name
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
@@ -51,13 +50,11 @@ class MapFrame:
 
     @classmethod
     def of(cls, results: StudyResults) -> "MapFrame":
-        """That of the body of a study."""
         volume = volume_of(*results.body_shape)
         return cls(body_name(results), (0.75 * volume / math.pi) ** (1.0 / 3.0))
 
     @property
     def name(self) -> str:
-        """Name of the frame."""
         return f"{self.body} sphere, planetocentric, east positive"
 
     @property
@@ -93,7 +90,6 @@ def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = 
 
 
 def map_name(results: StudyResults) -> str:
-    """Name of the file of that map."""
     return "rest.tif" if has_journeys(results) else "impacts.tif"
 
 
@@ -207,8 +203,7 @@ def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[An
         **more,
         "features": features,
     }
-    with atomic_path(path) as draft:
-        draft.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(path, content, indent=None)
 
 
 UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
@@ -230,13 +225,7 @@ def write_site_cells(site_map: SiteMap, place: Path) -> Path:
     for number, site in enumerate(site_map.cells):
         south, north, west, east = site.bounds_deg
         ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
-        features += [
-            {
-                "type": "Feature",
-                "id": number,
-                "geometry": {"type": "Polygon", "coordinates": [ring]},
-                "properties": site.row,
-            }
-        ]
+        polygon = {"type": "Polygon", "coordinates": [ring]}
+        features.append({"type": "Feature", "id": number, "geometry": polygon, "properties": site.row})
     write_features(frame, path, "sites", features, note=f"{NOTE}; {UNITS}")
     return path

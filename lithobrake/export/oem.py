@@ -8,12 +8,12 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.export.flown import Flown, body_name, has_journeys, study_body
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_whole
 from lithobrake.geometry.frames import axes_in_icrf
 from lithobrake.results import StudyResults, Table
+from lithobrake.vocabulary.arrays import Array
 
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.
@@ -36,9 +36,9 @@ class Segment:
     object_name: str
     center_name: str
     frame: str
-    time: NDArray[np.float64]
-    state: NDArray[np.float64]
-    covariance: NDArray[np.float64] | None = None
+    time: Array
+    state: Array
+    covariance: Array | None = None
     comments: Sequence[str] = ()
     interpolation_degree: int | None = None
 
@@ -61,17 +61,15 @@ def write_oem(path: Path, segments: Iterable[Segment], epoch: datetime, comments
     lines = header_lines(f"CCSDS_OEM_VERS = {VERSION}", comments)
     for segment in segments:
         lines += _segment_lines(segment, epoch)
-    with atomic_path(path) as draft:
-        draft.write_text("\n".join(lines), encoding="ascii")
+    write_whole(path, "\n".join(lines), "ascii")
 
 
 def header_lines(version: str, comments: Sequence[str]) -> list[str]:
-    """The first lines of a message."""
     made = datetime.now(UTC).replace(tzinfo=None, microsecond=0)
     return [version, *comment_lines(comments), f"CREATION_DATE = {made.isoformat()}", "ORIGINATOR = LITHOBRAKE", ""]
 
 
-def epoch_texts(epoch: datetime, time: NDArray[np.float64]) -> list[str]:
+def epoch_texts(epoch: datetime, time: Array) -> list[str]:
     """Dates and times [UTC] so many seconds after an epoch, in whole microseconds."""
     return [(epoch + timedelta(seconds=one)).isoformat(timespec="microseconds") for one in time.tolist()]
 
@@ -105,17 +103,15 @@ def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
 
 
 def comment_lines(sentences: Sequence[str]) -> Iterator[str]:
-    """Sentences as comments of a message."""
     for sentence in sentences:
         yield from (f"COMMENT {line}" for line in wrap(sentence, LINE - len("COMMENT ")))
 
 
-def number_texts(values: NDArray[np.float64]) -> str:
+def number_texts(values: Array) -> str:
     """Numbers with all their digits."""
     return " ".join(f"{value:.16e}" for value in values.tolist())
 
 
-Floats = NDArray[np.float64]
 FRAMES = ("inertial", "fixed", "icrf")
 # An epoch that nobody takes for that of a landing.
 NO_EPOCH = "2000-01-01T12:00:00"
@@ -140,7 +136,7 @@ class Frame:
     body: str
     epoch: datetime
     clock: str
-    axes: Floats
+    axes: Array
 
     @classmethod
     def of(cls, results: StudyResults, kind: str, epoch: str | None) -> "Frame":
@@ -195,13 +191,13 @@ class Frame:
         times = _state_times(results, _first_arcs(results))
         return replace(flown, begin=np.full_like(flown.begin, times[0] if np.ptp(times) <= RESOLUTION else 0.0))
 
-    def states(self, flown: Flown, time: Floats | float, position: Floats, velocity: Floats) -> Floats:
+    def states(self, flown: Flown, time: Array | float, position: Array, velocity: Array) -> Array:
         """Position [m] and velocity [m/s], [count, 6], along these axes, of body-fixed ones at times in flight [s]."""
         both = (position, velocity) if self.kind == "fixed" else flown.inertial(time, position, velocity)
         return np.concatenate([one @ self.axes for one in both], axis=1)
 
 
-def _icrf_axes(results: StudyResults, clock: str, own: str | None) -> Floats:
+def _icrf_axes(results: StudyResults, clock: str, own: str | None) -> Array:
     """The body's axes at the epoch along ICRF, in rows. Raises ValueError where they are not known."""
     site = results.study["site"]
     lacking = [key for key in POLE if site.get(key) is None]
@@ -226,7 +222,7 @@ def _first_arcs(results: StudyResults) -> Table:
     return results.arcs.where(results.arcs["arc"] == 0.0)
 
 
-def _state_times(results: StudyResults, starts: Table) -> Floats:
+def _state_times(results: StudyResults, starts: Table) -> Array:
     """Times of the states after delivery.epoch [s], for first flights that begin with them."""
     delivery: dict[str, Any] = results.study["delivery"]
     if delivery.get("release"):

@@ -1,6 +1,5 @@
 """The shape of the body as tables of other programs: plates, and numbers of each facet, as text and FITS."""
 
-import csv
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.export.flown import Flown
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_rows, write_whole
 from lithobrake.results import Column, StudyResults, Table
 
 if TYPE_CHECKING:
@@ -37,8 +36,7 @@ def write_fits_table(path: Path, name: str, columns: Mapping[str, Column]) -> No
         table += [(f"TTYPE{number}", title, column.long_name), (f"TFORM{number}", kinds[title][0], "")]
         table += [(f"TUNIT{number}", _unit(column.units), "")] if column.units else []
     data = rows.tobytes()
-    with atomic_path(path) as draft:
-        draft.write_bytes(_header(primary) + _header(table) + data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0"))
+    write_whole(path, _header(primary) + _header(table) + data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0"))
 
 
 def _unit(unit: str) -> str:
@@ -63,11 +61,8 @@ def write_facet_csv(results: StudyResults, path: Path) -> None:
     table = facet_table(results)
     titles = [f"{name} [{column.units}]" if column.units else name for name, column in table.columns.items()]
     columns = [column.values.tolist() for column in table.columns.values()]
-    with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(titles)
-        for row in zip(*columns, strict=True):
-            writer.writerow(["" if value != value else value for value in row])
+    rows = zip(*columns, strict=True)
+    write_rows(path, titles, (["" if value != value else value for value in row] for row in rows))
 
 
 def write_facet_fits(results: StudyResults, path: Path) -> None:
@@ -124,5 +119,4 @@ def write_plates(results: StudyResults, path: Path) -> None:
     lines += [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate((vertices * 1e-3).tolist(), 1)]
     lines += [str(len(faces))]
     lines += [f"{number} {a} {b} {c}" for number, (a, b, c) in enumerate((np.asarray(faces) + 1).tolist(), 1)]
-    with atomic_path(path) as draft:
-        draft.write_text("\n".join(lines) + "\n", encoding="ascii")
+    write_whole(path, "\n".join(lines) + "\n", "ascii")

@@ -123,7 +123,8 @@ def _stated(path: Path) -> tuple[set[str], bool]:
     """
     if path.suffix.lower() in FIXED:
         return {FIXED[path.suffix.lower()]}, True
-    labels = [place for place in _labels(path) if place.is_file()]
+    # A label of PDS4 or PDS3 lies beside the mesh, under its name.
+    labels = [place for ending in (".xml", ".lbl", ".LBL") if (place := path.with_suffix(ending)).is_file()]
     header = _header(path)
     texts = [header, *(label.read_text(encoding="utf-8", errors="replace") for label in labels)]
     found = {_length(word) for text in texts for word in (*_STATED.findall(text), *_FIELD.findall(text))}
@@ -134,11 +135,6 @@ def _stated(path: Path) -> tuple[set[str], bool]:
 def _length(word: str) -> str:
     """The unit that a word names. Capitals make no difference but to Mm, which is no millimetre."""
     return word if word == "Mm" else _WORDS[word.lower()]
-
-
-def _labels(path: Path) -> list[Path]:
-    """Where a label of PDS4 or PDS3 may lie: beside the mesh, under its name."""
-    return [path.with_suffix(ending) for ending in (".xml", ".lbl", ".LBL")]
 
 
 def _header(path: Path) -> str:

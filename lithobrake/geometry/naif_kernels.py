@@ -18,7 +18,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-INSTALL = 'pip install "lithobrake[spice]"'
+from lithobrake.vocabulary.extra_library import extra_library
+
 # Shapes of millions of plates take some seconds; a damaged kernel may lead round in a circle [s].
 TIME_LIMIT = 300.0
 _PROGRAM = f"from {__name__} import answer; answer()"
@@ -26,10 +27,7 @@ _PROGRAM = f"from {__name__} import answer; answer()"
 
 def spice() -> Any:
     """The package spiceypy. Raises ImportError, with how to install it, where it is absent."""
-    try:
-        return importlib.import_module("spiceypy")
-    except ImportError as error:
-        raise ImportError(f"spiceypy, which reads the kernels of SPICE, is not installed: {INSTALL}") from error
+    return extra_library("spiceypy", "spiceypy, which reads the kernels of SPICE,", "spice")
 
 
 class Reply(NamedTuple):

@@ -1,6 +1,5 @@
 """The flights of the samples that leave the surface, from the site to the next impact, and their paths."""
 
-import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path, write_rows, write_whole
 from lithobrake.files.reading import content_hash, read_rows
 from lithobrake.geometry.mesh_files import labelled_mesh, mesh_unit
 from lithobrake.pipeline.job import Job
@@ -212,10 +211,7 @@ def write_table(
     titles = [
         column if not unit or column.endswith(f"_{unit}") else f"{column} [{unit}]" for column, unit in units.items()
     ]
-    with atomic_path(folder / name) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(titles)
-        table.writerows(rows)
+    write_rows(folder / name, titles, rows)
 
 
 def fly_starts(job: Job, start: Starts, what: str, body: "Body | None" = None) -> "Flights":
@@ -264,8 +260,7 @@ def write_shape(body: "Body", folder: StudyFolder) -> None:
     # repr has all digits, so that who reads the file has the same body; OBJ counts vertices from 1.
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
-    with atomic_path(folder / "body.obj") as draft:
-        draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_whole(folder / "body.obj", "\n".join(lines) + "\n")
 
 
 def flight_rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:

@@ -1,6 +1,5 @@
 """From bounces in a file to the soil of a study: its emulator turned round, and what a bounce could say at all."""
 
-import json
 import math
 import os
 from collections.abc import Mapping
@@ -19,7 +18,7 @@ from lithobrake.analysis import (
     infer,
     predictive_p_value,
 )
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.design import DrawnDesign
@@ -247,7 +246,6 @@ def infer_study(folder: Path, bounces: Path) -> dict[str, Any]:
     from lithobrake.report import write_corner
 
     content = InferredStudy.open(folder).infer(bounces)
-    with atomic_path(folder / POSTERIOR) as draft:
-        draft.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(folder / POSTERIOR, content)
     write_corner(folder / POSTERIOR, folder / PICTURE)
     return content

@@ -1,7 +1,6 @@
 """The folder of a study, which of its files are still good, and keys.json, its notes about itself."""
 
 import hashlib
-import json
 import os
 import shlex
 from collections.abc import Callable, Iterable, Mapping
@@ -12,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.files.atomic import atomic_path, locked
+from lithobrake.files.atomic import locked, write_json, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK
 
@@ -76,9 +75,7 @@ class Notes:
 
     def write(self, folder: Path) -> None:
         """Write them to a folder, whole or not at all."""
-        content = {"format_version": FORMAT_VERSION, **asdict(self)}
-        with atomic_path(folder / NAME) as draft:
-            draft.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_json(folder / NAME, {"format_version": FORMAT_VERSION, **asdict(self)})
 
     def of_setting(self, study: dict[str, str], stages: dict[str, dict[str, Any]]) -> "Notes":
         """The same for a study that is to run now: designs that it no longer asks for like that are left out."""
@@ -163,8 +160,7 @@ class StudyFolder:
             notes = Notes()
         place = _path_from(self.path, study) if study else ""
         notes.of_setting({"file": place, "sha256": hashlib.sha256(content).hexdigest()}, stages).write(self.path)
-        with atomic_path(self / "study.toml") as draft:
-            draft.write_bytes(content)
+        write_whole(self / "study.toml", content)
 
     def is_current(self, files: Iterable[str], key: str) -> bool:
         """Whether all these files exist, are whole, and were made from what the key names."""
@@ -203,8 +199,7 @@ class StudyFolder:
 
     def write_json(self, name: str, content: Mapping[str, Any]) -> None:
         """Write a JSON file, whole or not at all. Raises ValueError for NaN and infinity, which JSON does not have."""
-        with atomic_path(self / name) as draft:
-            draft.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        write_json(self / name, content)
 
     def read_json(self, name: str) -> dict[str, Any]:
         """Read a JSON file of the folder. Raises ValueError for one that holds no JSON object."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Plot, Tile
 from lithobrake.report.figures.body_figures import agreement_figure, sites_figure
 from lithobrake.report.figures.option_figures import ShownDifference, difference_figure
@@ -43,8 +43,7 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(title, facts, content, panels, kind="Comparison of two studies")
     path = place / "index.html"
-    with atomic_path(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+    write_whole(path, text)
     return path
 
 
@@ -136,8 +135,7 @@ def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(site_map.title, site_map.of, content, panels, kind="Map of sites")
     path = place / "index.html"
-    with atomic_path(path) as draft:
-        draft.write_text(text, encoding="utf-8")
+    write_whole(path, text)
     return path
 
 

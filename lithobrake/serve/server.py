@@ -86,7 +86,6 @@ def answer(
 
 
 def _point(model: ServedModel, given: Any) -> list[float]:
-    """The inputs of a request."""
     fits = isinstance(given, list) and len(given) == 1 and isinstance(given[0], list)
     if not fits or len(given[0]) != len(model.inputs):
         raise RequestError(

@@ -1,6 +1,5 @@
 """What happens at an impact: the interface, hard ground, and hard ground whose restitution is drawn."""
 
-import csv
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import read_rows
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -157,14 +156,13 @@ class RestitutionTable:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a CSV file, one row a cell; names end with the level of a quantile, and have units in brackets."""
         names = [f"{name}_q{level:g}" for name in (*DRAWN, FRICTION) for level in LEVELS]
-        with atomic_path(Path(path)) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow([*EDGES, *COUNTS, *names])
-            for row, column in np.ndindex(self.captured.shape):
-                edges = [*self.speed[row : row + 2].tolist(), *self.incidence_deg[column : column + 2].tolist()]
-                counts = [getattr(self, name)[row, column].item() for name in COUNTS]
-                values = [self.quantiles[name][row, column].tolist() for name in (*DRAWN, FRICTION)]
-                table.writerow([*edges, *counts, *(one for part in values for one in part)])
+        rows = []
+        for row, column in np.ndindex(self.captured.shape):
+            edges = [*self.speed[row : row + 2].tolist(), *self.incidence_deg[column : column + 2].tolist()]
+            counts = [getattr(self, name)[row, column].item() for name in COUNTS]
+            values = [self.quantiles[name][row, column].tolist() for name in (*DRAWN, FRICTION)]
+            rows.append([*edges, *counts, *(one for part in values for one in part)])
+        write_rows(path, [*EDGES, *COUNTS, *names], rows)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str], rest_height: float = 0.01) -> "RestitutionTable":

@@ -65,19 +65,17 @@ def _dimorphos(extents: Sequence[float] | None = None) -> Body:
     return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
 
 
-def top_shape(
-    extents: Sequence[float], ridge_height: float, *, ridge_width_deg: float = 12.0, name: str = "top"
-) -> Shape:
+def top_shape(extents: Sequence[float], ridge_height: float, *, name: str = "top") -> Shape:
     """An ellipsoid with a ridge around its equator; its bounding box has exactly the given extents [m].
 
-    The ridge adds ridge_height exp(-(latitude / ridge_width)**2) [m] to the radius. The mesh has a row of facets
+    The ridge adds ridge_height exp(-(latitude / 12 degrees)**2) [m] to the radius. The mesh has a row of facets
     standing upright along the equator, so the normal at latitude 0, longitude 0 is +x.
     """
     directions, faces = _rings()
     semi = 0.5 * np.array(extents) - np.array([ridge_height, ridge_height, 0.0])
     radius = 1.0 / np.linalg.norm(directions / semi, axis=1)
     latitude = np.degrees(np.arcsin(directions[:, 2]))
-    vertices = directions * (radius + ridge_height * np.exp(-((latitude / ridge_width_deg) ** 2)))[:, None]
+    vertices = directions * (radius + ridge_height * np.exp(-((latitude / 12.0) ** 2)))[:, None]
     # Facets cut the corners of a smooth curve; half a percent brings the box back to what was published.
     vertices *= np.array(extents) / (vertices.max(axis=0) - vertices.min(axis=0))
     return Shape(vertices, faces, name=name)

@@ -17,7 +17,6 @@ from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 Array = NDArray[np.float64]
-Rates = tuple[float, ...]
 # Between two attitudes the body turns, and its torque swings, by at most this angle [rad]: cubics are then good to
 # some 1e-9 rad.
 STEP_ANGLE = 0.02

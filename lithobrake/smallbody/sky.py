@@ -1,18 +1,18 @@
 """What a place on the ground sees of the sky, and where Sun and Earth stand over a small body."""
 
-import importlib
 from collections.abc import Sequence
 from datetime import datetime
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.compilation.compiled import compiled
-from lithobrake.geometry.naif_kernels import DAY, INSTALL, spice
+from lithobrake.geometry.naif_kernels import DAY, spice
 from lithobrake.smallbody.facet_grid import intersect_facet
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.simd import Floats
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.
@@ -160,7 +160,8 @@ def earth_place(dates: Sequence[datetime]) -> Floats:
     Raises ImportError without pyerfa. Source: [Moisson-2001], as ERFA shortens it (epv00).
     """
     days = np.array([(date - AT_J2000).total_seconds() / DAY for date in dates])
-    heliocentric, _ = _erfa().epv00(J2000, days)
+    erfa = extra_library("erfa", "pyerfa, which knows where Earth is,", "spice")
+    heliocentric, _ = erfa.epv00(J2000, days)
     return np.array(heliocentric["p"])
 
 
@@ -180,10 +181,3 @@ def latitude_of(way: Floats, pole: Floats) -> Floats:
     """Latitudes [deg], [count], of directions [count, 3] about a pole, a unit vector."""
     found: Floats = np.degrees(np.arcsin(np.clip(way @ pole / np.linalg.norm(way, axis=1), -1.0, 1.0)))
     return found
-
-
-def _erfa() -> Any:
-    try:
-        return importlib.import_module("erfa")
-    except ImportError as error:
-        raise ImportError(f"pyerfa, which knows where Earth is, is not installed: {INSTALL}") from error

@@ -26,19 +26,19 @@ class Solid(NamedTuple):
     centroid: Place
 
 
-def solid(section: LanderSection | PartSection, centre: Place = (0.0, 0.0, 0.0)) -> Solid:
-    """The solid of a shape about a centre, in the axes of its own. Raises ValueError for a mesh that is refused."""
+def solid(section: LanderSection | PartSection) -> Solid:
+    """The solid of a shape about its centre, in the axes of its own. Raises ValueError for a mesh that is refused."""
+    centre = (0.0, 0.0, 0.0)
     if section.edges is not None:
         corners = [(x, y, z) for x, y, z in product(*((-0.5 * edge, 0.5 * edge) for edge in section.edges))]
-        return Solid([added(corner, centre) for corner in corners], 0.0, math.prod(section.edges), centre)
+        return Solid(corners, 0.0, math.prod(section.edges), centre)
     if section.diameter is not None:
         radius = reach(section.diameter)[1] / 2
         return Solid([centre], radius, 4.0 / 3.0 * math.pi * radius**3, centre)
     from lithobrake.touchdown import read_hull
 
     hull = read_hull(Path(str(section.file)), section.unit)
-    points = [added(tuple(vertex), centre) for vertex in hull.vertices.tolist()]
-    return Solid(points, 0.0, hull.volume, added(tuple(hull.centroid.tolist()), centre))
+    return Solid(list(map(tuple, hull.vertices.tolist())), 0.0, hull.volume, tuple(hull.centroid.tolist()))
 
 
 def part_solid(section: PartSection) -> Solid:

@@ -9,6 +9,7 @@ import numpy as np
 from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.results.motions import with_images
+from lithobrake.vocabulary.extra_library import extra_library
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Faces = NDArray[np.int64]
 
-INSTALL = 'pip install "lithobrake[view]"'
 # Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
 COLOURS = "YlGnBu"
 # What is slower than this part of the fastest is drawn as at rest: below it one colour serves.
@@ -27,15 +27,6 @@ SLOWEST = 1e-3
 MOST_TILES = 2.0
 # Of a window [pixels].
 SIZE = (1280, 800)
-
-
-def pyvista() -> Any:
-    """Return the module. Raises ImportError with how to install it."""
-    try:
-        import pyvista
-    except ImportError as error:
-        raise ImportError(f"PyVista is not installed; install it with: {INSTALL}") from error
-    return pyvista
 
 
 class DrawnMotion:
@@ -48,7 +39,7 @@ class DrawnMotion:
         if off_screen and not os.environ.get("DISPLAY"):
             # Without this VTK asks for a display first, and says so.
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        pv = pyvista()
+        pv = extra_library("pyvista", "PyVista", "view")
         self.words, self.bodies = words, with_images(bodies)
         bodies = self.bodies
         self.speeds = body_speeds(bodies)

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import atomic_path, write_whole
 from lithobrake.view.film import KINDS, film, journey_film
 from lithobrake.view.motion import write_vtkhdf
 from lithobrake.vocabulary.progress import Progress, silent
@@ -76,13 +76,11 @@ def write_journey(motion: "JourneyMotion", path: Path, seconds: float = 8.0, pro
     elif path.suffix == ".png":
         from lithobrake.report.figures.landing_figure import journey_sheet
 
-        with atomic_path(path) as draft:
-            draft.write_bytes(journey_sheet(motion))
+        write_whole(path, journey_sheet(motion))
     else:
         from lithobrake.report.pages.journey_page import one_journey_page
 
-        with atomic_path(path) as draft:
-            draft.write_text(one_journey_page(motion), encoding="utf-8")
+        write_whole(path, one_journey_page(motion))
     return [path]
 
 

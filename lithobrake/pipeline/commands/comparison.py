@@ -4,7 +4,6 @@ Run r of both came down on the same bed at the same place in the same attitude a
 answers cancels. Studies of which that does not hold are refused.
 """
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
@@ -127,8 +126,7 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
     page, numbers = comparison_files(out)
     texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
     write_comparison(comparison, texts, out)
-    with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(numbers, to_json(comparison))
     return page, numbers
 
 

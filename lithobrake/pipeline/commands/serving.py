@@ -4,17 +4,15 @@ import math
 import pickle
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Future
+from concurrent.futures import BrokenExecutor, wait
 from functools import cached_property, lru_cache
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.campaign.single_run import Limits
-from lithobrake.campaign.worker import BEGUN, Call, Worker
+from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
@@ -249,7 +247,7 @@ class EvaluationProcess:
         self.time_limit = time_limit or study.study.campaign.wall_limit or TIME_LIMIT
         # Pickled once: the process recognises the study by these bytes, and keeps what it has read of it.
         self._content = pickle.dumps(study)
-        self._worker: Worker | None = None
+        self._executor: LocalExecutor | None = None
 
     def __call__(
         self, model: ServedModel, point: list[float], config: Mapping[str, Any], gone: Callable[[], bool]
@@ -258,17 +256,10 @@ class EvaluationProcess:
 
         Raises TimeoutError for one that takes too long, ClientGoneError for one that nobody waits for.
         """
-        call = pickle.dumps((evaluate_served, (self._content, model.name, point, config), {}))
-        worker = self._ready(Call(Future(), call, Limits()))
+        self._executor = self._executor or LocalExecutor(1)
+        future = self._executor.submit(evaluate_served, self._content, model.name, point, config)
         since = time.monotonic()
-        while True:
-            try:
-                said = worker.connection.recv_bytes() if worker.connection.poll(_LOOK) else b""
-            except (EOFError, OSError):
-                self.end()
-                raise RuntimeError(f"the process of the evaluation died ({worker.ended()})") from None
-            if said and said != BEGUN:
-                break
+        while not wait([future], _LOOK).done:
             if gone():
                 self.end()
                 raise ClientGoneError
@@ -278,33 +269,23 @@ class EvaluationProcess:
                     f"the evaluation took more than {self.time_limit:g} s and was ended; ask for another point, or "
                     "raise the limit (lithobrake serve --time-limit)"
                 )
-        fine, found = pickle.loads(said)
-        if not fine:
-            raise found
-        answer: list[float] = found
-        return answer
-
-    def _ready(self, call: Call) -> Worker:
-        """The process, which has taken a call; another one where it has died since the last."""
-        if self._worker is None or not self._worker.take(call):
+        try:
+            answer: list[float] = future.result()
+        except (WorkerDiedError, BrokenExecutor) as error:
             self.end()
-            self._worker = Worker()
-            self._worker.take(call)
-        return self._worker
+            raise RuntimeError(f"the evaluation was lost: {error}") from None
+        return answer
 
     def end(self) -> None:
         """End the process; the next evaluation starts another one."""
-        if self._worker is not None:
-            self._worker.kill()
-            self._worker.connection.close()
-            self._worker = None
+        if self._executor is not None:
+            self._executor.shutdown(cancel_futures=True)
+            self._executor = None
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.end()
 
 

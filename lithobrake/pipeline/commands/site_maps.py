@@ -1,7 +1,5 @@
 """A map of sites: one delivery to a grid of cells over the body, and what it says in sentences."""
 
-import csv
-import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +8,7 @@ import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.design import DrawnDesign
@@ -214,13 +212,9 @@ def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Pat
 
     page, numbers, table = site_map_files(place)
     write_sites(site_map, study_text, place)
-    with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(site_map), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(numbers, to_json(site_map))
     rows = [cell.row for cell in site_map.cells]
-    with atomic_path(table) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(table, rows[0], ([row[name] for name in rows[0]] for row in rows))
     return page, numbers, table
 
 

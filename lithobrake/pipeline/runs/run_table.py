@@ -4,14 +4,13 @@ The ledger knows every run that was ever made; `designs/NAME.csv` holds those th
 that what comes after needs neither the ledger nor the model.
 """
 
-import csv
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from lithobrake.campaign import Runs
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study.units import run_units
@@ -114,10 +113,7 @@ class DesignRuns:
         cells = [["" if np.isnan(value) else repr(value) for value in column.tolist()] for column in columns]
         path = folder / file_of(design)
         path.parent.mkdir(exist_ok=True)
-        with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow([*PLAIN_COLUMNS, *head])
-            table.writerows(zip(self.keys, self.outcomes, self.reasons, *cells, strict=True))
+        write_rows(path, [*PLAIN_COLUMNS, *head], zip(self.keys, self.outcomes, self.reasons, *cells, strict=True))
 
     @classmethod
     def load(cls, folder: StudyFolder, design: str) -> "DesignRuns":
