@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set, term_count
+from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set
+from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training import one_thread

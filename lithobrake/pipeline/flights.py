@@ -9,7 +9,7 @@ import numpy as np
 
 from lithobrake.files.atomic import atomic_path, write_rows, write_whole
 from lithobrake.files.reading import content_hash, read_rows
-from lithobrake.geometry.mesh_files import labelled_mesh, mesh_unit
+from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import SITE_KEYS, Site

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
-from lithobrake.geometry.mesh_files import labelled_mesh, read_mesh
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_units import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.facet_grid import Grid, heights, outermost_hit, pseudonormals
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lithobrake.geometry.mesh import closed_faces, volume_of
-from lithobrake.geometry.mesh_files import labelled_mesh, product_id, read_mesh
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.smallbody import Shape
 
 OCTAHEDRON = "\n".join(

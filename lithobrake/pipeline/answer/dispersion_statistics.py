@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.analysis import highest_density
 from lithobrake.files.reading import read_rows
-from lithobrake.geometry.mesh_files import labelled_mesh, product_id
+from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.pipeline.answer.run_answers import SHARES, place_regions, rest_regions
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
 from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
