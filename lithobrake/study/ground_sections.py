@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lithobrake.geometry.grain_limits import LARGEST_COVERAGE
+from lithobrake.geometry.limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
 from lithobrake.vocabulary.plain_text import show
 

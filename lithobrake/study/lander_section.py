@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
 
-from lithobrake.geometry.attitude import alike
+from lithobrake.geometry.limits import alike
 from lithobrake.study.ground_sections import Cohesion, Friction, PoissonRatio, Restitution, SurfaceEnergy, YoungModulus
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
 

@@ -114,7 +114,7 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
-    "geometry/grain_limits.py",
+    "geometry/limits.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
     "study/lander_shapes.py",

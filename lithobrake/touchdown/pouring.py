@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
-from lithobrake.geometry.grain_limits import longest_reach
+from lithobrake.geometry.limits import longest_reach
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world, height_map
 from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull
-from lithobrake.geometry.grain_limits import BOULDER_REACH
+from lithobrake.geometry.limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, Boulders, GrainSizes, pour_bed, settling
 from lithobrake.touchdown.bed import heights_at
 from lithobrake.touchdown.grains import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among

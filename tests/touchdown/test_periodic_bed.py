@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, Material, World, folded, period_of
-from lithobrake.geometry.grain_limits import longest_reach
+from lithobrake.geometry.limits import longest_reach
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
 from lithobrake.touchdown.bed import boxed_world, height_map
 from lithobrake.touchdown.grains import make_grain, make_grain_within
