@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from lithobrake.export.flown import Flown, has_journeys
@@ -22,10 +21,10 @@ from lithobrake.smallbody.hopping import impact_frame
 from lithobrake.smallbody.tumbling import turned_freely
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander
+from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, VELOCITY_OUT
 
-Floats = NDArray[np.float64]
 Row = Mapping[str, Any]
 # An impact with so small a part of its velocity along the ground has no direction there.
 VERTICAL = 1e-9

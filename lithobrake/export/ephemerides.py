@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from lithobrake.export.flown import Flown
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path
-from lithobrake.geometry.naif_kernels import DAY, INSTALL, NUMBERS, spice
+from lithobrake.geometry.naif_kernels import INSTALL, NUMBERS, spice
 from lithobrake.results import StudyResults
+from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.progress import Progress, silent
 
 STEPS = 100

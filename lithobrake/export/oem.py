@@ -14,6 +14,7 @@ from lithobrake.export.flown import Flown, body_name, has_journeys, study_body
 from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.frames import axes_in_icrf
 from lithobrake.results import StudyResults, Table
+from lithobrake.vocabulary.arrays import Floats
 
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.
@@ -115,7 +116,6 @@ def number_texts(values: NDArray[np.float64]) -> str:
     return " ".join(f"{value:.16e}" for value in values.tolist())
 
 
-Floats = NDArray[np.float64]
 FRAMES = ("inertial", "fixed", "icrf")
 # An epoch that nobody takes for that of a landing.
 NO_EPOCH = "2000-01-01T12:00:00"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from lithobrake.files.reading import DamagedFileError, content_hash
 from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, file_state
-from lithobrake.results.study_files import STUDY_FILE
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def refuse_others_folder(source: StudySource, out: Path) -> None:
             f"{out} holds {', '.join(strangers[:3])}{more}, and no study made it; {_ANOTHER}, one that is empty or "
             "does not exist"
         )
-    owner, copy = _noted_study(out), out / "study.toml"
+    owner, copy = _noted_study(out), out / STUDY_FILE
     if owner == (study and study.resolve()) or (copy.is_file() and copy.read_bytes() == source.content):
         return
     unknown = f"does not record which study it belongs to, and its study.toml is not that of {source.name}"

@@ -58,6 +58,16 @@ from lithobrake.pipeline.runs.run_table import file_of
 from lithobrake.pipeline.sky import look_up, sky_dependencies, sky_files
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import OWN_KEYS
+from lithobrake.vocabulary.study_files import (
+    BODY_FILE,
+    FLIGHT_CHECKS_FILE,
+    REFINED_FILE,
+    SAMPLE_FLIGHTS_FILE,
+    SAMPLES_FILE,
+    SCORES_FILE,
+    SCREENING_FILE,
+    SUMMARY_FILE,
+)
 
 # Beds and landings are known by the hash of the engine and of all that they follow from; this is how they are chosen
 # and written down.
@@ -100,7 +110,7 @@ SIDE_RUNS = Stage(
 TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
 
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS)
+FLIGHT_FILES = (SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE, BODY_FILE, PATHS)
 FLIGHT_PARTS = (
     "pipeline/fly",
     "pipeline/site.py",
@@ -110,6 +120,8 @@ FLIGHT_PARTS = (
     "smallbody",
     "geometry",
     "chaos",
+    "vocabulary/constants.py",
+    "vocabulary/known_bodies.py",
     "vocabulary/quantities.py",
 )
 
@@ -150,7 +162,7 @@ EMULATOR = Stage("emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER), _f
 SAMPLE = Stage(
     "sample",
     "samples",
-    same_files("samples.h5"),
+    same_files(SAMPLES_FILE),
     draw_emulator_samples,
     ("emulator",),
     sample_dependencies,
@@ -187,7 +199,7 @@ def _delivery(study: Study) -> list[Any]:
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, "body.obj", WAYS),
+    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, BODY_FILE, WAYS),
     make_journeys,
     ("bed",),
     journey_dependencies,
@@ -225,7 +237,7 @@ ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, 
 JOURNEY_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_journey_summary,
     ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
     summary_dependencies,
@@ -234,7 +246,7 @@ JOURNEY_SUMMARY = Stage(
 SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_drawn_summary,
     ("landing", "telling_landing", "estimate", "rest", "aim"),
     summary_dependencies,
@@ -266,7 +278,7 @@ SCREENING_RUNS = Stage(
     PAPER_PARTS,
 )
 SCREEN = Stage(
-    "screen", "screening", same_files("screening.json"), fit_screening, ("screening_runs",), _design("fit"), PAPER_PARTS
+    "screen", "screening", same_files(SCREENING_FILE), fit_screening, ("screening_runs",), _design("fit"), PAPER_PARTS
 )
 REFINED_RUNS = Stage(
     "refined_runs",
@@ -277,7 +289,7 @@ REFINED_RUNS = Stage(
     _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs"),
     PAPER_PARTS,
 )
-REFINE = Stage("refine", "refinement", same_files("refined.json"), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
+REFINE = Stage("refine", "refinement", same_files(REFINED_FILE), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
 TEST_RUNS = Stage(
     "test_runs",
     "test runs",
@@ -287,11 +299,11 @@ TEST_RUNS = Stage(
     _design("test_count"),
     PAPER_PARTS,
 )
-TEST = Stage("test", "scores", same_files("scores.json"), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
+TEST = Stage("test", "scores", same_files(SCORES_FILE), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
-    same_files("samples.h5", EXPLORER),
+    same_files(SAMPLES_FILE, EXPLORER),
     sample_expansion,
     ("refine", "test"),
     sample_dependencies,
@@ -318,7 +330,7 @@ FOLLOW_EXPANSION_SAMPLES = Stage(
 PAPER_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_summary,
     ("landing", "rest"),
     summary_dependencies,

@@ -14,6 +14,7 @@ from typing import Any
 from lithobrake.files.atomic import atomic_path, locked
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 NAME = KEYS
 FORMAT_VERSION = 2
@@ -161,7 +162,7 @@ class StudyFolder:
             notes = Notes()
         place = _path_from(self.path, study) if study else ""
         notes.of_setting({"file": place, "sha256": hashlib.sha256(content).hexdigest()}, stages).write(self.path)
-        with atomic_path(self / "study.toml") as draft:
+        with atomic_path(self / STUDY_FILE) as draft:
             draft.write_bytes(content)
 
     def is_current(self, files: Iterable[str], key: str) -> bool:

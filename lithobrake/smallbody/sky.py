@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.compilation.compiled import compiled
-from lithobrake.geometry.naif_kernels import DAY, INSTALL, spice
+from lithobrake.geometry.naif_kernels import INSTALL, spice
 from lithobrake.smallbody.facet_grid import intersect_facet
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.simd import Floats
+from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.

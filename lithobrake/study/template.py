@@ -53,7 +53,7 @@ def commented(section: str) -> str:
 def _section(name: str, model: type[BaseModel]) -> str:
     """A table with its keys; those that it has from a base stand together below what the base says of them."""
     lines = f"{_comment(model.__doc__ or '')}[{name}]\n"
-    owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
+    owners = {key: base for base in model.__mro__ if base.__doc__ for key in getattr(base, "model_fields", ())}
     plain = [key for key, field in model.model_fields.items() if not (is_named(field) and table(field))]
     for owner, keys in groupby(plain, key=owners.__getitem__):
         heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"

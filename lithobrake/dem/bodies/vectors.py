@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Period
-
-Vector = tuple[float, float, float]
+from lithobrake.dem.bodies.arrays import Bodies, Period
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 
 @kernel

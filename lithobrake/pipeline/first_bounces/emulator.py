@@ -20,12 +20,13 @@ from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, ro
 from lithobrake.results.explorer_tables import FORMAT_VERSION, NAMES, ExplorerTables
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
+from lithobrake.vocabulary.study_files import EMULATOR_FILE, EXPLORER_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
-EMULATOR_FILE = "emulator.json"
+EMULATOR_FILE = EMULATOR_FILE
 SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
 STEEPEST = 0.5 * math.pi
 # What is drawn with its run: directions, and numbers beside the motion.
@@ -171,7 +172,7 @@ class DrawnLandings:
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
 
 
-EXPLORER_FILE = "explorer.h5"
+EXPLORER_FILE = EXPLORER_FILE
 
 
 def write_explorer(job: Job) -> None:
