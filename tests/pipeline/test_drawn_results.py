@@ -44,7 +44,7 @@ def flown_share(count: int) -> float:
     left = np.flatnonzero(landings.outcome == "clear")
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
     site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
-    job = Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    job = Job(DrawnDesign(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
     flown = fly_starts(job, Starts(left, velocity, site), "")
     return float((flown.status == "impact").sum()) / count
 

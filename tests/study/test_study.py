@@ -13,18 +13,10 @@ from lithobrake.pipeline.design.dependencies import bed_setting
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.short_study import (
-    BODIES,
-    LANDERS,
-    KnownBody,
-    all_keys,
-    escape_speed,
-    known_body,
-    known_lander,
-    short_study,
-)
+from lithobrake.study.short_study import LANDERS, all_keys, escape_speed, known_body, known_lander, short_study
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import boulders
+from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody
 
 from ..paper_tables import paper_tables
 
@@ -91,7 +83,9 @@ def tetrahedron(radius: float) -> str:
     return "\n".join([*lines, "f 1 2 3", "f 1 4 2", "f 1 3 4", "f 2 4 3", ""])
 
 
-@pytest.mark.parametrize("body", [body for body in BODIES.values() if not body.is_built_in], ids=lambda body: body.name)
+@pytest.mark.parametrize(
+    "body", [body for body in KNOWN_BODIES.values() if not body.is_built_in], ids=lambda body: body.name
+)
 def test_every_body_by_name_takes_a_mesh(body: KnownBody, tmp_path: Path) -> None:
     (tmp_path / "ball.obj").write_text(tetrahedron(body.mean_radius))
     (tmp_path / "study.toml").write_text(short_study(body, known_lander("3u"), (0.0, 0.0), "ball.obj"))

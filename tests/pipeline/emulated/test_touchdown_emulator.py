@@ -16,7 +16,6 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS, option_arrivals
-from lithobrake.pipeline.site import Site
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
 from lithobrake.results.journey_results import EmulatedJourneys
@@ -182,7 +181,7 @@ def test_a_side_is_an_option_like_any_other(results: StudyResults) -> None:
     study = check_tables(journey_tables(aim={"grid": {"delivery.speed": [0.05]}, "sides": ["z", "x or y"]}), Path())
     assert study.aim.aims() == [{"delivery.speed": 0.05, "aim.sides": 0.0}, {"delivery.speed": 0.05, "aim.sides": 1.0}]
     design = DrawnDesign(study)
-    begin = option_arrivals(design, Site(study))
+    begin = option_arrivals(design)
     inputs = {name: begin.column(name) for name in (*ORIENTATION, "impact.azimuth_deg")}
     sides = sides_down(study.lander, seen(inputs)[0])
     half = len(sides) // 2

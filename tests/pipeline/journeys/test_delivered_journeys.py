@@ -111,7 +111,7 @@ def test_the_delivery_stands_in_summary_page_and_status(flown: tuple[StudyResult
 
 def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     study = study_of(tables(delivery={"release": RELEASE}))
-    plan = plan_of(DrawnDesign(study), Site(study), "flown", StudyFolder.only_read(tmp_path), 1)
+    plan = plan_of(DrawnDesign(study), "flown", StudyFolder.only_read(tmp_path), 1)
     line = next(line for line in plan_lines(plan) if line.startswith("Delivery"))
     assert f"of {COUNT} landers reach the ground" in line
     # Distances along the ground, by the angles that the first touchdowns make with the aim point.

@@ -16,8 +16,7 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
-from lithobrake.study.lander_section import SIDES
-from lithobrake.vocabulary.quantities import SKY
+from lithobrake.vocabulary.quantities import SIDES, SKY
 
 from ...paper_tables import paper_tables
 from ...smallbody.kernels import write_kernels

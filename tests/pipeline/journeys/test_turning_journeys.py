@@ -115,7 +115,7 @@ def released(**delivery: Any) -> Flights:
     given["site"] |= {"pole_declination_deg": -71.0, "meridian_deg": 25.0}
     given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "release": release, **delivery}
     study = with_site_gravity(StudySource.of_tables(given).study)
-    return Descents.flown(study, 0, np.full((6, 6), 0.5)).flights
+    return Descents.flown(Site(study), 0, np.full((6, 6), 0.5)).flights
 
 
 def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:

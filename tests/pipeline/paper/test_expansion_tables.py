@@ -16,7 +16,6 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -69,7 +68,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 @pytest.fixture(scope="module")
 def job(results: StudyResults) -> Job:
     study = check_tables(tables(), Path()).with_function("of a test")
-    return Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(results.folder), None, Silent())  # type: ignore[arg-type]
+    return Job(DrawnDesign(study), {}, StudyFolder.only_read(results.folder), None, Silent())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,6 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs import beds as module
 from lithobrake.pipeline.runs.beds import pour_beds
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, check_tables
 from lithobrake.touchdown import bed_library
 
@@ -65,7 +64,7 @@ class Told(Silent):
 def pour(folder: Path, wanted: tuple[str, ...], executor: Executor | None = None) -> Told:
     """Pour these beds; without an executor any call of a worker is an error."""
     told, none = Told(), Executor()
-    pour_beds(Job(DrawnDesign(STUDY), Site(STUDY), {}, StudyFolder(folder), executor or none, told, wanted=wanted))
+    pour_beds(Job(DrawnDesign(STUDY), {}, StudyFolder(folder), executor or none, told, wanted=wanted))
     return told
 
 
