@@ -21,8 +21,8 @@ from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.json_values import to_json
-from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.questions import ComparedAnswer, StudyComparison
+from lithobrake.results.result_files import json_values
 from lithobrake.results.study_files import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
@@ -128,7 +128,7 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
     texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
     write_comparison(comparison, texts, out)
     with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        draft.write_text(json.dumps(json_values(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
     return page, numbers
 
 
@@ -260,8 +260,8 @@ def _quantiles(
 
 
 def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
-    first, second = (ComparedNumber(one.value, one.lower, one.upper) for one in (found.first, found.second))
-    difference = ComparedNumber(found.value, found.lower, found.upper)
+    # The comparison says why there are no intervals.
+    first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
     saved = found.landings_saved
     return ComparedAnswer(
         words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved
