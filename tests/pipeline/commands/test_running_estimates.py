@@ -60,7 +60,7 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     assert found is not None
     assert found.captured is not None
     assert found.captured.if_missing == pytest.approx((12 / 60, 13 / 60))
-    assert found.captured.lower < 12 / 60 < 13 / 60 < found.captured.upper
+    assert found.captured.share.lower < 12 / 60 < 13 / 60 < found.captured.share.upper
     assert "59 of 60 landings" in found.lines()[0]
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed is not None

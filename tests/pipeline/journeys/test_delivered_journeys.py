@@ -158,7 +158,7 @@ def test_journeys_are_added_also_where_some_never_touch_down(tmp_path: Path) -> 
     results = run_without_emulator(tables(delivery={"release": release}, design=asked), tmp_path / "out").results
     at_rest = results.ends["at_rest"]
     assert results.delivery.count < results.journeys
-    assert results.journeys == 96 or at_rest.upper - at_rest.lower <= 2.0 * 0.16
+    assert results.journeys == 96 or at_rest.share.half_width <= 0.16
 
 
 def correlated(count: int, pairs: list[list[Any]] | None = None) -> tuple[DrawnDesign, Site]:

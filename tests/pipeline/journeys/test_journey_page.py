@@ -1,6 +1,7 @@
 """The page of a study of journeys: the end first, and what is of the first touchdown alone says so."""
 
 import dataclasses
+import math
 import re
 from pathlib import Path
 
@@ -15,7 +16,8 @@ from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.words import journey_captions as words
 from lithobrake.results import StudyResults
-from lithobrake.results.journey_results import EndShare
+from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
@@ -35,7 +37,7 @@ def tables_of(content: Content) -> dict[str, PageTable]:
 
 def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPage, journeys_folder: Path) -> None:
     page = write_report(journeys_folder).read_text(encoding="utf-8")
-    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST]
+    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST].share
     assert content.answer.startswith(with_interval(at_rest, level=None if at_rest.lower is None else LEVEL))
     assert len(content.tiles) == 5
     assert content.tiles[0].words.startswith("at rest, ")
@@ -71,13 +73,13 @@ def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None
     none = np.full(data.journeys.row_count, JourneyEnd.ESCAPED.value)
     columns = dict(data.journeys.columns)
     columns["end"] = dataclasses.replace(columns["end"], values=none)
-    nothing = dataclasses.replace(data.at_rest.time_s.median, value=None, lower=None, upper=None)
+    nothing = dataclasses.replace(data.at_rest.time_s.median, value=math.nan, lower=None, upper=None)
     empty = dataclasses.replace(data.at_rest.time_s, median=nothing, q95=nothing)
     rest = dataclasses.replace(
         data.at_rest, time_s=empty, contacts=empty, distance_m=empty, tilt_deg=empty, faces={}, regions=()
     )
-    ends = {end.value: EndShare(0, 0.0, 0.0, 0.2) for end in JourneyEnd}
-    ends[JourneyEnd.ESCAPED] = EndShare(48, 1.0, 0.8, 1.0)
+    ends = {end.value: CountedShare(0, Estimate(0.0, 0.0, 0.2)) for end in JourneyEnd}
+    ends[JourneyEnd.ESCAPED] = CountedShare(48, Estimate(1.0, 0.8, 1.0))
     table = type(data.journeys)(data.journeys.row, columns)
     content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
     assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
