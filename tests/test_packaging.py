@@ -76,6 +76,7 @@ def test_imports_of_third_parties_are_declared() -> None:
         "pydantic_core": "pydantic",
         "llvmlite": "numba",
         "tomli_w": "tomli-w",
+        "lazy_loader": "lazy-loader",
         "yaml": "pyyaml",
     }
     used: set[str] = set()

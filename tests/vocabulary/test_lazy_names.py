@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "lithobrake"
 FACES = sorted(
     ".".join(path.relative_to(PACKAGE.parent).parts[:-1])
     for path in PACKAGE.rglob("__init__.py")
-    if "lazy_names(__name__)" in path.read_text(encoding="utf-8")
+    if "lazy_loader.attach_stub" in path.read_text(encoding="utf-8")
 )
 IMPORT_FACES = f"""
 import sys
