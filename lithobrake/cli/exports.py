@@ -155,7 +155,7 @@ def sites(
         from lithobrake.files.atomic import refuse_existing
         from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
         from lithobrake.progress import study_progress
-        from lithobrake.results.json_values import to_json
+        from lithobrake.results.result_files import json_values
 
         place = folder / "sites"
         written = () if force else (*site_map_files(place), site_cells_file(place))
@@ -167,6 +167,6 @@ def sites(
             )  # fmt: skip
         paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
     if json:
-        tell_json(to_json(found))
+        tell_json(json_values(found))
         return
     tell([*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {', '.join(one.name for one in paths[1:])}"])

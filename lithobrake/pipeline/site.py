@@ -16,6 +16,7 @@ from lithobrake.study.checks import settling_problems
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
+from lithobrake.vocabulary.number_words import DAY, HOUR, duration
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -26,7 +27,6 @@ SITE_KEYS = (
     "latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error", "mass", "spin_period",
     "partner_longitude_deg", "rotation_time",
 )  # fmt: skip
-DAY = 86_400.0  # s
 # Below this share of gravity the acceleration at a place counts as nearly none.
 NEARLY_NONE = 0.05
 # Accelerations that differ by this factor, or in direction, are told to the user.
@@ -116,7 +116,7 @@ class Site:
         x, _, z = (math.degrees(angle) for angle in rotation.largest_angles)
         return (
             f"The body rotates from the state in [site.rotation]: its long axis deviates by up to {x:.0f} deg and its "
-            f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {start.days:g} days."
+            f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {duration(DAY * start.days)}."
         )
 
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
@@ -196,7 +196,7 @@ class Site:
             return f"{where} push outward by {outward:.2g} m/s2 and eject what lies there: {end}"
         words = "outward" if outward > 0.0 else "inward"
         # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
-        hour = 0.5 * abs(outward) * 3600.0**2
+        hour = 0.5 * abs(outward) * HOUR**2
         return (
             f"{where} nearly cancel: only {abs(outward):.2g} m/s2 {words} remain, {hour:.2g} m in the first hour from "
             f"rest. A small error of mass, spin or shape can reverse this, and then {end}"

@@ -218,7 +218,7 @@ SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",)
 
 ANSWER_PARTS = (
     *("pipeline/answer", "pipeline/site.py", "pipeline/journeys/touchdown_emulator.py"),
-    *("analysis", "chaos", "emulator", "results", "vocabulary"),
+    *("analysis", "chaos", "emulator", "results", "statements", "vocabulary"),
 )
 
 ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, ("fly_runs",), parts=ANSWER_PARTS)
@@ -338,7 +338,7 @@ REPORT = Stage(
     same_files("report/index.html"),
     _write_report,
     ("summary",),
-    parts=("report", "results", "vocabulary"),
+    parts=("report", "statements", "results", "vocabulary"),
 )
 DRAWN = (
     BED,

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from lithobrake.files.atomic import atomic_path
 from lithobrake.report.content import Content, PageSection, Panel, Plot
 from lithobrake.report.figures.style import STYLE, figure_style
-from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.pages.paper_page import paper_content
 from lithobrake.report.tables.paper_tables import provenance
-from lithobrake.report.words import captions
 from lithobrake.results import open_study
+from lithobrake.results.page_data import DrawnPage, JourneyPage, PaperPage, page_results
+from lithobrake.statements.captions import facts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,9 +47,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"
     with atomic_path(path) as draft:
-        draft.write_text(
-            page(data.study["title"] or folder.name, captions.facts(data), whole, panels), encoding="utf-8"
-        )
+        draft.write_text(page(data.study["title"] or folder.name, facts(data), whole, panels), encoding="utf-8")
     return path
 
 

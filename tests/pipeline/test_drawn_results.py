@@ -1,6 +1,7 @@
 """A drawn study of synthetic landings from its file to its report: its shares against what is known of them."""
 
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from lithobrake.pipeline.run_flights import run_sites
 from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.study import check_tables
 
 from ..report.page_scripts import answer_of, explorer_data, needs_node
@@ -148,7 +149,7 @@ def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: S
     assert np.isnan(drawn["speed_out"][~left]).all()
     velocity = np.column_stack([drawn[name] for name in VELOCITY])[left]
     assert np.linalg.norm(velocity, axis=1) == pytest.approx(drawn["speed_out"][left], rel=1e-12)
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     scores = results.summary["results"]["emulator"]["scores"]
     assert scores["speed_out"]["band_90"] == pytest.approx(0.9, abs=0.07)
     assert sum(scores["speed_out"]["pit"]) == model.runs.has_outputs.sum()
@@ -157,7 +158,10 @@ def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: S
 def test_the_page_opens_with_the_answer_and_is_written_again(results: StudyResults) -> None:
     page = results.folder / "report" / "index.html"
     first = page.read_text()
-    assert results.headline[0] in first.replace("&nbsp;", " ")
+    opening = re.search(r'<p class="answer">(.*?)\.</p>', first)
+    assert opening is not None
+    share, _, action = opening[1].replace("&nbsp;", " ").partition(" of the landings ")
+    assert f"{share} {action}" in results.headline[0]
     page.unlink()
     write_report_again(results.folder)
     assert page.read_text() == first

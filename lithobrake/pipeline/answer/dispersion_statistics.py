@@ -1,7 +1,6 @@
 """What became of the landers: shares, times, speeds, ellipses, the site, and where they come down first."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,11 +26,13 @@ from lithobrake.results.dispersion import (
     RestResults,
 )
 from lithobrake.results.journey_results import DeliveryResults
-from lithobrake.results.json_values import from_json
+from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
 from lithobrake.results.site_results import KernelNumbers, SiteResults
+from lithobrake.statements.touchdowns import followed
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.quantities import FLIGHTS_FILE, TOUCHDOWNS_FILE
 
@@ -122,7 +123,7 @@ def impact_numbers(rows: Rows) -> ImpactNumbers:
 
 def flight_checks(job: Job) -> FlightChecks:
     """How exact the flights of a study are."""
-    return from_json(FlightChecks, job.folder.read_json("flights.json"), "flights")
+    return results_in(FlightChecks, job.folder.read_json("flights.json"), "flights")
 
 
 def ellipses(study: Study, rows: Rows, status: str) -> LandingEllipses | None:
@@ -166,25 +167,13 @@ def rest_results(job: Job) -> RestResults:
     return RestResults(known["why_no_soil"], ranges, **found)
 
 
-def followed_words(study: Study, ground: str, count: int) -> str:
-    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
-    if ground == "hard":
-        return (
-            f"{count} journeys on the hard ground of [rest], from the impacts of the study file, without soil, bed or "
-            "emulator"
-        )
-    model = "expansion" if study.design.method == "paper" else "emulator"
-    on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
-    return f"{count} journeys of {model} samples{on}"
-
-
 def _with_sampling_intervals(found: GroundResults) -> GroundResults:
     """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
     from lithobrake.analysis import LEVEL, wilson_interval
 
     def bounded(one: CountedShare) -> CountedShare:
         lower, upper = wilson_interval(one.count, found.sample_count, NORMAL_QUANTILE_90)
-        return replace(one, lower=lower, upper=upper)
+        return one.within(lower, upper)
 
     return found.with_counts({name: bounded(one) for name, one in found.counts.items()}, Level(LEVEL, None))
 
@@ -209,7 +198,7 @@ def _ends(
         **numbers,
         ellipses=ellipses(study, rows, JourneyStatus.SETTLED),
         outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
-        of=followed_words(study, ground, total),
+        of=followed(ground, total, "expansion" if study.design.method == "paper" else "emulator"),
         interval=None,
         regions=place_regions(site, rows, JourneyStatus.SETTLED),
     )
@@ -217,7 +206,7 @@ def _ends(
 
 def proportion(count: int, total: int) -> CountedShare:
     """A count and its share of a total; no interval, which would have to hold for other beds and places."""
-    return CountedShare(count, count / total, None, None)
+    return CountedShare(count, Estimate(count / total, None, None))
 
 
 LEVELS = (0.05, 0.5, 0.95)

@@ -13,7 +13,6 @@ import numpy as np
 
 from lithobrake.analysis import LEVEL
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.answer.answer_sentences import drawn_answer, drawn_headline
 from lithobrake.pipeline.answer.dispersion_statistics import (
     Rows,
     body_product,
@@ -34,7 +33,7 @@ from lithobrake.pipeline.answer.journey_ends import (
     with_journeys,
 )
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
-from lithobrake.pipeline.answer.run_answers import described, place_regions, why_no_interval
+from lithobrake.pipeline.answer.run_answers import described, place_regions, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE as ESTIMATES
 from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
 from lithobrake.pipeline.design.dependencies import bed_files
@@ -44,15 +43,16 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.results.dispersion import FlightResults, RestResults
-from lithobrake.results.json_values import from_json, to_json
 from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, MonteCarlo, OutputScore
+from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import EmulatorShares, LandingShares, Level, OutputRange, ReturnFraction
 from lithobrake.results.site_results import BedNumbers
 from lithobrake.results.study_files import SUMMARY_FORMAT
-from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes
+from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes, Summary
+from lithobrake.statements.answers import landing_answer, landing_headline
+from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
 
 
@@ -114,12 +114,8 @@ def outputs_of_runs(runs: DesignRuns) -> dict[str, OutputRange]:
 
 def write_summary_file(job: Job, results: DrawnResults | PaperResults, asked: int, runs: DesignRuns) -> None:
     """Write summary.json. Times, host, folders and versions stand in provenance only; asked, runs: as provenance."""
-    tables = {
-        "study": study_tables(job.study, job.tables),
-        "results": results,
-        "provenance": provenance(job, asked, runs),
-    }
-    job.folder.write_json("summary.json", {"format_version": SUMMARY_FORMAT, **to_json(tables)})
+    summary = Summary(SUMMARY_FORMAT, study_tables(job.study, job.tables), results, provenance(job, asked, runs))
+    job.folder.write_json("summary.json", summary.to_json())
 
 
 def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
@@ -152,10 +148,10 @@ def write_results(job: Job, completed: Completed) -> None:
     side = job.study.design.side_runs
     runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
     distinct = DesignRuns.distinct(runs)
-    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES), "estimates")
+    estimates = results_in(Estimates, job.folder.read_json(ESTIMATES), "estimates")
     results = completed(job, results_of_landings(job, estimates, distinct), runs[0], estimates)
-    results = replace(results, answer=tuple(drawn_answer(job.study, results)))
-    results = replace(results, headline=tuple(drawn_headline(results)))
+    results = replace(results, answer=tuple(landing_answer(scope(job.study), results)))
+    results = replace(results, headline=tuple(landing_headline(results)))
     for part in (results.runs, results.emulator):
         if part is not None and part.warning:
             job.say(part.warning)
@@ -185,6 +181,9 @@ def results_of_landings(job: Job, estimates: Estimates, distinct: DesignRuns) ->
         answer=(),
         headline=(),
         sides=estimates.sides,
+        end_variance_shares={},
+        sky={},
+        soils={},
     )
 
 
@@ -270,20 +269,7 @@ def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorRe
         follows_inputs=model.follows_inputs,
         found_inputs=tuple(name for name, found in model.found_inputs().items() if found),
         scores=EmulatorScores(JointScore(scores.gain / scores.energy_of_rows), table),
-        warning=_disagreement(returns),
-    )
-
-
-def _disagreement(returns: ReturnFraction) -> str | None:
-    """That runs and emulator disagree, in a sentence; None where they agree, or no interval says how far they may."""
-    if returns.lower is None or returns.upper is None or returns.emulator is None:
-        return None
-    if returns.lower <= returns.emulator <= returns.upper:
-        return None
-    low, high = (f"{100 * end:.1f}" for end in (returns.lower, returns.upper))
-    return (
-        f"The emulator gives a return fraction of {percent(returns.emulator, 1)}, outside the interval of the runs "
-        f"({low} to {high} %): do not rely on results of the emulator (flights, landing regions, rest); make more runs"
+        warning=disagreement(returns),
     )
 
 

@@ -21,9 +21,10 @@ from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.json_values import to_json
-from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.questions import ComparedAnswer, StudyComparison
+from lithobrake.results.result_files import json_values
 from lithobrake.results.study_files import STUDY_FILE, intact_file
+from lithobrake.statements.comparison import other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
@@ -96,11 +97,10 @@ def compare_studies(first: Path, second: Path) -> StudyComparison:
     bed = one.bed[:count]
     why = why_no_interval(one.study) or why_no_interval(two.study)
     found = dict(_answers((one, two), count, bed, why))
-    beds = len(np.unique(bed))
     return StudyComparison(
         names=(str(first), str(second)),
         titles=_titles(one, two),
-        of=f"{count} pairs on {beds} {'bed' if beds == 1 else 'beds'}",
+        of=pairs(count, len(np.unique(bed))),
         level=LEVEL,
         settings=_settings(one.results.study, two.results.study),
         answers=found,
@@ -128,13 +128,13 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
     texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
     write_comparison(comparison, texts, out)
     with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        draft.write_text(json.dumps(json_values(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
     return page, numbers
 
 
 def comparison_lines(comparison: StudyComparison) -> list[str]:
     """A comparison for a terminal: which studies, and a line for each answer."""
-    from lithobrake.report.words.numbers import lines
+    from lithobrake.statements.comparison import lines
 
     return lines(comparison)
 
@@ -170,10 +170,7 @@ def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     count = int(np.any([a != b for a, b in pairs], axis=0).sum())
     if not count:
         return None
-    return (
-        f"{count} of {len(used)} beds differ between the studies (other grains, or settled under another gravity), so "
-        "paired runs are less correlated. If the grains are the same, give both studies the same bed.settle_gravity."
-    )
+    return other_beds(count, len(used))
 
 
 def _unlike(one: OneStudy, two: OneStudy, reason: str) -> ValueError:
@@ -260,8 +257,8 @@ def _quantiles(
 
 
 def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
-    first, second = (ComparedNumber(one.value, one.lower, one.upper) for one in (found.first, found.second))
-    difference = ComparedNumber(found.value, found.lower, found.upper)
+    # The comparison says why there are no intervals.
+    first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
     saved = found.landings_saved
     return ComparedAnswer(
         words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved

@@ -27,6 +27,7 @@ from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
+from lithobrake.statements.limits import few_origins, rare_limit_state
 from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.limit_state import LimitState
 
@@ -34,8 +35,6 @@ from lithobrake.vocabulary.limit_state import LimitState
 CHAIN, FEWEST = 10, 20
 # A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
 MOST_LEVELS = 6
-# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
-FEW_ORIGINS = 3.0
 # Probabilities as near to 0 and 1 as a law without ends can take.
 LEAST = 2.0**-53
 
@@ -154,16 +153,16 @@ class Landings:
         study, why = self.job.study, why_no_interval(self.job.study)
         content = {
             "condition": self.state.text,
-            "probability": found.probability,
-            "lower": None if why else found.lower,
-            "upper": None if why else found.upper,
+            "probability": found.probability.value,
+            "lower": None if why else found.probability.lower,
+            "upper": None if why else found.probability.upper,
             "why": why,
-            "level": found.level,
+            "level": found.probability.level,
             "coefficient_of_variation": found.coefficient_of_variation,
             "origins": found.origins,
-            "warning": _few_origins(found.origins, study.bed_count) if found.reached else None,
+            "warning": few_origins(found.origins, study.bed_count) if found.reached else None,
             "reached": found.reached,
-            "rarest": found.probability if found.reached else found.upper,
+            "rarest": found.probability.value if found.reached else found.probability.upper,
             "levels": len(found.thresholds),
             "thresholds": found.thresholds.tolist(),
             "shares": found.shares.tolist(),
@@ -173,7 +172,7 @@ class Landings:
             "beds": study.bed_count,
             "inputs": self._medians(found.failing),
         }
-        return content | {"statement": _statement(self.name, content)}
+        return content | {"statement": rare_limit_state(self.name, content)}
 
     def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
         """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
@@ -199,30 +198,3 @@ def _limit_state(study: Study, name: str) -> LimitState:
             "use an output of the touchdown, as in speed_out > 0.1, or read the probability in the summary of the study"
         )
     return state
-
-
-def _statement(name: str, found: dict[str, Any]) -> str:
-    """The result in a sentence."""
-    said = f"probability {found['probability']:.2g}"
-    if found["lower"] is not None:
-        said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
-    if not found["reached"]:
-        said = f"no landing met it down to the last level, a probability of {found['rarest']:.1g}"
-    unknown = found["without_known_end"]
-    lost = f"; {unknown} with unknown outcome count as not meeting it" if unknown else ""
-    levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
-    landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
-    why = f" {found['why']}" if found["why"] else ""
-    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
-    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
-
-
-def _few_origins(origins: float, bed_count: int) -> str | None:
-    """What to say where equal runs of the command would scatter much."""
-    if origins >= FEW_ORIGINS:
-        return None
-    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
-    return (
-        f"The landings that meet it descend from few {what} (effective number {origins:.1f}), so another seed may give "
-        f"a very different probability: raise {more}."
-    )

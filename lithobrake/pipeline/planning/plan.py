@@ -16,6 +16,7 @@ from lithobrake.pipeline.planning.planned_ground import (
     PlannedSoils,
     PlannedTile,
 )
+from lithobrake.vocabulary.number_words import thousands, unit_of_time
 
 
 @dataclass(frozen=True)
@@ -187,17 +188,12 @@ def _time(plan: Plan) -> str:
 
 def _seconds(lower: float, upper: float) -> str:
     """A span of time, each end in the unit that suits it."""
-    (first, unit), (last, other) = (_in_unit(seconds) for seconds in (lower, upper))
+    (first, unit), (last, other) = (
+        (seconds / size, sign) for seconds in (lower, upper) for size, sign in [unit_of_time(seconds)]
+    )
     if unit == other:
         return f"{_range(first, last)} {unit}"
     return f"{_rounded(first)} {unit} to {_rounded(last)} {other}"
-
-
-def _in_unit(seconds: float) -> tuple[float, str]:
-    for limit, unit, size in ((100.0, "s", 1.0), (6000.0, "min", 60.0), (172_800.0, "h", 3600.0)):
-        if seconds < limit:
-            return seconds / size, unit
-    return seconds / 86_400.0, "days"
 
 
 def bytes_in_words(count: float) -> str:
@@ -210,7 +206,7 @@ def bytes_in_words(count: float) -> str:
 
 def _range(lower: float, upper: float) -> str:
     """Two numbers, or one where they read the same; without a lower end where that is none."""
-    ends = [f"{end:,}".replace(",", " ") if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
+    ends = [thousands(end) if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
     if ends[0] == ends[1]:
         return ends[0]
     return f"up to {ends[1]}" if lower == 0 else f"{ends[0]} to {ends[1]}"

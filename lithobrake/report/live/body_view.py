@@ -11,9 +11,9 @@ from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figures import BARE, COLOURS, colour_ends, facet_density
 from lithobrake.report.figures.style import INK, LANDER, QUIET
 from lithobrake.report.live.views import geometry, orbit, section, still
-from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
-from lithobrake.report.words.captions import BODIES
-from lithobrake.report.words.numbers import number
+from lithobrake.results.page_data import JourneyPage, PageData, SampledPage
+from lithobrake.statements.labels import BODIES
+from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd
 
 Array = NDArray[np.float64]

@@ -14,24 +14,24 @@ from lithobrake.report.figures.map_frames import track_map
 from lithobrake.report.figures.option_figures import aim_figure
 from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, outcomes_figure, places_by_end
 from lithobrake.report.figures.run_figures import variance_figure
-from lithobrake.report.figures.share_figures import RestSpread, Share, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.live.body_view import end_views
 from lithobrake.report.live.explorer import deflated, script_data, touchdown_sections
 from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_views, landing_words
-from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
 from lithobrake.report.pages.html import own_file
 from lithobrake.report.pages.shared_plots import draw_bed
 from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables import journey_tables as tables
 from lithobrake.report.tables.dispersion_tables import site_tables
-from lithobrake.report.words import captions
-from lithobrake.report.words import journey_captions as words
-from lithobrake.report.words.drawn_captions import aims
-from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
-from lithobrake.results.journey_results import EndShare
+from lithobrake.results.page_data import JourneyPage
+from lithobrake.statements import captions
+from lithobrake.statements import journeys as words
+from lithobrake.statements.answers import journey_details, journey_page_answer, journey_tiles, journey_warnings
+from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.limits import options_caption
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 
@@ -51,7 +51,7 @@ def journey_content(data: JourneyPage) -> Content:
         *(_where(data, shown), _when(data), _why(data, found), _sure(data)),
         *(_method(data, found), _appendix(data, found)),
     ]
-    return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
+    return Content(journey_page_answer(data), journey_warnings(data), journey_tiles(data), first, sections)
 
 
 def _where(data: JourneyPage, shown: PlaceMap) -> PageSection:
@@ -65,7 +65,7 @@ def _where(data: JourneyPage, shown: PlaceMap) -> PageSection:
         ),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
     ]
-    return PageSection("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
+    return PageSection("Where", plots, tables.place_tables(data), end_views(data), journey_details(data))
 
 
 def _when(data: JourneyPage) -> PageSection:
@@ -90,7 +90,7 @@ def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
         first,
     ]
     if aim is not None:
-        plots.append(Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim)))
+        plots.append(Plot("aim", "Delivery options", options_caption(aim), lambda: aim_figure(aim)))
     return PageSection("Why", plots, [*tables.soil_tables(data), *tables.side_tables(data)])
 
 
@@ -143,13 +143,9 @@ def _draw_ends(data: JourneyPage) -> "Figure":
     return variance_figure(known, words.END_ROWS, LEVEL)
 
 
-def _share(name: str, one: EndShare, colour: str) -> Share:
-    return Share(name, one.share, one.lower, one.upper, LEVEL, colour)
-
-
-def end_shares(data: JourneyPage) -> list[Share]:
+def end_shares(data: JourneyPage) -> list[ShareBar]:
     """How the journeys end, as bars have it."""
-    return [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
+    return [ShareBar(END_WORDS[name], one.share, END_COLOURS[name]) for name, one in data.ends.items()]
 
 
 def _draw_times(data: JourneyPage) -> "Figure":
@@ -178,10 +174,10 @@ def _draw_attitude(data: JourneyPage) -> "Figure | None":
     return None if tilt is None else attitude_figure(side_shares(data), "those at rest", tilt)
 
 
-def side_shares(data: JourneyPage) -> list[Share]:
+def side_shares(data: JourneyPage) -> list[ShareBar]:
     """The sides that are down, the most frequent first; none for a ball."""
-    sides = sorted(data.at_rest.faces.items(), key=lambda one: -one[1].share)
-    return [_share(name, one, END_COLOURS[JourneyEnd.AT_REST]) for name, one in sides]
+    sides = sorted(data.at_rest.faces.items(), key=lambda one: -one[1].share.value)
+    return [ShareBar(name, one.share, END_COLOURS[JourneyEnd.AT_REST]) for name, one in sides]
 
 
 def tilt_spread(data: JourneyPage) -> RestSpread | None:

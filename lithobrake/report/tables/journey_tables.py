@@ -1,58 +1,22 @@
-"""The first numbers and the tables of the page of a study of journeys."""
+"""The tables of the page of a study of journeys."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from lithobrake.report.content import PageTable, Tile
-from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.words.drawn_captions import as_sentence, interval
-from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
-from lithobrake.report.words.numbers import area, number
-from lithobrake.results.journey_results import EndShare, RestQuantiles
-from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
+from lithobrake.report.content import PageTable
+from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.results.page_data import JourneyPage
+from lithobrake.statements import notes
+from lithobrake.statements.estimates import area, quantile, two_digits
+from lithobrake.statements.journeys import time_unit
+from lithobrake.statements.labels import END_WORDS
+from lithobrake.vocabulary.number_words import number
+from lithobrake.vocabulary.percentages import LEVEL, at_level, percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
 
 # Tables of any drawn study that are of more than the first touchdown, and one that has another name here.
 OF_ALL = ("Beds", "Sampled inputs")
 RENAMED = {"The answer": "Return fraction"}
-
-
-def tiles(data: JourneyPage) -> list[Tile]:
-    """At rest, the likeliest other end, when and where; the share of each end where no lander rests."""
-    count, ends = len(data.journeys["end"]), data.ends
-    if data.at_rest.time_s.median.value is None:
-        return [_end_tile(name, one, count) for name, one in ends.items()]
-    others = {name: one for name, one in ends.items() if name != JourneyEnd.AT_REST}
-    other = max(others, key=lambda name: (others[name].share, others[name].upper or 0.0))
-    found = [_end_tile(name, ends[name], count) for name in (JourneyEnd.AT_REST, other)]
-    rest, (size, unit) = data.at_rest, time_unit(data)
-    found.append(_quantile_tile(rest.time_s, unit, "median time to rest", size))
-    found.append(_quantile_tile(rest.distance_m, "m", "median distance from the aim point"))
-    if rest.regions:
-        large = rest.regions[-1]
-        words = f"smallest region with {percent(large.share)} of those at rest; "
-        words += f"{number(large.largest_extent_m, 2)} m across"
-        value, _, unit = area(large.area_m2).rpartition("\N{NO-BREAK SPACE}")
-        found.append(Tile(value, unit, words))
-    else:
-        found.append(_quantile_tile(rest.contacts, "contacts", "median number of contacts"))
-    return found
-
-
-def _end_tile(name: str, one: EndShare, count: int) -> Tile:
-    value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
-    sure = interval(one, LEVEL)
-    words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
-    # An end that did not occur has no colour.
-    return Tile(value, "%", words, name if one.count else "")
-
-
-def _quantile_tile(found: RestQuantiles, unit: str, words: str, size: float = 1.0) -> Tile:
-    """A median with its interval, and the 95th percentile."""
-    value, _, ends = quantile_words(found.median, size).partition(" ")
-    most = quantile_words(found.q95, size).partition(" ")[0]
-    return Tile(value, unit, f"{words} {ends}; 95 % within {most} {unit}".replace("  ", " "))
 
 
 def place_tables(data: JourneyPage) -> list[PageTable]:
@@ -75,24 +39,18 @@ def _numbers(data: JourneyPage) -> PageTable:
     ]
     if rest.tilt_deg is not None:
         rows.append(_row("tilt of the side that is down [deg]", rest.tilt_deg))
-    note = f"From {rest.of}; in brackets {percent(LEVEL)} intervals."
-    if rest.faces:
-        sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
-        note += f" Side down: {', '.join(f'{name} {with_interval(one)}' for name, one in sides)}."
-    has_rest = rest.time_s.median.value is not None
+    note = notes.journeys_at_rest(data)
+    has_rest = rest.time_s.median.is_known
     return PageTable("When and how they rest", columns, rows if has_rest else [], note, frozenset(columns[1:]))
 
 
 def _row(words: str, found: RestQuantiles, size: float = 1.0) -> list[str]:
-    return [words, quantile_words(found.median, size), quantile_words(found.q95, size)]
+    return [words, quantile(found.median, size), quantile(found.q95, size)]
 
 
 def _regions(data: JourneyPage) -> PageTable:
-    columns = ["smallest region that holds", "area", "largest extent [m]"]
-    rows = [
-        [f"{percent(one.share)} of the landers at rest", area(one.area_m2), number(one.largest_extent_m, 2)]
-        for one in data.at_rest.regions
-    ]
+    columns = ["smallest region of landers at rest that holds", "area", "largest extent [m]"]
+    rows = [[percent(one.share), area(one.area_m2), two_digits(one.largest_extent_m)] for one in data.at_rest.regions]
     return PageTable("Where they rest", columns, rows, numbers=frozenset(columns[1:]))
 
 
@@ -102,20 +60,15 @@ def _sky(data: JourneyPage) -> PageTable:
     columns += ["never seen by", "sides that face it most, probability", "side that most often never faces it"]
     rows = []
     for name, one in data.results.sky.items():
-        best = sorted(one.side_probabilities.items(), key=lambda item: -item[1].share)[:2]
-        dark = max(one.dark_sides.items(), key=lambda item: item[1].share, default=None)
+        best = sorted(one.side_probabilities.items(), key=lambda item: -item[1].value)[:2]
+        dark = max(one.dark_sides.items(), key=lambda item: item[1].share.value, default=None)
         rows.append([
-            SKY_WORDS[name], quantile_words(one.day_fraction, 0.01), quantile_words(one.day_fraction_q05, 0.01),
-            with_interval(one.probability), with_interval(one.never),
+            SKY_WORDS[name], quantile(one.day_fraction, 0.01), quantile(one.day_fraction_q05, 0.01),
+            with_interval(one.probability), with_interval(one.never.share),
             "; ".join(f"{side} {with_interval(value)}" for side, value in best),
-            f"{dark[0]} on {with_interval(dark[1])}" if dark else "",
+            f"{dark[0]} on {with_interval(dark[1].share)}" if dark else "",
         ])  # fmt: skip
-    note = (
-        "Of the landers at rest, over a day of the body, the dates of the study, or the positions of the orbiter; "
-        f"occultation by the ground, the rest of the shape and a partner included. In brackets {percent(LEVEL)} "
-        "intervals."
-    )
-    return PageTable("What they see from there", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("What they see from there", columns, rows, notes.sky(), frozenset(columns[1:]))
 
 
 def _delivery(data: JourneyPage) -> PageTable:
@@ -130,13 +83,7 @@ def _delivery(data: JourneyPage) -> PageTable:
         "time from the delivered state [min]": [one / 60.0 for one in found.descent_s or ()],
     }
     rows = [[words, *(number(one, 3) for one in spread)] for words, spread in spreads.items() if spread]
-    note = f"{found.count} of {found.of} landers touch down."
-    for one in found.regions:
-        note += (
-            f" The smallest region with {percent(one.share)} of the first impacts covers {area(one.area_m2)} and "
-            f"is {number(one.largest_extent_m, 2)} m across."
-        )
-    return PageTable("How they are delivered", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("How they are delivered", columns, rows, notes.delivery(data), frozenset(columns[1:]))
 
 
 def side_tables(data: JourneyPage) -> list[PageTable]:
@@ -146,16 +93,13 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
     columns += ["median rebound speed over impact speed", "all touchdowns", "of these at rest"]
     rows = [
         [
-            one.words, str(one.landings), with_interval(one.at_rest), quantile_words(one.time_s, size),
-            quantile_words(one.speed_ratio), str(one.touchdowns), with_interval(one.rests),
+            one.words, str(one.landings), with_interval(one.at_rest.share), quantile(one.time_s, size),
+            quantile(one.speed_ratio), str(one.touchdowns), with_interval(one.rests.share),
         ]
         for one in data.results.sides.values()
         if one.at_rest and one.time_s and one.rests
     ]  # fmt: skip
-    note = (
-        "The side whose axis is nearest to the normal of the ground at the impact; an edge or a corner of it touches "
-        f"first. In brackets {percent(LEVEL)} intervals, of each side by itself."
-    )
+    note = notes.sides(LEVEL)
     return [PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))] if rows else []
 
 
@@ -164,16 +108,12 @@ def soil_tables(data: JourneyPage) -> list[PageTable]:
     columns = ["soil", "part of the surface", "touchdowns", "of these at rest", "journeys that end at rest there"]
     rows = [
         [
-            name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests) if one.rests else "",
-            with_interval(one.at_rest),
+            name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests.share) if one.rests else "",
+            with_interval(one.at_rest.share),
         ]
         for name, one in data.results.soils.items()
     ]  # fmt: skip
-    note = (
-        "By the region of the study file in which a lander lands; elsewhere the soil is that of [grain]. In "
-        f"brackets {percent(LEVEL)} intervals, of each region by itself."
-    )
-    return [PageTable("By soil", columns, rows, note, frozenset(columns[1:]))] if rows else []
+    return [PageTable("By soil", columns, rows, notes.soils(), frozenset(columns[1:]))] if rows else []
 
 
 def sure_tables(data: JourneyPage) -> list[PageTable]:
@@ -187,7 +127,7 @@ def first_tables(found: Sequence[PageTable]) -> list[PageTable]:
 
 
 def _ends(data: JourneyPage) -> PageTable:
-    columns = ["end", "journeys", f"share ({percent(LEVEL)} interval)", "touchdowns each"]
+    columns = ["end", "journeys", f"share ({at_level()})", "touchdowns each"]
     emulated = data.results.emulated
     by_emulator = emulated.ends if emulated else {}
     columns += ["by the emulator"] if by_emulator else []
@@ -195,13 +135,9 @@ def _ends(data: JourneyPage) -> PageTable:
     rows = []
     for name, one in data.ends.items():
         each = number(float(touchdowns[ended == name].mean()), 2) if one.count else ""
-        beside = [with_interval(by_emulator[name])] if by_emulator else []
-        rows.append([END_WORDS[name], str(one.count), with_interval(one), each, *beside])
-    why = next((one.why for one in data.ends.values() if one.why), None)
-    said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in data.ends.items() if one.count]
-    more = [*([as_sentence(why)] if why else []), *emulator_words(data)]
-    note = " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + more)
-    return PageTable("How the journeys ended", columns, rows, note, frozenset(columns[1:]))
+        beside = [with_interval(by_emulator[name].share)] if by_emulator else []
+        rows.append([END_WORDS[name], str(one.count), with_interval(one.share), each, *beside])
+    return PageTable("How the journeys ended", columns, rows, notes.ends(data), frozenset(columns[1:]))
 
 
 def _of_first(table: PageTable) -> PageTable:

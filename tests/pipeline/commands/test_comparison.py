@@ -12,8 +12,8 @@ import lithobrake
 from lithobrake.cli import app
 from lithobrake.pipeline import compare_studies
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
-from lithobrake.results.json_values import from_json
 from lithobrake.results.questions import StudyComparison
+from lithobrake.results.result_files import results_in
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 
@@ -91,7 +91,7 @@ def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_
     assert f"A: {pair[0]}" in said.stdout
     assert "Time to rest, median: A " in said.stdout
     numbers = json.loads((out / "comparison.json").read_text())
-    assert from_json(StudyComparison, numbers) == compare_studies(*pair)
+    assert results_in(StudyComparison, numbers) == compare_studies(*pair)
     page = (out / "index.html").read_text()
     assert "Comparison of two studies" in page
     assert "delivery.speed" in page

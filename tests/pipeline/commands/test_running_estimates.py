@@ -36,7 +36,7 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     first, share, speed, last = found.lines()
     assert first == "so far, from 60 landings on 6 beds:"
     assert share.startswith("  captured: 20 % (90 % interval ")
-    assert speed.startswith(f"  mean speed_out: {SPEEDS[~captured].mean():.4g} m/s (90 %: ")
+    assert speed.startswith(f"  mean rebound speed: {100 * SPEEDS[~captured].mean():.3g} cm/s (90 % interval ")
     assert "The return fraction is not known yet" in last
     content = json.loads(json.dumps(found.to_json(), allow_nan=False))
     assert content["captured"]["from"] == "60 landings on 6 beds"
@@ -60,7 +60,7 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     assert found is not None
     assert found.captured is not None
     assert found.captured.if_missing == pytest.approx((12 / 60, 13 / 60))
-    assert found.captured.lower < 12 / 60 < 13 / 60 < found.captured.upper
+    assert found.captured.share.lower < 12 / 60 < 13 / 60 < found.captured.share.upper
     assert "59 of 60 landings" in found.lines()[0]
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed is not None

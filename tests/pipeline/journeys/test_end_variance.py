@@ -28,7 +28,7 @@ def test_the_parts_of_each_end_add_up(journeys: StudyResults) -> None:
     assert list(found) == ["at_rest", "time_s", "distance_m"]
     assert any(found.values())
     for one in (one for one in found.values() if one):
-        assert sum(part.share for part in one.parts.values()) == pytest.approx(1.0)
+        assert sum(part.value for part in one.parts.values()) == pytest.approx(1.0)
         assert one.chaos is None
 
 
@@ -44,6 +44,6 @@ def test_a_distance_that_follows_the_delivery_is_the_deliverys(journeys: StudyRe
     parts = found["distance_m"]
     assert parts is not None
     assert parts.arrival is not None
-    assert parts.arrival.share > 0.85
-    assert parts.soil.share < 0.1
+    assert parts.arrival.value > 0.85
+    assert parts.soil.value < 0.1
     assert parts.of == f"{len(speed)} of {len(speed)} journeys that ended at rest"

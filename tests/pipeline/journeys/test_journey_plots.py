@@ -26,7 +26,7 @@ def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
     found = journeys.results.ends
     bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
     for end, share in found.items():
-        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share)
+        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share.value)
 
 
 def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
@@ -50,5 +50,5 @@ def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults
     axes = journeys.plot.sides(Figure().subplots())
     widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
     assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
-        {name: 100 * one.share for name, one in journeys.results.rest.faces.items()}
+        {name: 100 * one.share.value for name, one in journeys.results.rest.faces.items()}
     )

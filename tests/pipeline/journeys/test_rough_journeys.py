@@ -101,7 +101,7 @@ def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path:
     assert found is not None
     assert found.agrees
     assert results.results.ends is not None
-    assert results.results.ends["at_rest"].share > 0.5
+    assert results.results.ends["at_rest"].share.value > 0.5
 
 
 def test_hard_ground_of_a_study_is_as_rough_as_its_site() -> None:

@@ -34,7 +34,7 @@ from lithobrake.pipeline.site_grid import (
     site_cells,
 )
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import from_json, to_json
+from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.site_results import SiteMap
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.percentages import LEVEL
@@ -107,11 +107,11 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     first, second, third, last = site_cells(cells, landers, ground, fitted, np.array([0, 3, 0, 1]))
     assert (first.ends, first.beyond, first.unknown) == (None, "gravity, impact speed", 0.11)
     assert second.ends is not None
-    assert (second.ends.at_rest.share, second.beyond, second.journeys) == (1.0, "slope", 3)
+    assert (second.ends.at_rest.value, second.beyond, second.journeys) == (1.0, "slope", 3)
     assert second.ends.at_rest.lower is not None
     assert second.ends.at_rest.lower < 0.9 < (second.ends.at_rest.upper or 0.0)
     assert third.ends is not None
-    assert third.ends.at_rest.share == third.ends.escaped.share == 0.5
+    assert third.ends.at_rest.value == third.ends.escaped.value == 0.5
     assert not third.not_worse
     assert last.not_worse
     assert last.ends is not None
@@ -121,7 +121,7 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     assert (last.slope_deg.low, last.slope_deg.high) == pytest.approx((1.2, 22.8))
     whole = all_at_rest(landers, fitted)
     assert whole is not None
-    assert whole.share == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
+    assert whole.value == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
 
 
 def test_impacts_are_beyond_the_first_range_that_they_leave() -> None:
@@ -143,7 +143,7 @@ def test_an_answered_cell_has_what_the_journeys_of_the_study_have_there(
     assert ends.at_rest.lower is not None
     assert ends.at_rest.upper is not None
     assert ends.at_rest.lower <= rests.mean() <= ends.at_rest.upper
-    total = ends.at_rest.share + ends.partner.share + ends.escaped.share + ends.under_way.share
+    total = ends.at_rest.value + ends.partner.value + ends.escaped.value + ends.under_way.value
     assert total == pytest.approx(1.0, abs=0.02)
     assert ends.time_s is not None
     assert ends.time_s.value == pytest.approx(np.median(journeys.journeys["time_s"][rests]), rel=0.4)
@@ -154,14 +154,14 @@ def test_an_answered_cell_has_what_the_journeys_of_the_study_have_there(
 def test_emulator_and_landings_are_compared_lander_by_lander(site_map: SiteMap, journeys: StudyResults) -> None:
     whole, *regions = site_map.agreement
     assert (whole.latitude_deg, whole.journeys) == (None, 48)
-    assert whole.landings.share == pytest.approx(np.mean(journeys.journeys["end"] == "at_rest"))
+    assert whole.landings.value == pytest.approx(np.mean(journeys.journeys["end"] == "at_rest"))
     rows = [row for row in read_rows(journeys.folder / "emulated.csv", ("landers",), "") if row["landers"] == "own"]
     by_lander = []
     for number in range(48):
         ends = [row["end"] for row in rows if int(row["journey"]) == number and row["end"] != "unknown"]
         by_lander.append(ends.count("at_rest") / len(ends))
-    assert whole.emulator.share == pytest.approx(np.mean(by_lander))
-    assert whole.difference.share == pytest.approx(whole.emulator.share - whole.landings.share)
+    assert whole.emulator.value == pytest.approx(np.mean(by_lander))
+    assert whole.difference.value == pytest.approx(whole.emulator.value - whole.landings.value)
     assert whole.agrees
     assert [one.journeys for one in regions] == [48]
     assert "they agree" in site_map.statement
@@ -174,8 +174,8 @@ def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     plain = share_of_known(met, everyone, refit, fitted)
     # One lander in four is unknown, and did not meet it as far as one sees.
     lacking = share_of_known(met, np.tile([True, True, True, False], REFIT_COUNT), refit, fitted)
-    assert plain.share == 0.5
-    assert lacking.share == pytest.approx(2.0 / 3.0)
+    assert plain.value == 0.5
+    assert lacking.value == pytest.approx(2.0 / 3.0)
     assert lacking.lower == plain.lower
     assert lacking.upper is not None
     assert lacking.upper > 0.75
@@ -219,7 +219,7 @@ def test_the_ground_of_dimorphos_is_that_of_the_body_with_its_partner() -> None:
 def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, tmp_path: Path) -> None:
     page, numbers, table = write_site_map(site_map, "the study file", tmp_path / "sites")
     assert (page, numbers, table) == site_map_files(tmp_path / "sites")
-    assert from_json(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
+    assert results_in(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
     text = page.read_text(encoding="utf-8")
     assert text.count("<figure") == 2
     assert "cannot be distinguished from the best" in text
@@ -240,7 +240,7 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
     assert radius == pytest.approx((0.75 * job_of(source_of()).site.body.shape.volume / math.pi) ** (1 / 3), rel=1e-6)
     assert site_lines(site_map)[0] == site_map.statement
     assert site_map.level == LEVEL
-    assert to_json(site_map)["landers"] == LANDERS
+    assert json_values(site_map)["landers"] == LANDERS
 
 
 @pytest.mark.parametrize(

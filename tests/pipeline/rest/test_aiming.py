@@ -10,13 +10,13 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.question_answers import aim_statement
 from lithobrake.pipeline.first_bounces.aiming import _distances
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.results.summary import DrawnResults
 from lithobrake.smallbody import didymos
+from lithobrake.statements.limits import options
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
@@ -91,19 +91,19 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
     best, allowed = found.best_on_soil, sum(aim.soil.allowed for aim in found.aims)
     assert best is not None
     assert best.own is not None
-    assert f": {100 * best.own.share:.0f} % (90 % interval " in found.statement
+    assert f": {100 * best.own.value:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
-    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))
+    told = options(replace(found, best_on_soil=replace(best, not_worse=(1,))))
     first = f"2 of {allowed} delivery options within "
     assert told.startswith(first)
     assert " cannot be distinguished from the best, with 90 % confidence: impact.speed = 0.1, " in told
-    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=())))
+    told = options(replace(found, best_on_soil=replace(best, not_worse=())))
     assert told.startswith(f"One of {allowed} delivery options within ")
     assert " is better than every other, with 90 % confidence. Most landers come to rest with impact.speed = " in told
 
 
 def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResults, found: dict[str, Any]) -> None:
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
     assert "ost landers come to rest with impact.speed = " in found["statement"]
     page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ import pytest
 import lithobrake
 from lithobrake.pipeline.answer.run_estimates import PARTS
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.smallbody import RestitutionTable
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
@@ -88,7 +88,7 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
     assert rest["equivalent"]["outside"]["count"] == 0
     # A fifth returns at the first impact.
     assert rest["equivalent"]["settled"]["share"] > 0.2
-    assert to_json(journeys.results) == journeys.summary["results"]
+    assert json_values(journeys.results) == journeys.summary["results"]
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
     returns = found["returns"]
     assert (returns["lower"], returns["upper"], returns["next_bed"]) == (None, None, None)
     assert words in returns["why"]
-    assert "would change this number; this study cannot show by how much" in results.headline[1]
+    assert "would change the result; this study cannot show by how much" in results.headline[1]
     assert "interval" not in results.headline[0]
     tables = found["shares"], found["shares"]["emulator"]
     assert {one["lower"] for table in tables for one in table.values() if isinstance(one, dict) and "lower" in one} == {
