@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeEla
 from rich.text import Text
 
 from lithobrake.campaign import duration, per_time
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.plain_text import plain
 
 # A stage is soon seen to be at work, and a night of it does not fill the file: first line, then the others [s].
@@ -233,4 +234,4 @@ def study_progress() -> ProgressBars | ProgressLog:
 
 def counted(done: float, total: float) -> str:
     """How much of how much, in numbers where things are counted and else as a fraction."""
-    return f"{done:.0f}/{total:.0f}" if total > 1 else f"{100 * done / max(total, 1e-300):.0f} %"
+    return f"{done:.0f}/{total:.0f}" if total > 1 else percent(done / max(total, 1e-300))

@@ -22,7 +22,7 @@ LOOKED_FOR = {
     "time_step": "dem/stepping", "stability": "dem/stepping", "agenda": "dem/local_stepping",
     "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "smolyak": "chaos",
     "polyhedron_gravity": "smallbody", "impact_search": "smallbody", "ledger": "campaign", "refusals": "study",
-    "captions": "report/words",
+    "captions": "statements",
 }  # fmt: skip
 
 

@@ -16,9 +16,9 @@ from hard_ground import HardGround
 
 import lithobrake
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import StudyResults, open_study
+from lithobrake.results.page_data import JourneyPage, page_results
 from lithobrake.results.result_files import json_values
 from lithobrake.vocabulary.estimate import Estimate
 

@@ -28,7 +28,7 @@ from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.percentages import at_level
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -110,7 +110,7 @@ class Posterior:
         """What was learnt, and what not, in a sentence."""
         learnt = self.learnt()
         said = [
-            f"{name}: {one.after.value:.3g} ({percent(LEVEL)} interval {one.after.lower:.3g} to {one.after.upper:.3g}, "
+            f"{name}: {one.after.value:.3g} ({at_level(LEVEL)} {one.after.lower:.3g} to {one.after.upper:.3g}, "
             f"before {one.before.lower:.3g} to {one.before.upper:.3g})"
             for name, one in learnt.items()
             if one.sd_ratio <= NOTHING_LEARNT

@@ -8,6 +8,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TextIO
 
 from lithobrake.campaign.record import COLUMNS, KEY_LENGTH, OBJECTS, Record, common_reasons
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
@@ -147,7 +148,7 @@ def missing(x: "np.ndarray", reasons: Sequence[str | None], names: Sequence[str]
     if count > largest_share * total:
         place = "" if corner is None else f", {corner[0]} of them where {corner[1]}"
         raise ValueError(
-            f"{sentence}{place}; allowed: at most {100 * largest_share:g} %; remove what makes them fail, try them "
+            f"{sentence}{place}; allowed: at most {percent(largest_share)}; remove what makes them fail, try them "
             "again (campaign.retry_count), or allow more (campaign.failed_share)"
         )
     if corner:

@@ -17,7 +17,7 @@ from typing import Any
 
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, reading
-from lithobrake.vocabulary.durations import duration_words
+from lithobrake.vocabulary.number_words import duration as duration_words
 
 log = logging.getLogger(__name__)
 
@@ -265,8 +265,7 @@ def per_time(rate: float, things: str = "") -> str:
 
 
 def duration(seconds: float) -> str:
-    """Return a time [s] as text in a suitable unit."""
-    return duration_words(seconds, ".0f")
+    return duration_words(seconds, 0)
 
 
 def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:

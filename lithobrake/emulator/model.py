@@ -19,7 +19,7 @@ from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
-from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.percentages import LEVEL, percent
 from lithobrake.vocabulary.plain_text import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
@@ -88,8 +88,8 @@ class Emulator(Parts):
             )
         share = self.scores.gain / self.scores.energy_of_rows
         return (
-            f"On held-out {groups} the inputs improve the energy score by {100 * share:.1f} % "
-            f"(standard error {100 * self.scores.gain_error / self.scores.energy_of_rows:.1f} %) "
+            f"On held-out {groups} the inputs improve the energy score by {percent(share, 1)} "
+            f"(standard error {percent(self.scores.gain_error / self.scores.energy_of_rows, 1)}) "
             f"over resampling the {count} runs with outputs ({number} {groups})."
         )
 

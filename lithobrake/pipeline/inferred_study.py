@@ -30,6 +30,7 @@ from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.units import conversion, input_units, run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import PURE
 from lithobrake.vocabulary.study_files import STUDY_FILE
 
@@ -99,7 +100,7 @@ class ExpectedInput:
 
     def words(self) -> str:
         after, count = self.left_of_sd.get("1"), self.halved_by
-        first = "" if after is None else f"one bounce leaves {100 * after:.0f} % of its standard deviation; "
+        first = "" if after is None else f"one bounce leaves {percent(after)} of its standard deviation; "
         return first + ("no number that was tried halves it" if count is None else f"{count:.0f} halve it")
 
 

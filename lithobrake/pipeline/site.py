@@ -17,6 +17,7 @@ from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 from lithobrake.vocabulary.constants import DAY, HOUR
+from lithobrake.vocabulary.number_words import duration
 from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ class Site:
         x, _, z = (math.degrees(angle) for angle in rotation.largest_angles)
         return (
             f"The body rotates from the state in [site.rotation]: its long axis deviates by up to {x:.0f} deg and its "
-            f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {start.days:g} days."
+            f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {duration(DAY * start.days)}."
         )
 
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:

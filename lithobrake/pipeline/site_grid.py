@@ -21,7 +21,7 @@ from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arrivals, TouchdownEmulator
 from lithobrake.pipeline.sky import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteSpread
+from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
 from lithobrake.study.question_sections import SkyBody
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_REGION
 from lithobrake.vocabulary.estimate import Estimate
@@ -140,8 +140,6 @@ def site_arrivals(job: Job, cells: EqualAreaCells, lander_count: int) -> Arrival
     return Arrivals.of(job.site, number, one.rows * cells.total, site, refit)
 
 
-# A cell of which more landers have an unknown end is not answered.
-MOST_UNKNOWN = 0.1
 # Ends of the spread over the places of a cell.
 WORDS = {GRAVITY: "gravity", SLOPE: "slope", IMPACT_SPEED: "impact speed", IMPACT_INCIDENCE: "impact angle"}
 

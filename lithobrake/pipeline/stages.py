@@ -208,7 +208,7 @@ SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",)
 
 ANSWER_PARTS = (
     *("pipeline/answer", "pipeline/site.py", "pipeline/journeys"),
-    *("analysis", "chaos", "emulator", "results", "vocabulary"),
+    *("analysis", "chaos", "emulator", "results", "statements", "vocabulary"),
 )
 
 ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, ("fly_runs",), parts=ANSWER_PARTS)
@@ -328,7 +328,7 @@ REPORT = Stage(
     same_files("report/index.html"),
     _write_report,
     ("summary",),
-    parts=("report", "results", "vocabulary"),
+    parts=("report", "statements", "results", "vocabulary"),
 )
 DRAWN_STAGES = (
     BED, FIRST_LANDING, DRAWN_RUNS, SIDE_RUNS, FLY_RUNS, TELLING_LANDING, ESTIMATE, EMULATOR, SAMPLE, FLY, REST, AIM,

@@ -4,18 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from lithobrake.statements.answers import Tile
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True)
-class Tile:
-    """One of the few numbers that a reader takes away; outcome: the word of the one that it is of, if it is of one."""
-
-    value: str
-    unit: str
-    words: str
-    outcome: str = ""
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import write_whole
-from lithobrake.report.content import Content, PageSection, PageTable, Plot, Tile
+from lithobrake.report.content import Content, PageSection, PageTable, Plot
 from lithobrake.report.figures.body_figures import agreement_figure, sites_figure
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
-from lithobrake.report.words.numbers import bounded, factor, number, sentence, shown, unit, verdict
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.site_results import SiteCell, SiteMap, SiteSpread
+from lithobrake.statements import comparison as compared
+from lithobrake.statements import sites as mapped
+from lithobrake.statements.answers import Tile
+from lithobrake.statements.comparison import bounded, factor, unit
+from lithobrake.statements.estimates import quantile, signed_points, two_digits
 from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.number_words import as_sentence
+from lithobrake.vocabulary.percentages import with_interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,11 +31,11 @@ TOLD = 4
 
 def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: Path) -> Path:
     """Write index.html and its figure into a folder, which is made; texts: the two study files. Returns the page."""
-    plot = Plot("differences", "B minus A", _comparison_caption(comparison), lambda: _draw(comparison))
+    plot = Plot("differences", "B minus A", compared.caption(comparison), lambda: _draw(comparison))
     title = " against ".join(comparison.titles)
-    facts = f"A: {comparison.names[0]}. B: {comparison.names[1]}. {comparison.of[:1].upper()}{comparison.of[1:]}."
-    warnings = [words for words in (comparison.note, comparison.why) if words]
-    first = sentence(comparison, next(iter(comparison.answers)))
+    facts = f"A: {comparison.names[0]}. B: {comparison.names[1]}. {as_sentence(comparison.of)}"
+    first = compared.sentence(comparison, next(iter(comparison.answers)))
+    tiles = [Tile(*one) for one in compared.tiles(comparison, TOLD)]
     sections = [
         PageSection("Answers", [plot], [_comparison_table(comparison)]),
         PageSection(
@@ -40,38 +45,12 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
             texts={f"The study file of {letter}": text for letter, text in zip("AB", texts, strict=True)},
         ),
     ]
-    content = Content(first, warnings, _comparison_tiles(comparison), None, sections)
+    content = Content(first, compared.warnings(comparison), tiles, None, sections)
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(title, facts, content, panels, kind="Comparison of two studies")
     path = place / "index.html"
     write_whole(path, text)
     return path
-
-
-def _comparison_tiles(comparison: StudyComparison) -> list[Tile]:
-    return [
-        Tile(
-            shown(one.difference.value, factor(one), signed=True),
-            unit(one, of_difference=True),
-            f"{one.words}, B minus A: {verdict(one)}",
-        )
-        for one in list(comparison.answers.values())[:TOLD]
-        if one.difference.is_known
-    ]
-
-
-def _comparison_caption(comparison: StudyComparison) -> str:
-    saved = [one.landings_saved for one in comparison.answers.values() if one.landings_saved is not None]
-    gain = (
-        f" Two studies with different beds and impact points would need {number(min(saved), 2)} to "
-        f"{number(max(saved), 2)} times as many landings for equally narrow intervals."
-        if saved
-        else ""
-    )
-    return (
-        f"Differences of the results with their {percent(comparison.level)} intervals over beds and impact points, "
-        f"from {comparison.of}: runs with the same number share bed, impact point, attitude and heading.{gain}"
-    )
 
 
 def _draw(comparison: StudyComparison) -> "Figure":
@@ -82,8 +61,7 @@ def _draw(comparison: StudyComparison) -> "Figure":
 
 
 def _shown(one: ComparedAnswer, times: float) -> DifferenceRow:
-    words = f"{bounded(one.difference, factor(one), signed=True)} {unit(one, of_difference=True)}".strip()
-    return DifferenceRow(one.words, one.difference.on_scale(lambda value: times * value), words)
+    return DifferenceRow(one.words, one.difference.on_scale(lambda value: times * value), compared.difference(one))
 
 
 def _comparison_table(comparison: StudyComparison) -> PageTable:
@@ -94,17 +72,13 @@ def _comparison_table(comparison: StudyComparison) -> PageTable:
             bounded(one.second, factor(one)),
             bounded(one.difference, factor(one), signed=True),
             str(one.pairs),
-            "none" if one.correlation is None else number(one.correlation, 2),
-            "none" if one.landings_saved is None else number(one.landings_saved, 2),
+            "none" if one.correlation is None else two_digits(one.correlation),
+            "none" if one.landings_saved is None else two_digits(one.landings_saved),
         ]
         for one in comparison.answers.values()
     ]
     columns = ["answer", "A", "B", "B minus A", "pairs", "correlation", "landings saved"]
-    note = (
-        f"With {percent(comparison.level)} intervals. Correlation: of the two runs of a pair. Landings saved: factor "
-        "by which an unpaired comparison needs more landings for the same interval."
-    )
-    return PageTable("Answers", columns, rows, note, numbers=frozenset(columns[4:]))
+    return PageTable("Answers", columns, rows, compared.table_note(comparison), numbers=frozenset(columns[4:]))
 
 
 def _settings(comparison: StudyComparison) -> PageTable:
@@ -118,13 +92,15 @@ BEST = 12
 
 def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     """Write index.html and its figures into a folder, which is made; returns the page."""
-    first = Plot("sites", "Sites", _site_caption(site_map), lambda: sites_figure(site_map))
+    first = Plot("sites", "Sites", mapped.caption(site_map), lambda: sites_figure(site_map))
     sections = [
         PageSection("Sites", tables=[_best(site_map), _site_table(site_map, site_map.cells, "All sites")]),
         *([_of_agreement(site_map)] if site_map.agreement else []),
         PageSection("Files", tables=[_provenance()], texts={"The study file": study_text}),
     ]
-    content = Content(site_map.statement, _warnings(site_map), _site_tiles(site_map), first, sections)
+    content = Content(
+        site_map.statement, mapped.warnings(site_map), [Tile(*one) for one in mapped.tiles(site_map)], first, sections
+    )
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(site_map.title, site_map.of, content, panels, kind="Map of sites")
     path = place / "index.html"
@@ -135,55 +111,10 @@ def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
 def _of_agreement(site_map: SiteMap) -> PageSection:
     """How the emulator and the study's own landings agree."""
     plot = Plot(
-        *("agreement", "Emulator and landings", _agreement_caption(site_map)),
+        *("agreement", "Emulator and landings", mapped.agreement_caption(site_map)),
         lambda: agreement_figure(site_map.agreement, site_map.level),
     )
     return PageSection("How sure", [plot], [_agreement(site_map)])
-
-
-def _warnings(site_map: SiteMap) -> list[str]:
-    """What to beware of."""
-    found = [site_map.why] if site_map.why else []
-    lacking = len(site_map.cells) - site_map.answered
-    if lacking:
-        found += [
-            f"{lacking} of {len(site_map.cells)} sites have no result: more than 10 % of their landers have an impact "
-            "outside the range of the study's journeys. A study delivered all over the body covers them."
-        ]
-    if site_map.agreement and site_map.agreement[0].agrees is False:
-        found += ["Emulator and landings do not agree on the landers at rest: follow more journeys (journey.count)."]
-    return found
-
-
-def _site_tiles(site_map: SiteMap) -> list[Tile]:
-    shares = [site.ends.at_rest.value for site in site_map.cells if site.ends is not None]
-    if not shares or site_map.at_rest is None:
-        return []
-    best = sum(site.not_worse for site in site_map.cells)
-    hours = site_map.duration_s / HOUR
-    return [
-        Tile(percent(site_map.at_rest.value).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
-        Tile(f"{100 * min(shares):.0f} to {100 * max(shares):.0f}", "%", "at rest, from site to site"),
-        Tile(str(best), f"of {len(site_map.cells)}", "sites cannot be distinguished from the best"),
-        Tile(str(site_map.answered), f"of {len(site_map.cells)}", "sites have a result"),
-    ]
-
-
-def _site_caption(site_map: SiteMap) -> str:
-    light = "; light is the mean over a day and the seasons of the study" if site_map.cells[0].light else ""
-    return (
-        f"The same delivery to each of {len(site_map.cells)} sites of {site_map.body}, in "
-        f"Hammer's equal-area projection about longitude 0. Slopes are those of the facets{light}. Intervals are "
-        "in the table of all sites."
-    )
-
-
-def _agreement_caption(site_map: SiteMap) -> str:
-    return (
-        "The journeys of the study, by simulated landings and by refits of the emulator to other beds: "
-        "all of them (filled), and those with their first touchdown in each region of an "
-        f"eighth of the body, with {percent(site_map.level)} intervals."
-    )
 
 
 def _agreement(site_map: SiteMap) -> PageTable:
@@ -193,11 +124,9 @@ def _agreement(site_map: SiteMap) -> PageTable:
         where = "whole body"
         if one.latitude_deg is not None and one.longitude_deg is not None:
             where = f"{one.latitude_deg:.0f}, {one.longitude_deg:.0f} deg"
-        off = one.difference
-        bounds = "" if off.bounds is None else f" ({' to '.join(f'{100 * end:+.0f}' for end in off.bounds)})"
         verdict = {True: "yes", False: "no", None: ""}[one.agrees]
         shares = with_interval(one.landings), with_interval(one.emulator)
-        rows.append([where, str(one.journeys), *shares, f"{100 * off.value:+.0f}{bounds}", verdict])
+        rows.append([where, str(one.journeys), *shares, signed_points(one.difference), verdict])
     note = "Both columns have the same landers, so the difference has a smaller error than either fraction."
     return PageTable("Emulator and landings", columns, rows, note, numbers=frozenset(columns[1:2]))
 
@@ -216,18 +145,13 @@ def _least(site: SiteCell) -> tuple[float, float]:
 
 def _site_table(site_map: SiteMap, cells: "tuple[SiteCell, ...] | list[SiteCell]", title: str) -> PageTable:
     names = tuple(site_map.cells[0].light)
-    words = {"sun": "sunlight [% of day]", "earth": "Earth [% of day]"}
+    light = {"sun": "sunlight [% of day]", "earth": "Earth [% of day]"}
     columns = [
         *("latitude", "longitude", "at rest [%]", "on the partner [%]", "escaped [%]", "time to rest [h]"),
-        *("distance [m]", "slope [deg]", *(words.get(name, name) for name in names), "like the best", "journeys"),
+        *("distance [m]", "slope [deg]", *(light.get(name, name) for name in names), "like the best", "journeys"),
     ]
-    note = (
-        f"Middle of each site [deg]. Fractions and medians with {percent(site_map.level)} intervals; slope and light "
-        "as the mean over the site, and the span of 90 % of its area. Journeys: of the study, with their first "
-        "touchdown there."
-    )
     rows = [_row(site, names) for site in cells]
-    return PageTable(title, columns, rows, note, numbers=frozenset((*columns[:2], columns[-1])))
+    return PageTable(title, columns, rows, mapped.table_note(site_map), numbers=frozenset((*columns[:2], columns[-1])))
 
 
 def _row(site: SiteCell, names: tuple[str, ...]) -> list[str]:
@@ -247,10 +171,7 @@ def _share(share: Estimate) -> str:
 
 
 def _estimate(found: Estimate | None, unit: float) -> str:
-    if found is None:
-        return ""
-    value, ends = number(found.value / unit, 2), " to ".join(number(end / unit, 2) for end in found.bounds or ())
-    return f"{value} ({ends})" if ends else value
+    return "" if found is None else quantile(found, unit)
 
 
 def _spread(found: SiteSpread, times: float) -> str:

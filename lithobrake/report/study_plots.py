@@ -11,9 +11,10 @@ from lithobrake.report.figures.place_map import draw_map
 from lithobrake.report.figures.run_figures import draw_parts, draw_rebounds, part_handles
 from lithobrake.report.figures.share_figures import RestSpread, draw_counts, draw_shares, draw_spread
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages import drawn_page, journey_page, shared_plots
-from lithobrake.report.words.journey_captions import END_ROWS, END_WORDS
+from lithobrake.results.page_data import DrawnPage, JourneyPage, PaperPage, page_results
+from lithobrake.statements.journeys import END_ROWS
+from lithobrake.statements.labels import END_WORDS
 from lithobrake.vocabulary.plain_text import in_lines
 
 if TYPE_CHECKING:

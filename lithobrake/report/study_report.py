@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from lithobrake.files.atomic import write_whole
 from lithobrake.report.content import Content, PageSection, Panel, Plot
 from lithobrake.report.figures.style import STYLE, figure_style
-from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.pages.paper_page import paper_content
 from lithobrake.report.tables.paper_tables import provenance
-from lithobrake.report.words import captions
 from lithobrake.results import open_study
+from lithobrake.results.page_data import DrawnPage, JourneyPage, PaperPage, page_results
+from lithobrake.statements.captions import facts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +46,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     whole = replace(content, sections=[*content.sections, files])
     panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"
-    write_whole(path, page(data.study["title"] or folder.name, captions.facts(data), whole, panels))
+    write_whole(path, page(data.study["title"] or folder.name, facts(data), whole, panels))
     return path
 
 

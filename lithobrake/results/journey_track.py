@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.geometry.frames import angles, directions
-from lithobrake.vocabulary.durations import duration_words
+from lithobrake.vocabulary.number_words import counted, duration
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import in_lines, short_repr
 from lithobrake.vocabulary.progress import Progress, silent
@@ -86,7 +86,7 @@ class TouchdownFacts:
     def cells(self, to_next: str) -> tuple[str, ...]:
         """What stands under HEADS."""
         numbers = f"{self.speed:.3g}", f"{self.incidence_deg:.0f}", self.left, f"{self.end - self.begin:.0f}"
-        return str(self.number), duration_words(self.begin), *numbers, to_next
+        return str(self.number), duration(self.begin), *numbers, to_next
 
     def line(self, to_next: str) -> str:
         """These as a line under HEADS."""
@@ -98,7 +98,7 @@ class TouchdownFacts:
     def words(self) -> str:
         """A caption: number, time since delivery, impact."""
         impact = f"{self.speed:.3g} m/s at {self.incidence_deg:.0f} deg"
-        return f"touchdown {self.number}, {duration_words(self.begin)} after delivery: {impact}"
+        return f"touchdown {self.number}, {duration(self.begin)} after delivery: {impact}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +146,8 @@ class JourneyTrack:
     def end_words(self) -> str:
         """How, when and where it ended, after how many contacts, and how the lander lies, in a sentence."""
         contacts, touchdowns = int(self.row["contacts"]), len(self.touchdowns)
-        said = f"{self.end.label.capitalize()} {duration_words(self.row['time_s'])} after delivery, after "
-        said += f"{_counted(contacts, 'contact')} in {_counted(touchdowns, 'touchdown')}"
+        said = f"{self.end.label.capitalize()} {duration(self.row['time_s'])} after delivery, after "
+        said += f"{counted(contacts, 'contact')} in {counted(touchdowns, 'touchdown')}"
         if self.end_place is not None:
             latitude, longitude = self.end_place
             said += f", at latitude {latitude:.3f} and longitude {longitude:.3f} deg"
@@ -166,10 +166,6 @@ class JourneyMotion:
 
     track: JourneyTrack
     bodies: "Sequence[MovingBodies]"
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def _is_there(cell: Any) -> bool:

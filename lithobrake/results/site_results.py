@@ -114,6 +114,8 @@ class SiteResults:
 # Names of SiteEnds.
 SHARES = tuple(end.value for end in (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY))
 MEDIANS = ("time_s", "distance_m")
+# A site has no result where more of its landers have an impact that the emulator does not know.
+MOST_UNKNOWN = 0.1
 
 
 @dataclass(frozen=True)

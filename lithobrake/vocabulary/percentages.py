@@ -44,6 +44,16 @@ def interval_digits(lower: float | None, upper: float | None) -> int:
     return int(lower is not None and upper is not None and upper - lower < NARROW)
 
 
+def at_level(level: float = LEVEL) -> str:
+    """What the bounds beside a number are: "90 % interval"."""
+    return f"{percent(level)} interval"
+
+
+def intervals(level: float = LEVEL) -> str:
+    """What the bounds beside several numbers are: "90 % intervals"."""
+    return f"{at_level(level)}s"
+
+
 def with_interval(entry: Estimate, alone: int = 0, level: float | None = None) -> str:
     """A share with its interval, "71 % (68-73 %)", or "71 % (90 % interval 68-73 %)" where a level is to be named.
 
@@ -52,7 +62,7 @@ def with_interval(entry: Estimate, alone: int = 0, level: float | None = None) -
     if entry.bounds is None:
         return percent(entry.value, alone)
     digits = interval_digits(*entry.bounds)
-    named = "" if level is None else f"{percent(level)} interval "
+    named = "" if level is None else f"{at_level(level)} "
     return f"{percent(entry.value, digits)} ({named}{span(*entry.bounds, digits)})"
 
 

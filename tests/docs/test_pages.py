@@ -8,7 +8,7 @@ from blocks import PAGES, ROOT
 
 DOCS = ROOT / "docs"
 # What only the other parts use has no public names.
-INTERNAL = {"files", "vocabulary", "geometry", "compilation"}
+INTERNAL = {"files", "vocabulary", "geometry", "compilation", "statements"}
 PARTS = sorted({path.parent.name for path in (ROOT / "lithobrake").glob("*/__init__.py")} - INTERNAL)
 LONGEST = 100
 

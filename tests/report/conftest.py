@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from lithobrake.report import write_report
-from lithobrake.report.page_data import DrawnPage, PaperPage, page_results
 from lithobrake.results import open_study
+from lithobrake.results.page_data import DrawnPage, PaperPage, page_results
 
 from .finished_studies import drawn_study, paper_study
 

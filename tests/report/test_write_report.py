@@ -12,20 +12,23 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.paper.paper_summary import answer
+from lithobrake.pipeline.answer.run_answers import scope
+from lithobrake.pipeline.samples import MISSING
 from lithobrake.report import write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.figures.hulls import scene
-from lithobrake.report.page_data import PaperPage
 from lithobrake.report.pages.html import size
 from lithobrake.report.pages.paper_page import paper_content
-from lithobrake.report.words import captions
-from lithobrake.report.words.numbers import area, number
 from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import SampledOutput
+from lithobrake.results.page_data import PaperPage
 from lithobrake.results.run_results import CountedShare
+from lithobrake.statements import captions, expansion
+from lithobrake.statements.answers import sample_answer, sample_details
+from lithobrake.statements.estimates import area
 from lithobrake.study import read_study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import number, thousands
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
@@ -55,23 +58,26 @@ def test_page_has_the_ten_figures_inside_and_nothing_outside(paper_page: str, st
 def test_the_answer_of_a_paper_study_says_how_its_body_turns(paper: PaperPage, study_folder: Path) -> None:
     site = replace(paper.results.site, rotation="Dimorphos librates by 8 deg.")
     assert site.warning
-    said = answer(read_study(study_folder / "study.toml"), replace(paper.results, site=site))
+    over = scope(read_study(study_folder / "study.toml"))
+    said = sample_answer(over, replace(paper.results, site=site), MISSING)
     assert said == [*paper.results.answer[:-1], "Dimorphos librates by 8 deg.", site.warning]
     assert paper.results.answer[-1] == site.warning
 
 
 def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     results = paper.results
-    assert all(sentence in captions.details(paper)[0] for sentence in results.answer)
-    assert f"{100 * results.returns.share.value:.1f} % of the landers" in captions.answer(paper)
+    first, *others = results.answer
+    assert all(sentence in sample_details(paper)[0] for sentence in others)
+    assert first not in sample_details(paper)[0]
+    assert f"{100 * results.returns.share.value:.1f} % of the landings" in paper_content(paper).answer == first
     bed, design = results.beds[0], results.designs["screening"]
     for name in ("surface_height_m", "mean_diameter_m", "smallest_width_m", "smallest_depth_m"):
         assert f"{getattr(bed, name):.3g} m" in captions.bed(paper)
     assert "0.2 m/s and 30 deg from the normal" in captions.landing(paper)
-    assert f"takes {design.run_count} runs on the Smolyak grid" in captions.counts(paper)
+    assert f"takes {design.run_count} runs on the Smolyak grid" in expansion.counts(paper)
     first = results.screening.sobol_first["speed_out"]
-    assert f"({100 * max(first.values()):.0f} %, " in captions.sobol(paper)
-    assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in captions.errors(paper)
+    assert f"({100 * max(first.values()):.0f} %, " in expansion.sobol(paper)
+    assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in expansion.errors(paper)
     assert "amount to 1.4 × 10⁻⁵ m/s2 outward" in captions.outcomes(paper)
     large = results.regions[-1]
     assert large.share == 0.95
@@ -128,7 +134,6 @@ def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: Pape
     assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
     for value in (site.escape_speed_m_s, site.bulk_density_kg_m3):
         assert number(value) in words
-        assert number(value) in captions.outcomes(paper)
 
 
 def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, paper_page: str) -> None:
@@ -217,8 +222,8 @@ def test_a_damaged_file_is_one_sentence(
 def test_a_study_in_which_nothing_leaves_says_so(paper: PaperPage) -> None:
     table = replace(paper.results.monte_carlo, leaving_count=0, outputs={})
     none = replace(paper, results=replace(paper.results, monte_carlo=table), facet=paper.facet[:0])
-    count = captions.thousands(table.sample_count)
-    assert f"None of the {count} samples leaves the surface" in captions.scatter(none)
+    count = thousands(table.sample_count)
+    assert f"None of the {count} samples leaves the surface" in expansion.samples(none)
     assert captions.body(none) == ""
 
 

@@ -29,6 +29,7 @@ from lithobrake.results.journey_results import DeliveryResults
 from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
 from lithobrake.results.site_results import KernelNumbers, SiteResults
+from lithobrake.statements.touchdowns import followed
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
@@ -168,18 +169,6 @@ def rest_results(job: Job) -> RestResults:
     return RestResults(known["why_no_soil"], ranges, **found)
 
 
-def followed_words(study: Study, ground: str, count: int) -> str:
-    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
-    if ground == "hard":
-        return (
-            f"{count} journeys on the hard ground of [rest], from the impacts of the study file, without soil, bed or "
-            "emulator"
-        )
-    model = "expansion" if study.design.method == "paper" else "emulator"
-    on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
-    return f"{count} journeys of {model} samples{on}"
-
-
 def _with_sampling_intervals(found: GroundResults) -> GroundResults:
     """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
     from lithobrake.analysis import LEVEL, wilson_interval
@@ -211,7 +200,7 @@ def _ends(
         **numbers,
         ellipses=ellipses(job.site, rows, JourneyStatus.SETTLED),
         outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
-        of=followed_words(job.study, ground, total),
+        of=followed(ground, total, "expansion" if job.study.design.method == "paper" else "emulator"),
         interval=None,
         regions=place_regions(site, rows, JourneyStatus.SETTLED),
     )

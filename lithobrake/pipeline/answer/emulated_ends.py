@@ -22,10 +22,11 @@ from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys
 from lithobrake.results.run_results import CountedShare
+from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
+from lithobrake.vocabulary.percentages import LEVEL
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
 Shares = Mapping[str, CountedShare]
@@ -70,8 +71,9 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
     control, shares = _narrowed(table, plain, fresh, own)
     agrees = _agrees(plain, ends)
     unknown = float(np.mean(fresh.end == UNKNOWN_END))
+    said = emulated_statement(ends, agrees, unknown)
     counts = len(fresh.end), int(fresh.landings.sum()), most
-    return EmulatedJourneys(None, *counts, unknown, ends, agrees, control, _statement(ends, agrees, unknown)), shares
+    return EmulatedJourneys(None, *counts, unknown, ends, agrees, control, said), shares
 
 
 def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, CountedShare]:
@@ -142,17 +144,6 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
     expected = counts / np.maximum(totals, 1)
     each: np.ndarray = own.without_landings(end) - expected[own.refit]
     return each.reshape(-1, COPIES).mean(axis=1)
-
-
-def _statement(ends: Shares, agrees: bool | None, unknown: float) -> str:
-    """Whether emulator and landings agree, in a sentence."""
-    at_rest = ends[JourneyEnd.AT_REST]
-    said = f"The emulator of all touchdowns gives {with_interval(at_rest.share)} at rest"
-    more = f" and {percent(unknown)} with an unknown outcome" if unknown >= 0.005 else ""
-    if agrees is None:
-        return f"{said}{more}."
-    verdict = "agree" if agrees else "do not agree"
-    return f"{said}{more}: emulator and landings {verdict} within their {percent(LEVEL)} intervals."
 
 
 @dataclass(frozen=True)

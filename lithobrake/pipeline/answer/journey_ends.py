@@ -14,6 +14,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.journey_results import JourneyRest, RestQuantiles, SideResults, SkyResults, SoilResults
 from lithobrake.results.run_results import CountedShare
+from lithobrake.statements.ends import journeys_at_rest
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words, sides_down
 from lithobrake.vocabulary.estimate import Estimate
@@ -88,7 +89,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     faces = table.face[rests]
     has_sides = bool((faces != "").any())
     return JourneyRest(
-        of=f"{int(rests.sum())} of {len(rests)} journeys that ended at rest",
+        of=journeys_at_rest(int(rests.sum()), len(rests)),
         time_s=quantiles("time_s"),
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),

@@ -16,7 +16,6 @@ from lithobrake.analysis import (
 )
 from lithobrake.analysis.limit_states import limit_state_met
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.answer_sentences import limit_statement
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
@@ -28,11 +27,12 @@ from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim, LimitStateInput, LimitStateResult
 from lithobrake.results.run_results import CountedShare
+from lithobrake.statements import limits
+from lithobrake.statements.limits import FAR, options
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words
 from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.units import input_units
-from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.outcomes import (
@@ -44,7 +44,6 @@ from lithobrake.vocabulary.outcomes import (
     JourneyStatus,
     SampleOutcome,
 )
-from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
 from lithobrake.vocabulary.study_files import AIM_FILE
 
@@ -70,7 +69,7 @@ def limit_state_results(
         one, of_word = _one(study, name, state, runs, fates, of_samples), _of_one_word(state, shares)
         if of_word is not None:
             one = replace(one, probability=of_word, runs=replace(one.runs, share=of_word))
-        found[name] = replace(one, statement=limit_statement(name, one))
+        found[name] = replace(one, statement=limits.limit_state(name, one))
     return found
 
 
@@ -159,13 +158,11 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
     return drawn if drawn[1].min() >= 2 else None
 
 
-FAR = 0.95
 # The outcome of these landers is unknown.
 UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
 # The words of bounces and of journeys.
 RESTS = (SETTLED, AT_REST)
 # More options than these make no sentence.
-NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -213,7 +210,7 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
         statement="",
         sides=tuple(side_words(study.lander, side) for side in study.aim.sides),
     )
-    return replace(results, statement=aim_statement(results))
+    return replace(results, statement=options(results))
 
 
 def _landers(folder: StudyFolder, ground: str, aim_count: int) -> Landers:
@@ -290,55 +287,3 @@ def _best(
     others = tuple(aim for aim in found.not_worse if aim != found.best)
     share = float(found.shares[found.best])
     return parts, BestAim(found.best, share, found.own, others, found.runner_up, found.difference)
-
-
-def aim_statement(table: AimResults) -> str:
-    """The options that cannot be distinguished from the best, the best's own share, and what hard ground says."""
-    aims, within = table.aims, f" within {', '.join(table.within)}" if table.within else ""
-    count = sum(aim.soil.allowed for aim in aims)
-    best, hard = table.best_on_soil, table.best_on_hard
-    if best is None:
-        return (
-            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
-        )
-    said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
-    part = aims[best.aim].soil
-    # The largest of many shares is too high by its selection, so the sentence has the share without it.
-    share = with_interval(best.own or part.settled, level=table.level)
-    most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
-    first = f"{most} come to rest with {_words(table, best.aim)}: {share}"
-    if part.distance_p95 is not None and part.time_p95 is not None:
-        far, late = part.distance_p95.value, part.time_p95.value / HOUR
-        first += f", {percent(FAR)} of these within {far:.3g} m and {late:.3g} h"
-    if part.missing >= 0.005:
-        first += f"; {percent(part.missing)} have an unknown outcome{_rivals(table, best.aim)}"
-    said.append(first)
-    on_hard = None if hard is None else aims[hard.aim].hard
-    if hard is not None and on_hard is not None:
-        where = "the same option" if best.aim == hard.aim else _words(table, hard.aim)
-        said.append(f"On hard ground the best is {where}: {with_interval(on_hard.settled)}")
-    return ". ".join(said) + "."
-
-
-def _alike(table: AimResults, places: Sequence[int], count: int, within: str) -> str:
-    """Which of the allowed options cannot be distinguished from the best, it among them."""
-    surely = f"with {percent(table.level)} confidence"
-    if count == 1:
-        return f"Of {len(table.aims)} delivery options one is allowed{within}"
-    if len(places) == 1:
-        return f"One of {count} delivery options{within} is better than every other, {surely}"
-    named = f": {'; '.join(_words(table, place) for place in sorted(places))}" if len(places) <= NAMED else ""
-    return f"{len(places)} of {count} delivery options{within} cannot be distinguished from the best, {surely}{named}"
-
-
-def _rivals(table: AimResults, best: int) -> str:
-    """How many other options would be better if all landers of unknown outcome were at rest there."""
-    least = table.aims[best].soil.settled.value
-    count = sum(one.soil.settled.value + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
-    return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
-
-
-def _words(table: AimResults, place: int) -> str:
-    """An option in words."""
-    option = zip(table.names, table.aims[place].values, strict=True)
-    return ", ".join(f"{name} = {table.value_words(name, value)}" for name, value in option)

@@ -1,7 +1,6 @@
 """What each run answers: its bed, its scope, what is missing, and which limit states it meets."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,10 +18,11 @@ from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.dispersion import RestRegion
 from lithobrake.results.run_results import MissingLandings
 from lithobrake.results.site_results import SiteResults
+from lithobrake.statements import ends as statements
+from lithobrake.statements.ends import Scope
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.outcomes import CAPTURED, FATES, RETURNS, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
 
 # The stage after which every run has its answer.
@@ -65,53 +65,23 @@ def answers_of_design(
     return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
 
 
-# What a study on one bed, at one impact point or in one attitude leaves open.
-OTHERS = "Another bed, impact point or attitude would change this number; this study cannot show by how much"
-
-
-@dataclass(frozen=True)
-class Scope:
-    """where: words that the answer begins with. why: why its share has no interval. landings: "on 1 bed"."""
-
-    where: str
-    why: str
-    landings: str
-
-
 def scope(study: Study) -> Scope:
-    """What the runs of a study have in common, and what that leaves unsaid."""
-    if not study.has_soil:
-        return Scope(
-            "With the touchdowns of this study's own program",
-            "Another contact model would change this number; this study cannot show by how much.",
-            "of the study's own program",
-        )
-    count = study.bed_count
-    fixed = ["on this bed"] if count == 1 else []
-    fixed += ["at this impact point"] if DrawnDesign(study).one_place else []
-    beds = "on 1 bed" if count == 1 else f"on {count} beds"
-    if fixed or study.impact.orientation != "random":
-        where = ", ".join(fixed or ["in this attitude"]).capitalize()
-        return Scope(where, f"{OTHERS}.", beds)
+    """What the runs of a study have in common, and when its flights and journeys end."""
     return Scope(
-        f"On these {count} beds, at random impact points and attitudes",
-        "This number has no interval: the effect of other beds, impact points and attitudes and the error of the "
-        "expansion are not quantified.",
-        beds,
+        has_soil=study.has_soil,
+        bed_count=study.bed_count,
+        one_place=DrawnDesign(study).one_place,
+        random_attitude=study.impact.orientation == "random",
+        has_scatter=study.monte_carlo.scatter,
+        flight_time=study.flight.duration,
+        rest_time=study.rest.duration,
+        journey_time=None if study.journey is None else study.journey.duration,
     )
 
 
 def why_no_interval(study: Study) -> str | None:
     """Why drawn runs say nothing of other beds and places; None where they do."""
-    one_place = DrawnDesign(study).one_place
-    if study.bed_count > 1 and not one_place:
-        return None
-    where, remedies = [], []
-    if study.bed_count == 1:
-        where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
-    if one_place:
-        where, remedies = [*where, "at one impact point"], [*remedies, "impact.region to the area where it may land"]
-    return f"All runs landed {' and '.join(where)}. {OTHERS}. To get an interval, set {' and '.join(remedies)}."
+    return scope(study).why_no_interval
 
 
 FAILED = "failed"
@@ -120,15 +90,6 @@ KNOWN = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
 LOST = (TouchdownOutcome.LEFT_SIDEWAYS, TouchdownOutcome.TIME_LIMIT, FAILED)
 # Share of the landings without an outcome above which a study warns of it [-].
 WARNED = 0.02
-WORDS = {outcome.value: outcome.label for outcome in TouchdownOutcome} | {FAILED: FAILED}
-REMEDIES = {
-    TouchdownOutcome.LEFT_SIDEWAYS: "a wider bed (bed.width, with bed.grain_count) or a steeper impact "
-    "(impact.incidence_deg)",
-    TouchdownOutcome.TIME_LIMIT: "a longer landing.time_limit",
-    FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
-}
-# A program of the user's own has neither bed nor time limit in the study file.
-OF_A_PROGRAM = "a program that returns clear or captured for every touchdown"
 
 
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
@@ -138,22 +99,12 @@ def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
     return MissingLandings(count, count / total if total else 0.0, lost)
 
 
-def missing_words(lost: Mapping[str, int]) -> str:
-    """The kinds of missing landings with their counts, as in a list."""
-    return ", ".join(f"{count} {WORDS[name]}" for name, count in lost.items())
-
-
 def missing_warning(study: Study, outcomes: Mapping[str, int]) -> str | None:
     """What missing landings do to the numbers of a study, and how to avoid them; None for few or none."""
     found, total = missing_landings(outcomes), sum(outcomes.values())
     if found.share <= WARNED:
         return None
-    remedies = [REMEDIES[name] for name in found.outcomes] if study.has_soil else [OF_A_PROGRAM]
-    return (
-        f"{found.count} of {total} landings ({percent(found.share)}) have no outcome "
-        f"({missing_words(found.outcomes)}): medians, quantiles, variance shares and the emulator describe only the "
-        f"other {total - found.count}; to avoid this: {', '.join(remedies)}"
-    )
+    return statements.missing_warning(found.count, total, found.outcomes, has_soil=study.has_soil)
 
 
 def left_in_flight(runs: DesignRuns) -> np.ndarray:
@@ -165,11 +116,7 @@ def left_in_flight(runs: DesignRuns) -> np.ndarray:
 
 def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
     """Which of the landings a number describes, in words; known: those that have one [run_count]."""
-    met = {outcome for outcome, one in zip(outcomes, known, strict=True) if one}
-    words = " or ".join(
-        words for outcome, words in ((KNOWN[0], "left the surface"), (KNOWN[1], "were captured")) if outcome in met
-    )
-    return f"the {int(known.sum())} of {len(outcomes)} landings that {words or 'have this number'}"
+    return statements.described([outcome for outcome, one in zip(outcomes, known, strict=True) if one], len(outcomes))
 
 
 # Words of a run that its touchdown alone decides; all others take flights.

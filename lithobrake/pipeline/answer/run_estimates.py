@@ -46,6 +46,7 @@ from lithobrake.results.run_results import (
     VarianceParts,
 )
 from lithobrake.results.summary import Estimates
+from lithobrake.statements.ends import journeys_at_rest
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.landing_fraction import LandingFraction
@@ -181,7 +182,7 @@ def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[s
     table: of the journeys of these runs, in their order. Whether a lander comes to rest is 1 or 0.
     """
     rests, everything = table.rests, f"{len(table.end)} journeys"
-    of_rest = f"{int(rests.sum())} of {len(rests)} journeys that ended at rest"
+    of_rest = journeys_at_rest(int(rests.sum()), len(rests))
     numbers = {
         "at_rest": (rests.astype(float), everything),
         "time_s": (np.where(rests, table.numbers["time_s"], np.nan), of_rest),

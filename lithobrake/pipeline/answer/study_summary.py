@@ -13,7 +13,6 @@ import numpy as np
 
 from lithobrake.analysis import LEVEL
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.answer.answer_sentences import drawn_answer, drawn_headline
 from lithobrake.pipeline.answer.dispersion_statistics import (
     Rows,
     body_product,
@@ -34,7 +33,7 @@ from lithobrake.pipeline.answer.journey_ends import (
     with_journeys,
 )
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
-from lithobrake.pipeline.answer.run_answers import described, place_regions, why_no_interval
+from lithobrake.pipeline.answer.run_answers import described, place_regions, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, parts_of_journeys
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE
@@ -49,9 +48,10 @@ from lithobrake.results.run_results import EmulatorShares, LandingShares, Level,
 from lithobrake.results.site_results import BedNumbers
 from lithobrake.results.study_files import SUMMARY_FORMAT
 from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes, Summary
+from lithobrake.statements.answers import landing_answer, landing_headline
+from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
 from lithobrake.vocabulary.study_files import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 
@@ -150,8 +150,8 @@ def write_results(job: Job, completed: Completed) -> None:
     distinct = DesignRuns.distinct(runs)
     estimates = results_in(Estimates, job.folder.read_json(ESTIMATES_FILE), "estimates")
     results = completed(job, results_of_landings(job, estimates, distinct), runs[0], estimates)
-    results = replace(results, answer=tuple(drawn_answer(job.study, results)))
-    results = replace(results, headline=tuple(drawn_headline(results)))
+    results = replace(results, answer=tuple(landing_answer(scope(job.study), results)))
+    results = replace(results, headline=tuple(landing_headline(results)))
     for part in (results.runs, results.emulator):
         if part is not None and part.warning:
             job.say(part.warning)
@@ -269,19 +269,7 @@ def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorRe
         follows_inputs=model.follows_inputs,
         found_inputs=tuple(name for name, found in model.found_inputs().items() if found),
         scores=EmulatorScores(JointScore(scores.gain / scores.energy_of_rows), table),
-        warning=_disagreement(returns),
-    )
-
-
-def _disagreement(returns: ReturnFraction) -> str | None:
-    """That runs and emulator disagree, in a sentence; None where they agree, or no interval says how far they may."""
-    bounds = returns.share.bounds
-    if bounds is None or returns.emulator is None or bounds[0] <= returns.emulator <= bounds[1]:
-        return None
-    low, high = (f"{100 * end:.1f}" for end in bounds)
-    return (
-        f"The emulator gives a return fraction of {percent(returns.emulator, 1)}, outside the interval of the runs "
-        f"({low} to {high} %): do not rely on results of the emulator (flights, landing regions, rest); make more runs"
+        warning=disagreement(returns),
     )
 
 

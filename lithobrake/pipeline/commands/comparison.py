@@ -23,6 +23,7 @@ from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.result_files import json_values
 from lithobrake.results.study_files import intact_file
+from lithobrake.statements.comparison import other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
@@ -95,11 +96,10 @@ def compare_studies(first: Path, second: Path) -> StudyComparison:
     bed = one.bed[:count]
     why = why_no_interval(one.study) or why_no_interval(two.study)
     found = dict(_answers((one, two), count, bed, why))
-    beds = len(np.unique(bed))
     return StudyComparison(
         names=(str(first), str(second)),
         titles=_titles(one, two),
-        of=f"{count} pairs on {beds} {'bed' if beds == 1 else 'beds'}",
+        of=pairs(count, len(np.unique(bed))),
         level=LEVEL,
         settings=_settings(one.results.study, two.results.study),
         answers=found,
@@ -132,7 +132,7 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
 
 def comparison_lines(comparison: StudyComparison) -> list[str]:
     """A comparison for a terminal: which studies, and a line for each answer."""
-    from lithobrake.report.words.numbers import lines
+    from lithobrake.statements.comparison import lines
 
     return lines(comparison)
 
@@ -168,10 +168,7 @@ def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     count = int(np.any([a != b for a, b in pairs], axis=0).sum())
     if not count:
         return None
-    return (
-        f"{count} of {len(used)} beds differ between the studies (other grains, or settled under another gravity), so "
-        "paired runs are less correlated. If the grains are the same, give both studies the same bed.settle_gravity."
-    )
+    return other_beds(count, len(used))
 
 
 def _unlike(one: OneStudy, two: OneStudy, reason: str) -> ValueError:

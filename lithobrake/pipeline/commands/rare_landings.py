@@ -27,6 +27,7 @@ from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
+from lithobrake.statements.limits import few_origins, rare_limit_state
 from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.limit_state import LimitState
@@ -35,8 +36,9 @@ from lithobrake.vocabulary.limit_state import LimitState
 CHAIN, FEWEST = 10, 20
 # A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
 MOST_LEVELS = 6
+# Probabilities as near to 0 and 1 as a law without ends can take.
 # Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
-FEW_ORIGINS = 3.0
+LEAST = 2.0**-53
 
 
 def rare_failure(
@@ -161,7 +163,7 @@ class Landings:
             "level": found.probability.level,
             "coefficient_of_variation": found.coefficient_of_variation,
             "origins": found.origins,
-            "warning": _few_origins(found.origins, study.bed_count) if found.reached else None,
+            "warning": few_origins(found.origins, study.bed_count) if found.reached else None,
             "reached": found.reached,
             "rarest": found.probability.value if found.reached else found.probability.upper,
             "levels": len(found.thresholds),
@@ -173,7 +175,7 @@ class Landings:
             "beds": study.bed_count,
             "inputs": self._medians(found.failing),
         }
-        return content | {"statement": _statement(self.name, content)}
+        return content | {"statement": rare_limit_state(self.name, content)}
 
     def _medians(self, failing: np.ndarray) -> dict[str, dict[str, float | None]]:
         """Median of each input among points that fail [count, dimension], and by its law; None where there are none."""
@@ -199,28 +201,3 @@ def _limit_state(study: Study, name: str) -> LimitState:
             "use an output of the touchdown, as in speed_out > 0.1, or read the probability in the summary of the study"
         )
     return state
-
-
-def _statement(name: str, found: dict[str, Any]) -> str:
-    said = f"probability {found['probability']:.2g}"
-    if found["lower"] is not None:
-        said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
-    if not found["reached"]:
-        said = f"no landing met it down to the last level, a probability of {found['rarest']:.1g}"
-    unknown = found["without_known_end"]
-    lost = f"; {unknown} with unknown outcome count as not meeting it" if unknown else ""
-    levels = f"{found['levels']} level{'s' * (found['levels'] != 1)}"
-    landings = f"{found['landings']} landings in {levels} on {found['beds']} beds"
-    why = f" {found['why']}" if found["why"] else ""
-    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
-    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
-
-
-def _few_origins(origins: float, bed_count: int) -> str | None:
-    if origins >= FEW_ORIGINS:
-        return None
-    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
-    return (
-        f"The landings that meet it descend from few {what} (effective number {origins:.1f}), so another seed may give "
-        f"a very different probability: raise {more}."
-    )

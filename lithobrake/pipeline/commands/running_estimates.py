@@ -11,9 +11,10 @@ from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
+from lithobrake.statements.journeys import journey_ends_so_far
+from lithobrake.statements.touchdowns import NO_FLIGHTS, so_far
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import OVER_RIM
 from lithobrake.vocabulary.study_files import STUDY_FILE
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
 # Of fewer runs no interval says anything.
 FEWEST_RUNS = 2
-NO_FLIGHTS = "The return fraction is not known yet: it takes flights."
 
 
 @dataclass(frozen=True)
@@ -42,14 +42,7 @@ class RunningEstimates:
 
     def lines(self) -> list[str]:
         """The estimates in words."""
-        if self.captured is None:
-            return []
-        lines = [f"so far, from {self.captured.from_}:", f"  captured: {_share(self.captured)}"]
-        if self.speed_out is not None:
-            value, level = self.speed_out.value, percent(self.speed_out.level)
-            ends = " to ".join(f"{end:.4g}" for end in self.speed_out.bounds or ())
-            lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {ends})")
-        return [*lines, f"  {NO_FLIGHTS}" if self.returns is None else f"  return fraction: {_share(self.returns)}"]
+        return [] if self.captured is None else so_far(self.captured, self.speed_out, self.returns)
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
@@ -98,12 +91,6 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
     )
 
 
-def _share(found: "LandingFraction") -> str:
-    """A share with its interval, which holds whatever became of landings without an outcome, or why it has none."""
-    share, why = found.share, found.share.why_missing
-    return with_interval(share, level=share.level) + ("" if why is None else f", without an interval: {why}")
-
-
 NUMBER, TOUCHDOWN = "journey", "touchdown"
 # How a journey ended whose last touchdown did so; after any other it flies on.
 ENDS: dict[str, JourneyEnd] = {
@@ -135,13 +122,7 @@ class JourneysStatus:
         """All of it in words."""
         if self.said is not None:
             return [self.said]
-        ended = sum(self.ends.values())
-        found = [f"{self.ends[end]} {end.label}" for end in JourneyEnd if self.ends[end]]
-        more = "" if self.is_final else " so far"
-        return [
-            f"journeys: {ended} of {self.total} ended{more}{': ' if found else ''}{', '.join(found)}; "
-            f"{self.touchdowns} touchdowns"
-        ]
+        return [journey_ends_so_far(self.ends, self.total, self.touchdowns, is_final=self.is_final)]
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""

@@ -29,7 +29,7 @@ from lithobrake.study.delivered_states import DeliveredStates, states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.constants import HOUR
+from lithobrake.vocabulary.number_words import duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH
@@ -277,12 +277,12 @@ def descents_in_words(descents: Descents) -> str:
     """Return how many landers reach the ground, when, how fast and where; and what the others do."""
     flights, down = descents.flights, descents.touches_down
     others = Counter(flights.status[~down].tolist())
-    said = f"Delivery: {int(down.sum())} of {len(flights)} landers reach the ground"
+    said = f"Delivery: {out_of(int(down.sum()), len(flights), 'landers')} reach the ground"
     if down.any():
-        speed, hours = flights.impact_speed[down], flights.time[down] / HOUR
+        speed, time = 100.0 * flights.impact_speed[down], flights.time[down]
         said += (
-            f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
-            f"{100.0 * speed.max():.3g} cm/s"
+            f", {duration(time.min())} to {duration(time.max())} after their state, at "
+            f"{span_of((speed.min(), speed.max()))} cm/s"
         )
     ends = [f"{number} {WORDS.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
     return "; ".join([said, *ends]) + "." + (_places(descents) if down.any() else "")
@@ -295,7 +295,7 @@ def _places(descents: Descents) -> str:
     shape = site.body.shape
     latitude, longitude = shape.latitude_longitude(directions(*shape.latitude_longitude(places)).mean(axis=0))
     return (
-        f" First touchdowns lie {middle:.3g} m from the aim point in the median (5 to 95 %: {near:.3g} to {far:.3g} "
-        f"m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {site.aim[0]:.1f}, "
-        f"{site.aim[1]:.1f}."
+        f" First touchdowns lie {middle:.3g} m from the aim point in the median (5th to 95th percentile {near:.3g} to "
+        f"{far:.3g} m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at "
+        f"{site.aim[0]:.1f}, {site.aim[1]:.1f}."
     )

@@ -56,6 +56,11 @@ def inputs_at(
     return x, outside
 
 
+def hard_ground_only(why: str) -> str:
+    """That journeys from bounce to bounce leave the soil out, in a sentence."""
+    return f"Journeys from bounce to bounce are on hard ground only: {why}."
+
+
 @dataclass(frozen=True)
 class EmulatorBounce:
     """The emulator as a bounce of smallbody.hop.

@@ -12,6 +12,7 @@ from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.first_bounces.bounce_laws import (
     RESTITUTION_FILE,
     emulator_bounce,
+    hard_ground_only,
     restitution_table,
     slow_arrivals,
     why_no_soil,
@@ -99,7 +100,7 @@ def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> Non
             rows += sites.rows("soil", first, journeys)
             arcs = arc_rows(journeys.arcs, np.flatnonzero(~first.outside))
         else:
-            job.say(f"Journeys from bounce to bounce are on hard ground only: {why}.")
+            job.say(hard_ground_only(why))
         rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
         if RESTITUTION_FILE in rest_files(study):
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))

@@ -16,7 +16,9 @@ from lithobrake.pipeline.journeys.journey import ENDS, Journey, JourneyModel, fl
 from lithobrake.pipeline.runs.landings import account, campaign_setting, model_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.vocabulary.number_words import out_of
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
 from lithobrake.vocabulary.study_files import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 
@@ -154,14 +156,14 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
 def progress_words(journeys: Sequence[Journey], touchdown_count: int) -> str:
     """How far journeys are, as "31 of 96 journeys, 140 touchdowns, at rest so far 71 +- 8 %"."""
     ends = [one.end for one in journeys if one.end is not None]
-    said = f"{len(ends)} of {len(journeys)} journeys, {touchdown_count} touchdowns"
+    said = f"{out_of(len(ends), len(journeys), 'journeys')}, {touchdown_count} touchdowns"
     if not ends:
         return said
     at_rest, more = ends.count(JourneyEnd.AT_REST), INTERVAL_ERRORS**2
     # With half as many added on either side the error of a share next to 0 or 1 is none of 0. Source: [Agresti-1998].
     share = (at_rest + 0.5 * more) / (len(ends) + more)
     error = INTERVAL_ERRORS * math.sqrt(share * (1.0 - share) / (len(ends) + more))
-    return f"{said}, at rest so far {100 * at_rest / len(ends):.0f} +- {100 * error:.0f} %"
+    return f"{said}, at rest so far {percent(at_rest / len(ends)).removesuffix(' %')} +- {percent(error)}"
 
 
 def _say_what_was_known(job: Job, records: Sequence[Record]) -> None:

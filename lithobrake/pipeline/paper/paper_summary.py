@@ -38,13 +38,11 @@ from lithobrake.results.model_results import (
 from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import ReturnFraction, SampleShares
 from lithobrake.results.summary import PaperResults
-from lithobrake.results.telling_numbers import MainInput, TellingNumbers
+from lithobrake.statements.answers import sample_answer, sample_headline
 from lithobrake.study import Study
-from lithobrake.vocabulary.constants import CENTIMETRES
-from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILES, percent
+from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
 from lithobrake.vocabulary.study_files import REFINED_FILE, SAMPLE_FLIGHTS_FILE, SCORES_FILE, SCREENING_FILE
 
@@ -52,105 +50,14 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
 
-def answer(study: Study, results: PaperResults) -> list[str]:
-    """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    outcomes, site, limit = results.shares.outcomes, results.site, hours(study.flight.duration)
-    again = f"impact the surface again within {limit}"
-    down = f"are captured or {again}" if site.holds else again
-    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {limit}"}
-    if outcomes[FlightStatus.PARTNER].count:
-        ways[FlightStatus.PARTNER] = "impact the partner"
-    beside = [f"{percent(outcomes[status].share.value, 1)} {words}" for status, words in ways.items()]
-    captured = outcomes[SampleOutcome.CAPTURED]
-    if captured.count and not site.holds:
-        beside.append(f"{percent(captured.share.value, 1)} are captured and lifted off again")
-    returning = percent(outcomes["returns"].share.value, 1)
-    sentences = [f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.", scope(study).why]
-    if outcomes["missing"].count:
-        lost = [f"{percent(outcomes[outcome].share.value, 1)} {outcome.label}" for outcome in MISSING]
-        low, high = (percent(bound, 1) for bound in results.returns.if_missing)
-        missing = percent(outcomes["missing"].share.value, 1)
-        sentences.append(
-            f"{missing} of the samples have no outcome ({', '.join(lost)}): the return fraction is {low} if none of "
-            f"these return and {high} if all do."
-        )
-    return [*sentences, *site.sentences]
-
-
-def headline(study: Study, results: PaperResults) -> list[str]:
-    """The answer, and the most informative numbers behind it, each in a sentence."""
-    telling = TellingNumbers.of(results)
-    return [
-        *results.answer,
-        _touchdowns(telling),
-        *_speed(study, telling.speed),
-        _main_input(telling.main_input),
-        _explained(telling.score),
-    ]
-
-
-def _touchdowns(telling: TellingNumbers) -> str:
-    """How the touchdowns ended."""
-    left, *unclear = TouchdownOutcome
-    others = [f"{telling.ended[one]} {one.label}" for one in unclear if telling.ended[one]]
-    others += [f"{telling.failed} more failed"] if telling.failed else []
-    return "; ".join([f"{telling.left_count} of {telling.ended.total()} touchdowns {left.label}", *others]) + "."
-
-
-def _speed(study: Study, speed: Mapping[str, float] | None) -> list[str]:
-    """The rebound speed of the samples that leave."""
-    if not speed:
-        return []
-    low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in QUANTILES)
-    of = "with run-to-run scatter" if study.monte_carlo.scatter else "by the expansion alone, without scatter"
-    return [
-        f"Rebound speed of the samples that leave the surface, {of}: median {middle:.3g} cm/s; 5th to 95th percentile "
-        f"{low:.3g} to {high:.3g} cm/s."
-    ]
-
-
-def _main_input(main: MainInput) -> str:
-    """The dominant input of the rebound speed, with its interval, of what it is a share, and what rivals it."""
-    if main.total <= 0.0:
-        return "No input explains the rebound speed significantly."
-    low, high = main.interval
-    noise = main.noise_share
-    rivals = f", not distinguishable from {', '.join(main.equals)}" if main.equals else ""
-    rest = "" if noise is None else f"; {percent(noise)} of the variance of the runs is scatter that no input explains"
-    return (
-        f"Largest total Sobol index of the rebound speed: {main.name}, {main.total:.2f} (95 % interval {low:.2f} to "
-        f"{high:.2f}, without truncation error){rivals}, as a share of the variance that the refined expansion of "
-        f"degree {main.degree} explains{rest}."
-    )
-
-
-def _explained(score: OutputErrors) -> str:
-    """How well the expansion predicts fresh runs."""
-    error = (
-        f"error {CENTIMETRES * score.rmse:.2g} cm/s at a spread of {CENTIMETRES * score.std:.2g} cm/s, "
-        f"MAPE {'undefined' if score.mape is None else format(score.mape, '.2g') + ' %'}"
-    )
-    if score.q2 is None:
-        return f"On fresh runs with all inputs varying the rebound speed does not vary ({error})."
-    q2 = f"Q2 = {score.q2:.2f}"
-    low, high = score.q2_interval
-    if high is not None:
-        q2 += f", 95 %: {'below any bound' if low is None else format(low, '.2f')} to {high:.2f}"
-    words = (
-        f"explains {percent(score.q2)} of the variance of the rebound speed"
-        if score.q2 > 0.0
-        else "predicts the rebound speed no better than the mean of the runs"
-    )
-    return f"On fresh runs with all inputs varying the expansion {words} ({q2}; {error})."
-
-
 def write_summary(job: Job) -> None:
     """Write summary.json: study, results, provenance."""
     runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
     distinct = DesignRuns.distinct(list(runs.values()))
     results = _results(job, runs, distinct)
-    results = replace(results, answer=tuple(answer(job.study, results)))
-    results = replace(results, headline=tuple(headline(job.study, results)))
+    over = scope(job.study)
+    results = replace(results, answer=tuple(sample_answer(over, results, MISSING)))
+    results = replace(results, headline=tuple(sample_headline(over, results)))
     write_summary_file(job, results, sum(one.run_count for one in runs.values()), distinct)
 
 

@@ -17,8 +17,10 @@ from lithobrake.pipeline.planning.expected_time import journey_time, machine_pac
 from lithobrake.pipeline.planning.study_warnings import expected_loss
 from lithobrake.pipeline.sequential_sampling import flown_shares
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.statements.ends import assumed_at_rest
 from lithobrake.study import Study
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.percentages import at_level, percent
 
 if TYPE_CHECKING:
     from lithobrake.analysis.half_width import RunLaw
@@ -65,7 +67,7 @@ class ExpectedHalfWidth:
         if self.lower == self.upper:
             width = f"{_points(self.lower)} points"
         lines = [
-            f"Expected half-width of the {100 * self.level:.0f} % interval of {self.answer} ({self.run_count} runs on "
+            f"Expected half-width of the {at_level(self.level)} of {self.answer} ({self.run_count} runs on "
             f"{self.bed_count} beds): {width}."
         ]
         if self.by_fraction:
@@ -102,8 +104,8 @@ def expected_width(
     if found is None:
         return None
     told = () if own else TOLD_OF_RETURNS if study.journey is None else TOLD_AT_REST
-    widths = {f"{100 * share:.0f} %": foreseen(AllOrNothing(share, share)) for share in told}
-    lost = f"; {100 * missing:.2g} % of the landings have no outcome" if missing else ""
+    widths = {percent(share): foreseen(AllOrNothing(share, share)) for share in told}
+    lost = f"; {percent(missing, 1)} of all landings have no outcome" if missing else ""
     return ExpectedHalfWidth(
         run_count=study.design.run_count,
         bed_count=study.bed_count,
@@ -135,9 +137,7 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
     if study.journey is not None:
         who = "the landers" if reach == 1.0 else "those that reach the ground"
-        return AllOrNothing(reach, LEAST_AT_REST * reach), (
-            f"Assumed: {100 * LEAST_AT_REST:.0f} to 100 % of {who} come to rest, most likely nearly all; {beds}"
-        )
+        return AllOrNothing(reach, LEAST_AT_REST * reach), (f"{assumed_at_rest(LEAST_AT_REST, who)}; {beds}")
     if study.design.half_width_of is not None:
         return AllOrNothing(0.0, 1.0), f"Assumed: any probability; {beds}"
     low, high = SPREAD_RANGE
@@ -215,7 +215,7 @@ class RunsABed:
         cost = f"{self.bed_cost:.2g} {one if self.bed_cost == 1.0 else more}"
         judged = "is as good"
         if self.over_best >= AS_GOOD:
-            judged = f"takes {100 * self.over_best:.0f} % more time for the same interval; bed.bed_count changes it"
+            judged = f"takes {percent(self.over_best)} more time for the same interval; bed.bed_count changes it"
         return (
             f"{more.capitalize()} on each bed: {self.count:.3g}. A bed takes the time of about {cost}, so about "
             f"{max(round(self.best), 1)} on each, on at least {FEWEST_BEDS_OF_INTERVAL} beds, give the narrowest "

@@ -16,7 +16,7 @@ from lithobrake.pipeline.planning.planned_ground import (
     PlannedSoils,
     PlannedTile,
 )
-from lithobrake.vocabulary.durations import in_suitable_unit
+from lithobrake.vocabulary.number_words import thousands, unit_of_time
 
 
 @dataclass(frozen=True)
@@ -182,7 +182,9 @@ def _time(plan: Plan) -> str:
 
 
 def _seconds(lower: float, upper: float) -> str:
-    (first, unit), (last, other) = (in_suitable_unit(seconds, most=100.0) for seconds in (lower, upper))
+    (first, unit), (last, other) = (
+        (seconds / size, sign) for seconds in (lower, upper) for size, sign in [unit_of_time(seconds)]
+    )
     if unit == other:
         return f"{_range(first, last)} {unit}"
     return f"{_rounded(first)} {unit} to {_rounded(last)} {other}"
@@ -197,7 +199,7 @@ def bytes_in_words(count: float) -> str:
 
 def _range(lower: float, upper: float) -> str:
     """Two numbers, or one where they read the same; without a lower end where that is none."""
-    ends = [f"{end:,}".replace(",", " ") if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
+    ends = [thousands(end) if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
     if ends[0] == ends[1]:
         return ends[0]
     return f"up to {ends[1]}" if lower == 0 else f"{ends[0]} to {ends[1]}"

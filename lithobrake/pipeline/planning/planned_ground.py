@@ -108,7 +108,7 @@ class PlannedBoulders:
     def line(self) -> str:
         sizes = f"{self.smallest:.3g} to {self.largest:.3g}" if self.smallest < self.largest else f"{self.largest:.3g}"
         return (
-            f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {100.0 * self.coverage:.3g} % "
+            f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {percent(self.coverage)} "
             f"of the ground; the largest of all beds is likely {self.likely_largest:.2g} m."
         )
 
@@ -156,14 +156,14 @@ class PlannedGround:
         median, most = self.slope_deg
         rough = f", with a roughness of {self.roughness_deg:g} deg rms" if self.roughness_deg else ""
         capped = (
-            f"; {100.0 * self.steeper:.0f} % lie steeper than soil holds, and their beds are tilted up to "
+            f"; {percent(self.steeper)} lie steeper than soil holds, and their beds are tilted up to "
             f"{STEEPEST_DEG:g} deg"
             if self.steeper >= 0.005
             else ""
         )
         return (
             f"First touchdowns: {middle:.2g} m/s2 in the median, {low:.2g} to {high:.2g} for nine in ten; slope "
-            f"{median:.0f} deg in the median, up to {most:.0f} deg for 95 %{rough}{capped}."
+            f"{median:.0f} deg in the median, 95th percentile {most:.0f} deg{rough}{capped}."
         )
 
 

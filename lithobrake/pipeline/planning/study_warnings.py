@@ -8,13 +8,14 @@ import numpy as np
 
 from lithobrake.pipeline.design.arrivals import smallest_width
 from lithobrake.pipeline.design.design import DrawnDesign
-from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
+from lithobrake.pipeline.first_bounces.bounce_laws import hard_ground_only, why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material import SHARED_PROPERTIES
+from lithobrake.vocabulary.percentages import percent, span
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
@@ -105,7 +106,7 @@ def _lost(soil: ExpectedSoil) -> Iterator[str]:
     share = expected_loss(soil.landings[1:], min(soil.recipe.width))
     if share > CUT_OFF:
         yield (
-            f"About {100 * share:.0f} % of the landings may leave the bed laterally at these impact angles and have no "
+            f"About {percent(share)} of the landings may leave the bed laterally at these impact angles and have no "
             "outcome: medians, quantiles, variance shares and the emulator will describe only the others, and every "
             "fraction will be uncertain by as much; widen the bed (bed.width, with bed.grain_count), or "
             "keep impact.incidence_deg steeper."
@@ -120,7 +121,7 @@ def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
     share = sum(time > study.landing.time_limit for time in times) / len(times)
     if share > CUT_OFF:
         yield (
-            f"About {100 * share:.0f} % of the touchdowns may last longer than landing.time_limit, "
+            f"About {percent(share)} of the touchdowns may last longer than landing.time_limit, "
             f"{study.landing.time_limit:g} s, and then have no outcome (longest: about {max(times):.2g} s): raise it."
         )
 
@@ -144,8 +145,8 @@ def _wide(study: Study) -> Iterator[str]:
         lower, upper = _reach(value)
         if value.distribution == "uniform" and lower > 0.0 and upper > WIDE * lower:
             yield (
-                f"{name} is uniform from {lower:g} to {upper:g}: 90 % of its values are above {upper / 10:.2g}; "
-                "use log_uniform for equal weight on each decade."
+                f"{name} is uniform from {lower:g} to {upper:g}: {percent(0.9)} of its values are above "
+                f"{upper / 10:.2g}; use log_uniform for equal weight on each decade."
             )
 
 
@@ -172,11 +173,11 @@ def _bounces(study: Study) -> Iterator[str]:
     if study.journey is not None:
         return
     if study.rest.count and why:
-        yield f"Journeys from bounce to bounce are on hard ground only: {why}."
+        yield hard_ground_only(why)
     elif study.rest.count and study.has_soil:
         low, high = UNKNOWN_JOURNEYS
         walls = study.bed.sides == "walls"
-        share = f", in studies so far {100 * low:.0f} to {100 * high:.0f} %" if walls else ""
+        share = f", in studies so far {span(low, high)}" if walls else ""
         lost, remedy = (", or leave the bed laterally", ", and widen the bed") if walls else ("", "")
         yield (
             f"Many journeys on the soil will have an unknown outcome{share}: their impacts are slower or flatter "
@@ -193,15 +194,15 @@ def _few_beds(study: Study) -> Iterator[str]:
     if study.bed_count == 1:
         yield (
             "All runs land on one bed, and another bed would change the result: no number of this study will have an "
-            f"interval; set bed.bed_count to {FEWEST_BEDS_OF_INTERVAL} or more, or leave it out."
+            f"interval; set bed.bed_count to {enough} or more, or leave it out."
         )
         return
-    wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0)
+    wider = t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0
     enough = FEWEST_BEDS_OF_INTERVAL
     remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
     yield (
         f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
-        f"{wider:.0f} % wider than {enough} would, by Student's t alone; {remedy} to {enough} or more."
+        f"{percent(wider)} wider than {enough} would, by Student's t alone; {remedy} to {enough} or more."
     )
 
 

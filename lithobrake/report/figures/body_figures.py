@@ -25,7 +25,7 @@ from lithobrake.vocabulary.arrays import Array, Integers
 from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.percentages import at_level
 
 # Impacts are counted within this share of the body's radius, or on a facet alone where facets are larger.
 REACH = 0.1
@@ -141,7 +141,7 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
     found = [SiteSheet("at rest [%]", _of_ends(lambda ends: 100.0 * ends.at_rest.value), GOOD, whole, is_marked=True)]
     if site_map.why is None:
         least = _of_ends(lambda ends: 100.0 * (ends.at_rest.lower or 0.0))
-        found += [SiteSheet(f"at rest, at least ({percent(site_map.level)} interval) [%]", least, GOOD, whole)]
+        found += [SiteSheet(f"at rest, at least ({at_level(site_map.level)}) [%]", least, GOOD, whole)]
     found += [
         SiteSheet("median time to rest [h]", _median("time_s", HOUR), BAD),
         SiteSheet("median distance from the aim point [m]", _median("distance_m", 1.0), BAD),
@@ -315,8 +315,8 @@ def agreement_figure(regions: Sequence[SiteAgreement], level: float) -> Figure:
     low = max(10.0 * math.floor(0.1 * lowest) - 5.0, -2.0)
     axes.set_xlim(low, 102.0)
     axes.set_ylim(low, 102.0)
-    axes.set_xlabel(f"at rest by the emulator, {percent(level)} interval [%]")
-    axes.set_ylabel(f"at rest by landings, {percent(level)} interval [%]")
+    axes.set_xlabel(f"at rest by the emulator, {at_level(level)} [%]")
+    axes.set_ylabel(f"at rest by landings, {at_level(level)} [%]")
     return figure
 
 

@@ -17,9 +17,12 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures.ground_map import density_colours
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
-from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label, output
-from lithobrake.report.words.numbers import number
+from lithobrake.statements.labels import PAPER_OUTPUTS, input_label, output
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.number_words import number
+from lithobrake.vocabulary.percentages import percent
+
+Counts = NDArray[np.float64]
 
 # Two sizes, so that two equal designs are both seen.
 MARKERS = (("o", 11.0), ("D", 6.0))
@@ -137,7 +140,7 @@ def sobol_figure(
         _ring(axes, name, sobol_first[name], [colours[key] for key in input_names], spread[name])
         share = scatter[name]
         if share is not None:
-            words = f"scatter: {100 * share:.0f} % of\nthe runs' variance"
+            words = f"scatter: {percent(share)} of\nthe runs' variance"
             axes.text(0, -0.27, words, ha="center", va="top", fontsize=7, color=QUIET)
     figure.legend(handles=handles, loc="lower center", ncols=columns, handlelength=1.0, handleheight=1.0)
     return figure
@@ -169,7 +172,7 @@ def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float
         axes.text(
             0.8 * np.cos(angle),
             0.8 * np.sin(angle),
-            f"{100 * share:.0f} %",
+            percent(share),
             ha="center",
             va="center",
             fontsize=8,

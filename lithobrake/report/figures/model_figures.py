@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_json
 from lithobrake.report.figures.style import INK, INTERACTIONS, LANDER, QUIET, TEST, TEST_ALL, TRAINING, figure_style
-from lithobrake.report.words.captions import BAND, band_luck, luck, unlucky
-from lithobrake.report.words.labels import PAPER_OUTPUTS, Output, input_label, output
-from lithobrake.report.words.numbers import number, q2_words
 from lithobrake.results.model_results import OutputErrors, OutputScore
+from lithobrake.statements.expansion import q2
+from lithobrake.statements.labels import PAPER_OUTPUTS, Output, input_label, output
+from lithobrake.statements.touchdowns import BAND, band_luck, luck, unlucky
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.percentages import percent
 
 LUCK = "#e3e7eb"
@@ -61,7 +62,7 @@ def _bands(axes: Axes, scores: Mapping[str, OutputScore]) -> None:
         axes.barh(row, high - low, left=low, height=0.5, color=LUCK, zorder=0)
         colour = TRAINING if low <= held <= high else TEST
         axes.plot(held, row, "o", color=colour, markersize=6, zorder=3)
-        words = f"{shown.symbol or shown.words}: {100 * held:.0f} %"
+        words = f"{shown.symbol or shown.words}: {percent(held)}"
         axes.text(0.0, row - 0.36, words, transform=axes.get_yaxis_transform(), fontsize=8.5)
     axes.axvline(BAND, color=QUIET, linewidth=0.9, zorder=1)
     axes.set_title(f"in the {percent(BAND)} band")
@@ -149,7 +150,7 @@ def _law(axes: Axes, scale: _Scale, one: Mapping[str, Any]) -> None:
     for values, look in ((one["prior"], {"color": INTERACTIONS}), (one["points"], {"color": LANDER, "alpha": 0.7})):
         counts = np.histogram(values, scale.edges)[0] / len(values)
         axes.bar(scale.edges[:-1], counts, np.diff(scale.edges), align="edge", **look)
-    axes.set_title(f"{100 * one['sd_ratio']:.0f} % of sd left", fontsize=7.5, loc="right", pad=3, color=QUIET)
+    axes.set_title(f"{percent(one['sd_ratio'])} of sd left", fontsize=7.5, loc="right", pad=3, color=QUIET)
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
 
@@ -235,7 +236,7 @@ def _write_figures(axes: Axes, shown: Output, series: Sequence[tuple[str, Output
     for words, score, colour in reversed(series):
         mape = "undefined" if score.mape is None else f"{score.mape:.3g} %"
         lines = (
-            f"{len(_errors(score))} runs: MAPE {mape}, $Q^2$ {q2_words(score)}\n"
+            f"{len(_errors(score))} runs: MAPE {mape}, $Q^2$ {q2(score)}\n"
             f"RMSE {number(score.rmse * shown.factor, 2)} at a spread of "
             f"{number(score.std * shown.factor, 2)} {shown.unit}"
         )

@@ -13,8 +13,8 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, INPUT_COLOURS, LANDER, QUIET, RULE, SITE
-from lithobrake.report.words.labels import input_label
 from lithobrake.results.questions import AimResult, AimResults, RareLimitState
+from lithobrake.statements.labels import input_label
 from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
 

@@ -13,11 +13,11 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
-from lithobrake.report.words.labels import input_label, long_part_words, output, part_words
 from lithobrake.results.run_results import VarianceParts
+from lithobrake.statements.labels import input_label, long_part_words, output, part_words
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, part, percent
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, intervals, part
 
 # In inches: a bed's row, and what stands above and below the rows.
 BED_HEIGHT, MARGINS = 0.115, 1.07
@@ -203,7 +203,7 @@ def variance_figure(shares: Mapping[str, VarianceParts | None], words: Mapping[s
     for row, record in enumerate(shares.values()):
         if record is not None:
             _intervals(whiskers, row, record)
-    _dress(whiskers, f"parts and {percent(level)} intervals", len(shares))
+    _dress(whiskers, f"parts and {intervals(level)}", len(shares))
     figure.legend(handles=handles, loc="lower center", ncols=4, handlelength=1.2, handleheight=1.0, columnspacing=1.4)
     return figure
 

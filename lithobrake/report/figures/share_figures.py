@@ -15,7 +15,7 @@ from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
-from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.percentages import at_level, percent, with_interval
 
 # Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
 LONGEST = 56
@@ -56,7 +56,7 @@ def draw_shares(axes: Axes, bars: list[ShareBar], whole: str) -> None:
             # At the very ends of the axis a clipped line would look as if there were no interval.
             axes.plot(ends, [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
         if share.lower is not None:
-            words = f"share of {whole} [%], with {percent(share.level)} interval"
+            words = f"share of {whole} [%], with {at_level(share.level)}"
         axes.text(1.025, y, bar.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
     axes.set_yticks(place, [bar.name for bar in bars])
     axes.set_xlim(0, 100)

@@ -10,10 +10,10 @@ from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figures import BARE, COLOURS, colour_ends, facet_density
 from lithobrake.report.figures.style import INK, LANDER, QUIET
 from lithobrake.report.live.views import geometry, orbit, section, still
-from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
-from lithobrake.report.words.numbers import number
+from lithobrake.results.page_data import JourneyPage, PageData, SampledPage
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
+from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd
 
 # Over the radius of the body: a pin, the marker of a lander, the ends of the axis and of the line to the partner.

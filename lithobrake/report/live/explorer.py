@@ -8,15 +8,17 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.report.cells import in_html, raised_units
 from lithobrake.report.content import LiveSection
-from lithobrake.report.page_data import DrawnPage, JourneyPage, PageData, PaperPage
-from lithobrake.report.words.captions import action, input_words, listing, thousands
-from lithobrake.report.words.drawn_captions import has_interval
-from lithobrake.report.words.labels import output
-from lithobrake.report.words.numbers import in_html, number, raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
+from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage
+from lithobrake.statements.answers import action
+from lithobrake.statements.captions import has_interval
+from lithobrake.statements.labels import input_words, output
+from lithobrake.vocabulary.number_words import listing, number, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import GROUND, IMPACT_INCIDENCE, IMPACT_SPEED
 
 TYPES = ("float64", "float32", "int32", "int16", "uint8")
@@ -124,7 +126,7 @@ def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
 
 
 def _fits(model: str, explorer: ExplorerTables) -> str:
-    return f"Bands: the middle 90 % of {explorer.tables['location'].shape[0]} fits of the {model} to"
+    return f"Bands: the middle {percent(0.9)} of {explorer.tables['location'].shape[0]} fits of the {model} to"
 
 
 def law_facts(explorer: ExplorerTables, moved: Sequence[str], of_inputs: Table) -> dict[str, Any]:

@@ -9,14 +9,15 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
+from lithobrake.report.cells import in_html
 from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.ground_map import round_length
 from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import RULE
 from lithobrake.report.live.explorer import deflated, script_data
-from lithobrake.report.page_data import PageData
-from lithobrake.report.words.numbers import in_html, number
+from lithobrake.results.page_data import PageData
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.number_words import number
 
 SCRIPTS = ("live/overlay.js", "live/view3d.js", "live/moving.js", "live/ways.js", "live/start3d.js")
 FLOOR = "#e9e4da"

@@ -10,12 +10,13 @@ from lithobrake.report.figures.option_figures import aim_figure, rare_figure
 from lithobrake.report.figures.run_figures import LandingsOfRuns, runs_figure, variance_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
-from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables import drawn_tables as tables
 from lithobrake.report.tables.dispersion_tables import time_tables
-from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_captions import rare_caption, warnings
+from lithobrake.results.page_data import DrawnPage, RunsPage
+from lithobrake.statements import captions, touchdowns
+from lithobrake.statements.answers import landing_details, landing_tiles, page_answer, page_warnings
+from lithobrake.statements.limits import options_caption, rare_caption
 from lithobrake.vocabulary.quantities import OVER_RIM
 
 if TYPE_CHECKING:
@@ -29,27 +30,27 @@ def drawn_content(data: DrawnPage) -> Content:
     """All that the page shows of the study."""
     landings, live = {plot.name: plot for plot in landing_plots(data)}, [*landing_views(data), *explorer_sections(data)]
     samples = Plot(
-        "outputs", "Distribution of the rebound", drawn_captions.samples(data), lambda: any_study.draw_outputs(data)
+        "outputs", "Distribution of the rebound", touchdowns.samples(data), lambda: any_study.draw_outputs(data)
     )
     sections = [
-        any_study.where(data),
+        any_study.where(data, landing_details(data)),
         PageSection("When", tables=time_tables(data)),
         PageSection("Why", [landings["variance"], *_options(data)], tables.why_tables(data)),
         PageSection("How sure", _sure(data), tables.sure_tables(data)),
         PageSection("Method", [landings["runs"], samples, landings["landing"]], tables.method_tables(data), live),
         any_study.appendix(data),
     ]
-    return Content(captions.answer(data), warnings(data), tables.tiles(data), any_study.first_map(data), sections)
+    return Content(page_answer(data), page_warnings(data), landing_tiles(data), any_study.first_map(data), sections)
 
 
 def _options(data: DrawnPage) -> list[Plot]:
     aim = data.results.aim
-    return [Plot("aim", "Where to aim", drawn_captions.aims(data, aim), lambda: aim_figure(aim))] if aim else []
+    return [Plot("aim", "Where to aim", options_caption(aim), lambda: aim_figure(aim))] if aim else []
 
 
 def _sure(data: DrawnPage) -> list[Plot]:
     """Whether to believe the emulator, and what is rare."""
-    words = drawn_captions.calibration(data)
+    words = touchdowns.calibration(data)
     plots = [Plot("calibration", "Calibration of the emulator", words, lambda: _calibration(data))]
     if data.rare:
         plots.append(Plot("rare", "Rare limit states", rare_caption(data.rare), lambda: rare_figure(data.rare)))
@@ -58,11 +59,10 @@ def _sure(data: DrawnPage) -> list[Plot]:
 
 def landing_plots(data: RunsPage) -> list[Plot]:
     """The figures of the landings themselves, or of the first ones of journeys."""
-    words = drawn_captions
     return [
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("runs", "Rebounds of the landings", words.runs(data), lambda: _runs(data)),
-        Plot("variance", "Sources of variance", words.variance(data), lambda: _variance(data)),
+        Plot("runs", "Rebounds of the landings", touchdowns.runs(data), lambda: _runs(data)),
+        Plot("variance", "Sources of variance", touchdowns.variance(data), lambda: _variance(data)),
     ]
 
 

@@ -8,13 +8,15 @@ from importlib.resources import files
 from pathlib import Path
 from urllib.parse import quote
 
-from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Tile
-from lithobrake.report.words.numbers import in_html
+from lithobrake.report.cells import in_html
+from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel
+from lithobrake.statements.answers import Tile
 from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS
 from lithobrake.vocabulary.study_files import CONTENTS
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15
+BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:s|min|h|deg|m|m/s|cm/s)\b)")
 # What every page can do; sections bring scripts of their own. Each is a file beside this one.
 SCRIPT = "pages/page.js"
 NO_SCRIPT = '<noscript><p class="warning">The parts below need JavaScript, which is not running here.</p></noscript>\n'
@@ -135,8 +137,8 @@ def _live(sections: Sequence[LiveSection]) -> str:
 
 
 def _unbroken(words: str) -> str:
-    """Words of the page: units with raised powers, and no line that breaks before a sign of per cent."""
-    return in_html(words).replace(" %", "&nbsp;%")
+    """Words of the page: units with raised powers, and no line that breaks between a number and its unit."""
+    return BEFORE_UNIT.sub("&nbsp;", in_html(words)).replace(" %", "&nbsp;%")
 
 
 def _tile(tile: Tile) -> str:

@@ -19,18 +19,19 @@ from lithobrake.report.figures.style import figure_style
 from lithobrake.report.live.body_view import end_views
 from lithobrake.report.live.explorer import deflated, script_data, touchdown_sections
 from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_views, landing_words
-from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
 from lithobrake.report.pages.html import own_file, page_head
 from lithobrake.report.pages.shared_plots import draw_bed
 from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables import journey_tables as tables
 from lithobrake.report.tables.dispersion_tables import site_tables
-from lithobrake.report.words import captions
-from lithobrake.report.words import journey_captions as words
-from lithobrake.report.words.drawn_captions import aims
-from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
+from lithobrake.results.page_data import JourneyPage
+from lithobrake.statements import captions
+from lithobrake.statements import journeys as words
+from lithobrake.statements.answers import journey_details, journey_page_answer, journey_tiles, journey_warnings
+from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.limits import options_caption
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 
@@ -50,7 +51,7 @@ def journey_content(data: JourneyPage) -> Content:
         *(_where(data, shown), _when(data), _why(data, found), _sure(data)),
         *(_method(data, found), _appendix(data, found)),
     ]
-    return Content(words.answer(data), words.journey_warnings(data), tables.tiles(data), first, sections)
+    return Content(journey_page_answer(data), journey_warnings(data), journey_tiles(data), first, sections)
 
 
 def _where(data: JourneyPage, shown: PlaceMap) -> PageSection:
@@ -64,7 +65,7 @@ def _where(data: JourneyPage, shown: PlaceMap) -> PageSection:
         ),
         Plot("attitude", "Side down and tilt", words.attitude(data), lambda: _draw_attitude(data)),
     ]
-    return PageSection("Where", plots, tables.place_tables(data), end_views(data), words.details(data))
+    return PageSection("Where", plots, tables.place_tables(data), end_views(data), journey_details(data))
 
 
 def _when(data: JourneyPage) -> PageSection:
@@ -89,7 +90,7 @@ def _why(data: JourneyPage, found: Mapping[str, Plot]) -> PageSection:
         first,
     ]
     if aim is not None:
-        plots.append(Plot("aim", "Delivery options", aims(data, aim), lambda: aim_figure(aim)))
+        plots.append(Plot("aim", "Delivery options", options_caption(aim), lambda: aim_figure(aim)))
     return PageSection("Why", plots, [*tables.soil_tables(data), *tables.side_tables(data)])
 
 

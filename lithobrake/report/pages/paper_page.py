@@ -9,12 +9,14 @@ from lithobrake.report.figures.expansion_figures import Design, count_figure, so
 from lithobrake.report.figures.model_figures import error_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
-from lithobrake.report.page_data import PaperPage
 from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables import paper_tables as tables
 from lithobrake.report.tables.dispersion_tables import time_tables
-from lithobrake.report.words import captions
-from lithobrake.report.words.labels import PAPER_OUTPUTS
+from lithobrake.results.page_data import PaperPage
+from lithobrake.results.telling_numbers import TellingNumbers
+from lithobrake.statements import captions, expansion
+from lithobrake.statements.answers import sample_details, sample_tiles
+from lithobrake.statements.labels import PAPER_OUTPUTS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,22 +25,23 @@ if TYPE_CHECKING:
 def paper_content(data: PaperPage) -> Content:
     """All that the page shows of the study."""
     method = [
-        Plot("counts", "Runs of the designs", captions.counts(data), lambda: _counts(data)),
+        Plot("counts", "Runs of the designs", expansion.counts(data), lambda: _counts(data)),
         Plot("landing", "A landing", captions.landing(data), lambda: any_study.draw_landing(data)),
-        Plot("outputs", "Distribution of the rebound", captions.scatter(data), lambda: any_study.draw_outputs(data)),
+        Plot("outputs", "Distribution of the rebound", expansion.samples(data), lambda: any_study.draw_outputs(data)),
     ]
-    sure = [Plot("errors", "Accuracy of the expansion", captions.errors(data), lambda: _errors(data))]
-    why = [Plot("sobol", "What matters", captions.sobol(data), lambda: _sobol(data))]
+    sure = [Plot("errors", "Accuracy of the expansion", expansion.errors(data), lambda: _errors(data))]
+    why = [Plot("sobol", "What matters", expansion.sobol(data), lambda: _sobol(data))]
     live = [*landing_views(data), *explorer_sections(data)]
     sections = [
-        any_study.where(data),
+        any_study.where(data, sample_details(data)),
         PageSection("When", tables=time_tables(data)),
         PageSection("Why", why, tables.why_tables(data)),
         PageSection("How sure", sure, tables.sure_tables(data)),
         PageSection("Method", method, tables.method_tables(data), live),
         any_study.appendix(data),
     ]
-    return Content(captions.answer(data), [], tables.tiles(data), any_study.first_map(data), sections)
+    shown = sample_tiles(data, TellingNumbers.of(data.results))
+    return Content(data.results.answer[0], [], shown, any_study.first_map(data), sections)
 
 
 def _counts(data: PaperPage) -> "Figure":

@@ -20,36 +20,18 @@ from lithobrake.report.figures.place_map import (
 )
 from lithobrake.report.figures.share_figures import ShareBar
 from lithobrake.report.live.body_view import body_views
-from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
-from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
-from lithobrake.report.words import captions
-from lithobrake.report.words.captions import thousands
-from lithobrake.report.words.labels import PAPER_OUTPUTS
+from lithobrake.report.tables.dispersion_tables import followed, parts, place_tables, site_tables
+from lithobrake.results.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.results.run_results import CountedShare
-from lithobrake.vocabulary.durations import hours
+from lithobrake.statements import captions
+from lithobrake.statements.labels import GROUND_WORDS, PAPER_OUTPUTS, SHORT_JOURNEY_WORDS, SHORT_OUTCOME_WORDS
+from lithobrake.vocabulary.number_words import time_limit
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus, JourneyStatus, TouchdownOutcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 AT_REST = FATE_COLOURS[JourneyStatus.SETTLED]
-# What may become of a landing, as short as it has to be beside a bar.
-SHORT_OUTCOME_WORDS: dict[str, str] = {
-    FlightStatus.IMPACT: "impact within {hours}",
-    FlightStatus.FLYING: "flying after {hours}",
-    FlightStatus.PARTNER: "on the partner",
-}
-# What may become of a lander after all bounces, as short as it has to be beside a bar.
-SHORT_JOURNEY_WORDS = {
-    JourneyStatus.SETTLED: "at rest",
-    JourneyStatus.LOFTED: "lifted off again",
-    JourneyStatus.OUTSIDE: "unknown outcome",
-    JourneyStatus.SLIDING: "still sliding",
-    JourneyStatus.BOUNCING: "still bouncing",
-    JourneyStatus.FLYING: "not at rest, {hours}",
-    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
-    JourneyStatus.PARTNER: "on the partner",
-}
 
 
 def first_map(data: SampledPage) -> Plot:
@@ -57,14 +39,14 @@ def first_map(data: SampledPage) -> Plot:
     return Plot("map", "Where the lander comes down", captions.impact_map(data), lambda: draw_impacts(data))
 
 
-def where(data: SampledPage) -> PageSection:
-    """Where landers come down and where they rest."""
+def where(data: SampledPage, details: list[str]) -> PageSection:
+    """Where landers come down and where they rest; details: what stands at its beginning."""
     plots = [
         Plot("outcomes", "Outcomes of the landings", captions.outcomes(data), lambda: draw_outcomes(data)),
         Plot("body", "Impacts on the body", captions.body(data), lambda: draw_body(data)),
         Plot("rest", "Where it rests", captions.rest(data), lambda: draw_rest(data)),
     ]
-    return PageSection("Where", plots, place_tables(data), body_views(data), captions.details(data))
+    return PageSection("Where", plots, place_tables(data), body_views(data), details)
 
 
 def appendix(data: PageData) -> PageSection:
@@ -95,8 +77,8 @@ def draw_outcomes(data: SampledPage) -> "Figure":
 
 def impact_shares(data: SampledPage) -> list[ShareBar]:
     """What becomes of the landings after the first bounce, as bars have it."""
-    table, limit = data.results.shares, hours(data.study["flight"]["duration"])
-    words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
+    table, limit = data.results.shares, time_limit(data.study["flight"]["duration"])
+    words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(limit=limit) for key, long in parts(data).items()}
     return [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
 
 
@@ -123,9 +105,7 @@ def whole_words(data: SampledPage) -> str:
     """What the shares of the flights are shares of."""
     if not isinstance(data, PaperPage):
         return "all landings"
-    looked_at, count = data.results.shares.sample_count, data.results.monte_carlo.sample_count
-    words = f"{thousands(looked_at)} samples"
-    return f"all {words}" if looked_at == count else f"the {words} up to the last that was flown"
+    return captions.whole(data.results.shares.sample_count, data.results.monte_carlo.sample_count)
 
 
 def draw_outputs(data: DrawnPage | PaperPage) -> "Figure | None":
@@ -145,7 +125,7 @@ def draw_body(data: SampledPage) -> "Figure":
 
 
 def draw_rest(data: SampledPage) -> "Figure | None":
-    found, limit = followed(data), hours(data.study["rest"]["duration"])
+    found, limit = followed(data), time_limit(data.study["rest"]["duration"])
     # The same statuses on both sides, so that rows and colours match.
     met = {
         key: words
@@ -157,7 +137,7 @@ def draw_rest(data: SampledPage) -> "Figure | None":
         table = found.get(ground)
         if table is None:
             continue
-        shares = [_share(data, key, words.format(hours=limit), table.outcomes[key]) for key, words in met.items()]
+        shares = [_share(data, key, words.format(limit=limit), table.outcomes[key]) for key, words in met.items()]
         places = Places("at rest", AT_REST, latitude, longitude)
         regions = Regions("those at rest", AT_REST, table.regions)
         whole = f"the {table.sample_count} followed"

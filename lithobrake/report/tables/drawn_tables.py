@@ -4,71 +4,39 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lithobrake.report.content import PageTable, Tile
-from lithobrake.report.page_data import DrawnPage, RunsPage
-from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed
+from lithobrake.report.cells import table_cell
+from lithobrake.report.content import PageTable
 from lithobrake.report.tables.limit_tables import limit_state_tables, rare_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
-from lithobrake.report.words.captions import BAND, action, input_words
-from lithobrake.report.words.drawn_captions import (
-    as_sentence,
-    drawn_things,
-    has_interval,
-    interval,
-    left_out,
-    missing_sentence,
-    outcome_label,
+from lithobrake.results.page_data import DrawnPage, RunsPage
+from lithobrake.results.run_results import SideRuns, VarianceParts
+from lithobrake.statements import notes
+from lithobrake.statements.answers import action
+from lithobrake.statements.captions import has_interval
+from lithobrake.statements.estimates import bracket, quantile
+from lithobrake.statements.labels import (
+    PART_WORDS,
+    RETURNS,
+    RUN_WORDS,
+    input_words,
+    long_part_words,
+    output,
     output_words,
 )
-from lithobrake.report.words.journey_captions import quantile_words
-from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
-from lithobrake.report.words.numbers import number, table_cell
-from lithobrake.results.run_results import SideRuns, VarianceParts
-from lithobrake.vocabulary.constants import CENTIMETRES
-from lithobrake.vocabulary.durations import hours
+from lithobrake.statements.touchdowns import BAND, drawn_things, left_out, run_outcomes
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.outcomes import RETURNS, JourneyStatus
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, interval_digits, part, percent, span, with_interval
+from lithobrake.vocabulary.number_words import as_sentence
+from lithobrake.vocabulary.percentages import (
+    QUANTILE_WORDS,
+    at_level,
+    interval_digits,
+    part,
+    percent,
+    span,
+    with_interval,
+)
 
-
-def tiles(data: DrawnPage) -> list[Tile]:
-    """The return fraction, and the most informative numbers beside it."""
-    results, returns = data.results, data.results.returns
-    digits = interval_digits(returns.share.lower, returns.share.upper)
-    alone = "of these landings, without an interval: other beds, impact points or attitudes would change this number"
-    sure = f"({interval(returns.share)})" if has_interval(data) else alone
-    share = percent(returns.share.value, digits).removesuffix(" %")
-    found = [Tile(share, "%", f"of the landings {action(data)} {sure}"), *_at_rest(data)]
-    if "speed_out" in results.spreads:
-        median = results.spreads["speed_out"].quantiles["0.5"]
-        words = "rebound speed, median of those that leave"
-        if median.bounds is not None:
-            ends = " to ".join(number(CENTIMETRES * end) for end in median.bounds)
-            words += f" ({percent(data.level)} interval {ends})"
-        found.append(Tile(number(CENTIMETRES * median.value), "cm/s", words))
-    parts = results.variance_shares["speed_out"]
-    if parts is not None:
-        value, _, unit = part(parts.soil).partition(" (")[0].partition(" %")
-        is_found = value[0].isdigit()
-        words = "at least of the variance of the rebound speed is explained by soil"
-        words = words if is_found else "effect of the soil on the variance of the rebound speed"
-        found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil)})"))
-    band = data.emulator.scores.outputs.get("speed_out")
-    if band:
-        words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"
-        found.append(Tile(percent(band.band_90).removesuffix(" %"), "%", words))
-    return found
-
-
-def _at_rest(data: DrawnPage) -> list[Tile]:
-    """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
-    found, limit = followed(data), hours(data.study["rest"]["duration"])
-    for ground, table in found.items():
-        share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED].share).partition(" %")
-        unknown = table.outcomes[JourneyStatus.OUTSIDE].share.value
-        lost = f"; {percent(unknown)} have an unknown outcome" if unknown > 0.0 else ""
-        return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
-    return []
+LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
 def why_tables(data: RunsPage) -> list[PageTable]:
@@ -100,7 +68,7 @@ def _answer(data: RunsPage) -> PageTable:
     digits = interval_digits(*(bounds or (None, None)))
     rows = [[f"return fraction: landings that {action(data)}", percent(returns.share.value, digits)]]
     if bounds is not None:
-        rows.append([f"{percent(data.level)} interval", span(*bounds)])
+        rows.append([at_level(data.level), span(*bounds)])
     if returns.next_bed is not None:
         rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns.next_bed)])
     if missing:
@@ -132,15 +100,7 @@ def _outputs(data: RunsPage) -> PageTable:
         cells = [_estimate(table.mean, shown.factor), table_cell(table.standard_deviation * shown.factor)]
         cells += [_estimate(table.quantiles[level], shown.factor) for level in QUANTILE_WORDS]
         rows.append([shown.words.replace("_", " "), shown.unit, *cells])
-    speed = data.results.spreads.get("speed_out")
-    of = "the landings that left" if speed is None else speed.of
-    note = (
-        f"Of {of}, over the input distributions and for beds, impact points and attitudes outside the study. In "
-        f"brackets {percent(data.level)} intervals."
-        if has_interval(data)
-        else f"Of {of}, without intervals: other beds, impact points or attitudes would change these numbers."
-    )
-    return PageTable("Outputs of the landings", columns, rows, note, frozenset(columns[2:]))
+    return PageTable("Outputs of the landings", columns, rows, notes.outputs(data), frozenset(columns[2:]))
 
 
 def _directions(data: RunsPage) -> PageTable:
@@ -154,19 +114,15 @@ def _directions(data: RunsPage) -> PageTable:
         ]
         for name, table in data.results.directions.items()
     ]
-    note = (
-        "Resultant length: 0 where directions cancel, 1 where all are alike. In brackets "
-        f"{percent(data.level)} intervals, which may reach beyond 180 deg."
-    )
-    return PageTable("Directions of the landings", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Directions of the landings", columns, rows, notes.directions(data), frozenset(columns[1:]))
 
 
 def _estimate(entry: Estimate | None, factor: float) -> str:
     """A number with its interval, where it has them."""
     if entry is None:
         return ""
-    value = table_cell(entry.value * factor)
-    return value if entry.bounds is None else f"{value} ({' to '.join(number(end * factor) for end in entry.bounds)})"
+    shown = entry.on_scale(lambda value: value * factor)
+    return f"{table_cell(shown.value)}{bracket(shown.lower, shown.upper)}"
 
 
 def _variance(data: RunsPage) -> PageTable:
@@ -179,27 +135,20 @@ def _variance(data: RunsPage) -> PageTable:
     heads += [f"of this, {input_words(name)} alone" for name in inputs]
     heads += [long_part_words(known[0], name) for name in names]
     rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
-    note = (
-        "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes; in "
-        f"brackets {percent(data.level)} intervals. Soil, delivery and attitude: {known[0].terms if known else ''}, so "
-        "these parts are lower bounds; other effects are in everything else. Not detected: not distinguishable from 0. "
-        "The return fraction is a mean over headings, so the effect of headings is in none of its parts."
-    )
     columns = ["part", *map(output_words, records)]
-    return PageTable("Parts of the variance", columns, rows if known else [], note, frozenset(columns[1:]))
+    return PageTable(
+        "Parts of the variance", columns, rows if known else [], notes.variance(data, known), frozenset(columns[1:])
+    )
 
 
 def _sides(data: RunsPage) -> PageTable:
     """What becomes of the landers by the side that faces the ground; of journeys the first touchdown."""
     columns = ["side toward the ground", "landings", "median rebound speed over impact speed", "return fraction"]
     rows = [
-        [one.words, str(one.landings), quantile_words(one.speed_ratio), with_interval(one.returns.share)]
+        [one.words, str(one.landings), quantile(one.speed_ratio), with_interval(one.returns.share)]
         for one in data.results.sides.values()
     ]
-    note = (
-        "The side whose axis is nearest to the normal of the ground at the impact; in brackets "
-        f"{percent(data.level)} intervals, of each side by itself."
-    )
+    note = notes.sides(data.level)
     return PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))
 
 
@@ -214,7 +163,7 @@ def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[
 def _runs(data: RunsPage) -> PageTable:
     runs = data.results.runs
     total = max(sum(runs.outcomes.values()), 1)
-    rows = [[outcome_label(word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
+    rows = [[RUN_WORDS.get(word, word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
     far = runs.farther_than_period
     aside, count = (
         ("left the surface across the edge of the bed", runs.over_rim)
@@ -222,8 +171,8 @@ def _runs(data: RunsPage) -> PageTable:
         else ("travelled more than one period of the bed in contact, over ground already disturbed", far)
     )
     rows.append([f"({aside})", str(count), percent(count / total)])
-    note = " ".join(filter(None, [f"On {runs.beds} beds.", missing_sentence(data)]))
-    return PageTable("Outcomes of the runs", ["outcome", "runs", "share"], rows, note, frozenset({"runs", "share"}))
+    columns = ["outcome", "runs", "share"]
+    return PageTable("Outcomes of the runs", columns, rows, run_outcomes(data), frozenset(columns[1:]))
 
 
 def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
@@ -241,13 +190,7 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
             ]
         )
     columns = ["output", "total effect of the soil", "standard deviation by chaos", "unit"]
-    note = (
-        f"{side.soil_pairs} runs were repeated on a second soil, {side.twins} with an impact point "
-        f"{number(1e3 * side.twin_shift)} mm away. Total effect: the share of the variance due "
-        f"to the soil at a fixed bed, impact point and attitude. In brackets {percent(data.level)} "
-        "intervals."
-    )
-    return PageTable("Side runs", columns, rows, note, frozenset(columns[1:3]))
+    return PageTable("Side runs", columns, rows, notes.side_runs(side, data.level), frozenset(columns[1:3]))
 
 
 def _emulator(data: DrawnPage) -> PageTable:
@@ -257,11 +200,8 @@ def _emulator(data: DrawnPage) -> PageTable:
     rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
     for name, score in emulator.scores.outputs.items():
         rows.append([output(name).words, percent(score.crps_skill), percent(score.band_90)])
-    note = (
-        f"{emulator.statement} Skill: relative improvement of the score (CRPS; for all outputs the energy score) "
-        f"over resampling the runs, on {left_out(data)}; 0 is no improvement."
-    )
-    return PageTable(f"The emulator on {left_out(data)}", columns, rows, note, frozenset(columns[1:]))
+    title = f"The emulator on {left_out(data.results.runs.beds)}"
+    return PageTable(title, columns, rows, notes.emulator_scores(data), frozenset(columns[1:]))
 
 
 def _inputs(data: RunsPage) -> PageTable:
@@ -276,14 +216,9 @@ def _inputs(data: RunsPage) -> PageTable:
             rows.append([*input_cells(name, law), ""])
     keys = {"impact point": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}
-    drawn = [words for words in drawn_things(data) if not (words == "impact point" and "impact.place.x" in named)]
+    drawn = [words for words in drawn_things(data.study) if not (words == "impact point" and "impact.place.x" in named)]
     rows += [[words, keys[words], "uniform", "randomised in each run", ""] for words in drawn]
-    note = (
-        "Significant input (one F test for all inputs and outputs, products included): it changes the mean of an "
-        f"output at {percent(data.level)} confidence."
-        if found
-        else "No significant input (one F test for all inputs and outputs, products included)."
-    )
+    note = notes.significant_inputs(data.level, has_any=bool(found))
     return PageTable("Sampled inputs", [*INPUT_COLUMNS, "significant"], rows, note)
 
 

@@ -4,12 +4,15 @@ from collections.abc import Mapping
 from itertools import accumulate
 from operator import mul
 
+from lithobrake.report.cells import table_cell
 from lithobrake.report.content import PageTable
-from lithobrake.report.page_data import DrawnPage
-from lithobrake.report.words.captions import input_words
-from lithobrake.report.words.numbers import fixed, number, table_cell
+from lithobrake.results.page_data import DrawnPage
 from lithobrake.results.questions import LimitStateResult, RareLimitState
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.statements import notes
+from lithobrake.statements.estimates import bracket
+from lithobrake.statements.labels import input_words
+from lithobrake.vocabulary.number_words import fixed, number
+from lithobrake.vocabulary.percentages import at_level, percent
 
 SOURCES = {"runs": "runs", "emulator": "emulator, since too few runs meet it"}
 
@@ -21,8 +24,8 @@ def limit_state_tables(data: DrawnPage) -> list[PageTable]:
 
 
 def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
-    level = percent(next(iter(states.values())).probability.level)
-    columns = ["limit state", "condition", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
+    interval = f"{at_level(next(iter(states.values())).probability.level)} [%]"
+    columns = ["limit state", "condition", "probability [%]", interval, "source", "runs that meet it"]
     rows = [
         [
             name,
@@ -37,7 +40,7 @@ def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
         ]
         for name, state in states.items()
     ]
-    note = " ".join(state.statement for state in states.values())
+    note = notes.limit_states(states)
     return PageTable("Limit states", columns, rows, note, frozenset((*columns[2:4], columns[5])))
 
 
@@ -50,7 +53,7 @@ def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:
             [
                 name if place == 0 else "",
                 input_words(key),
-                f"{fixed(one.distance.value)} ({' to '.join(map(fixed, one.distance.bounds or ()))})",
+                f"{fixed(one.distance.value)}{bracket(one.distance.lower, one.distance.upper, fixed)}",
                 fixed(one.luck),
                 table_cell(one.median),
                 table_cell(one.median_of_all),
@@ -84,8 +87,8 @@ def rare_tables(rare: RareResults) -> list[PageTable]:
 
 
 def _rare_probabilities(rare: RareResults) -> PageTable:
-    level = percent(next(iter(rare.values())).probability.level)
-    columns = ["limit state", "condition", "probability", f"{level} interval", "landings", "beds", "origins"]
+    interval = at_level(next(iter(rare.values())).probability.level)
+    columns = ["limit state", "condition", "probability", interval, "landings", "beds", "origins"]
     rows = [
         [
             name,
@@ -99,8 +102,8 @@ def _rare_probabilities(rare: RareResults) -> PageTable:
         ]
         for name, found in rare.items()
     ]
-    note = " ".join(found.statement for found in rare.values())
-    note += " Origins: the effective number of beds from which the landings that meet it come."
+    origins = "Origins: the effective number of beds from which the landings that meet it come."
+    note = f"{notes.limit_states(rare)} {origins}"
     return PageTable("Rare limit states", columns, rows, note, frozenset(columns[2:]))
 
 

@@ -3,15 +3,15 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lithobrake.report.content import PageTable, Tile
-from lithobrake.report.page_data import PageData, PaperPage
-from lithobrake.report.words.captions import action, input_words
-from lithobrake.report.words.labels import PAPER_OUTPUTS, output
-from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
+from lithobrake.report.cells import flat, show, table_cell, unit_scales
+from lithobrake.report.content import PageTable
 from lithobrake.results.model_results import Ends
+from lithobrake.results.page_data import PageData, PaperPage
 from lithobrake.results.result_files import json_values
-from lithobrake.results.telling_numbers import TellingNumbers
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.statements import notes
+from lithobrake.statements.estimates import bracket, two_digits
+from lithobrake.statements.labels import PAPER_OUTPUTS, input_words, output
+from lithobrake.vocabulary.number_words import fixed
 
 STAGE_WORDS = {
     "screening": "screening: its own runs",
@@ -27,60 +27,6 @@ DESIGN_WORDS = {
     "test_kept": "test, kept inputs vary",
     "test_all": "test, all inputs vary",
 }
-
-
-def tiles(data: PaperPage) -> list[Tile]:
-    """The return fraction, and the most telling numbers beside it."""
-    telling = TellingNumbers.of(data.results)
-    main, score, speed = telling.main_input, telling.score, telling.speed
-    low, high = main.interval
-    noise = main.noise_share
-    found = [
-        Tile(
-            percent(data.results.returns.share.value, data.digits).removesuffix(" %"),
-            "%",
-            f"of the landings {action(data)}; {_scope(data)}",
-        ),
-        _touchdowns_tile(telling),
-        Tile(
-            f"{main.total:.2f}",
-            "Sobol",
-            f"({low:.2f} to {high:.2f}, 95 %) {input_words(main.name)}: largest total index of the rebound speed in "
-            "the refined expansion, without truncation error"
-            + ("" if noise is None else f"; {percent(noise, 0)} of the variance of the runs is scatter"),
-        ),
-        Tile(
-            "none" if score.q2 is None else fixed(score.q2),
-            "Q2",
-            f"{_bounds(score.q2_interval)}rebound speed, new runs, all inputs varied: error "
-            f"{number(score.rmse, 2)} m/s at a spread of {number(score.std, 2)} m/s",
-        ),
-    ]
-    if speed:
-        words = (
-            f"rebound speed, median (5 to 95 %: {number(speed['quantile_0.05'])} to {number(speed['quantile_0.95'])})"
-        )
-        found.insert(1, Tile(number(speed["quantile_0.5"]), "m/s", words))
-    return found
-
-
-def _scope(data: PaperPage) -> str:
-    """Over what the answer holds, in the words that it begins with."""
-    where, _, _ = data.results.answer[0].partition(":")
-    return where[:1].lower() + where[1:]
-
-
-def _bounds(interval: Ends) -> str:
-    """The 95 % interval of a score in words, or nothing where it has no end."""
-    low, high = interval
-    return "" if high is None else f"({'no bound' if low is None else fixed(low)} to {fixed(high)}, 95 %) "
-
-
-def _touchdowns_tile(telling: TellingNumbers) -> Tile:
-    """How many left the surface, of those that came to an end."""
-    beside = f"; {telling.failed} more runs failed" if telling.failed else ""
-    words = f"simulated touchdowns left the surface{beside}"
-    return Tile(str(telling.left_count), f"of {telling.ended.total()}", words)
 
 
 def why_tables(data: PaperPage) -> list[PageTable]:
@@ -205,11 +151,7 @@ def _scores(data: PaperPage) -> PageTable:
                     _or_none(score.rrmse),
                 ]
             )
-    note = (
-        "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
-        "In brackets: 95 % interval, by resampling the runs. Errors at fitted runs are optimistic."
-    )
-    return PageTable("Errors of the expansions", columns, rows, note, frozenset(columns[3:]))
+    return PageTable("Errors of the expansions", columns, rows, notes.scores(), frozenset(columns[3:]))
 
 
 def _sobol(data: PaperPage) -> PageTable:
@@ -224,12 +166,7 @@ def _sobol(data: PaperPage) -> PageTable:
         ]
         for key in table.inputs
     ]
-    note = (
-        "Shares of the variance that the screening expansion explains, on the beds and at the impact points of its "
-        "runs, corrected for scatter. First: the input alone. Total: with all interactions. In brackets: 95 % "
-        "interval, by resampling the residuals of the runs."
-    )
-    return PageTable("Sobol indices", columns, rows, note, frozenset(columns[1:]))
+    return PageTable("Sobol indices", columns, rows, notes.sobol(), frozenset(columns[1:]))
 
 
 def _outputs(data: PaperPage) -> PageTable:
@@ -272,13 +209,12 @@ def _output_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
 
 def _index(index: float, interval: tuple[float, float]) -> str:
     """One Sobol index with its interval."""
-    return f"{fixed(index)} ({fixed(interval[0])} to {fixed(interval[1])})"
+    return f"{fixed(index)}{bracket(*interval, fixed)}"
 
 
 def _with_interval(words: str, interval: Ends) -> str:
     """A score in words, with its interval where there is one."""
-    low, high = interval
-    return words if low is None or high is None else f"{words} ({number(low, 2)} to {number(high, 2)})"
+    return words if None in interval else f"{words}{bracket(*interval, two_digits)}"
 
 
 def _or_none(value: float | None) -> str:

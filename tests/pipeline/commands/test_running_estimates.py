@@ -36,7 +36,7 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     first, share, speed, last = found.lines()
     assert first == "so far, from 60 landings on 6 beds:"
     assert share.startswith("  captured: 20 % (90 % interval ")
-    assert speed.startswith(f"  mean speed_out: {SPEEDS[~captured].mean():.4g} m/s (90 %: ")
+    assert speed.startswith(f"  mean rebound speed: {100 * SPEEDS[~captured].mean():.3g} cm/s (90 % interval ")
     assert "The return fraction is not known yet" in last
     content = json.loads(json.dumps(found.to_json(), allow_nan=False))
     assert content["captured"]["from"] == "60 landings on 6 beds"

@@ -12,11 +12,11 @@ from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.figures.ground_map import round_length
 from lithobrake.report.live.body_view import end_views
-from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
-from lithobrake.report.words import journey_captions as words
 from lithobrake.results import StudyResults
+from lithobrake.results.page_data import JourneyPage, page_results
 from lithobrake.results.run_results import CountedShare
+from lithobrake.statements import journeys as words
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
@@ -35,13 +35,13 @@ def tables_of(content: Content) -> dict[str, PageTable]:
     return {table.title: table for section in content.sections for table in section.tables}
 
 
-def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPage, journeys_folder: Path) -> None:
+def test_the_page_begins_with_the_share_at_rest_and_four_others(data: JourneyPage, journeys_folder: Path) -> None:
     page = write_report(journeys_folder).read_text(encoding="utf-8")
     content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST].share
-    assert content.answer.startswith(with_interval(at_rest, level=None if at_rest.lower is None else LEVEL))
-    assert len(content.tiles) == 5
-    assert content.tiles[0].words.startswith("at rest, ")
-    assert float(content.tiles[2].value) == pytest.approx(
+    assert content.answer.startswith(with_interval(at_rest, level=LEVEL))
+    assert len(content.tiles) == 4
+    assert not any(tile.words.startswith("at rest") for tile in content.tiles)
+    assert float(content.tiles[0].value) == pytest.approx(
         data.at_rest.time_s.median.value / words.time_unit(data)[0], rel=0.05
     )
     header = page[: page.index("</header>")]
@@ -83,7 +83,7 @@ def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None
     table = type(data.journeys)(data.journeys.row, columns)
     content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
     assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
-    assert [tile.value for tile in content.tiles].count("0") == 4
+    assert [tile.value for tile in content.tiles].count("0") == 3
 
 
 @pytest.mark.parametrize(("most", "length"), [(7.3, 5.0), (5.0, 5.0), (1.99, 1.0), (0.3, 0.2), (250.0, 200.0)])

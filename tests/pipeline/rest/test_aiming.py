@@ -10,13 +10,13 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.question_answers import aim_statement
 from lithobrake.pipeline.first_bounces.aiming import _distances
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
 from lithobrake.results.result_files import json_values
 from lithobrake.results.summary import DrawnResults
 from lithobrake.smallbody import didymos
+from lithobrake.statements.limits import options
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
@@ -93,11 +93,11 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
     assert best.own is not None
     assert f": {100 * best.own.value:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
-    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))
+    told = options(replace(found, best_on_soil=replace(best, not_worse=(1,))))
     first = f"2 of {allowed} delivery options within "
     assert told.startswith(first)
     assert " cannot be distinguished from the best, with 90 % confidence: impact.speed = 0.1, " in told
-    told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=())))
+    told = options(replace(found, best_on_soil=replace(best, not_worse=())))
     assert told.startswith(f"One of {allowed} delivery options within ")
     assert " is better than every other, with 90 % confidence. Most landers come to rest with impact.speed = " in told
 

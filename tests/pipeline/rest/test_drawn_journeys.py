@@ -107,7 +107,7 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
     returns = found["returns"]
     assert (returns["lower"], returns["upper"], returns["next_bed"]) == (None, None, None)
     assert words in returns["why"]
-    assert "would change this number; this study cannot show by how much" in results.headline[1]
+    assert "would change the result; this study cannot show by how much" in results.headline[1]
     assert "interval" not in results.headline[0]
     tables = found["shares"], found["shares"]["emulator"]
     assert {one["lower"] for table in tables for one in table.values() if isinstance(one, dict) and "lower" in one} == {

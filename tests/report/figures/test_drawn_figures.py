@@ -8,9 +8,9 @@ from matplotlib.figure import Figure
 from lithobrake.report.figures.model_figures import calibration_figure
 from lithobrake.report.figures.run_figures import LandingsOfRuns, pieces, runs_figure, variance_figure
 from lithobrake.report.figures.style import TEST, TRAINING, figure_style
-from lithobrake.report.words.captions import band_luck, luck
 from lithobrake.results.model_results import OutputScore
 from lithobrake.results.run_results import VarianceParts
+from lithobrake.statements.touchdowns import band_luck, luck
 from lithobrake.vocabulary.estimate import Estimate
 
 

@@ -16,12 +16,12 @@ from lithobrake.report.figures.model_figures import error_figure
 from lithobrake.report.figures.option_figures import aim_figure
 from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_outcomes, draw_rest
-from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import OutputErrors
+from lithobrake.results.page_data import DrawnPage
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
+from lithobrake.statements.labels import PAPER_OUTPUTS, input_label
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS
 

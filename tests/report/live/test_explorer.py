@@ -28,7 +28,7 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.live.explorer import packed, script_data
-from lithobrake.report.page_data import DrawnPage
+from lithobrake.results.page_data import DrawnPage
 from lithobrake.study import check_tables
 
 from ...pipeline.synthetic_lander import synthetic_tables

@@ -10,8 +10,8 @@ import pytest
 from lithobrake.report.figures.hulls import Scene
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.live.views import LARGEST, landing_arrays, landing_views
-from lithobrake.report.page_data import PaperPage
 from lithobrake.results import MovingBodies
+from lithobrake.results.page_data import PaperPage
 from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
 from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lithobrake.export.flown import body_name
-from lithobrake.report.words import captions
+from lithobrake.statements import captions
 
 
 @pytest.mark.parametrize(
@@ -20,4 +20,4 @@ from lithobrake.report.words import captions
 )
 def test_a_mesh_has_the_name_that_the_study_gives_it(site: dict[str, Any], on_page: str, exported: str) -> None:
     study: Any = SimpleNamespace(study={"site": site})
-    assert (captions.body_name(study), body_name(study)) == (on_page, exported)
+    assert (captions.body_name(study.study), body_name(study)) == (on_page, exported)

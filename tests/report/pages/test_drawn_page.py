@@ -14,16 +14,15 @@ import pytest
 
 from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
-from lithobrake.report.page_data import DrawnPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
-from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables.dispersion_tables import parts
 from lithobrake.report.tables.limit_tables import rare_tables
-from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_captions import warnings
 from lithobrake.results import open_study
 from lithobrake.results.model_results import EmulatorScores, JointScore, OutputScore
+from lithobrake.results.page_data import DrawnPage, page_results
 from lithobrake.results.run_results import OutputDirection, VarianceParts
+from lithobrake.statements import captions, touchdowns
+from lithobrake.statements.answers import landing_details, landing_tiles, page_answer, page_warnings
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.percentages import with_interval
 
@@ -55,7 +54,7 @@ def percents(words: str) -> list[float]:
 
 def test_the_product_of_an_archive_stands_beside_the_body(drawn: DrawnPage) -> None:
     product = "urn:nasa:pds:rocks:data:rock::3.0"
-    assert product in captions.place_words(changed(drawn, site={"product_id": product}))[0]
+    assert product in captions.place_words(changed(drawn, site={"product_id": product}))
 
 
 def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: Path) -> None:
@@ -75,32 +74,50 @@ def test_the_sections_stand_in_the_order_of_their_questions(drawn_page: str) -> 
 
 
 def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None:
-    returns, words = drawn.results.returns, captions.answer(drawn)
+    returns, words = drawn.results.returns, page_answer(drawn)
     assert words.startswith(with_interval(returns.share, level=drawn.level))
     assert words.count(".") == words.rstrip(".").count(".") + 1
-    (details,) = captions.details(drawn)
-    assert all(sentence in details for sentence in drawn.results.answer)
+    assert words.partition(" of the landings ")[2].rstrip(".") in drawn.results.answer[0]
 
 
-def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
-    tile, returns = drawn_tables.tiles(drawn)[0], drawn.results.returns
-    assert float(tile.value) == round(100 * returns.share.value)
-    assert f"{100 * returns.share.lower:.0f}-{100 * returns.share.upper:.0f} %" in tile.words
-    value = returns.share.value
-    narrow = {"share": replace(returns.share, lower=value - 0.004, upper=value + 0.004)}
-    assert drawn_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share.value:.1f}"
+def test_the_answer_stands_once_on_the_page(drawn: DrawnPage) -> None:
+    share = with_interval(drawn.results.returns.share).partition(" ")[2]
+    content = drawn_content(drawn)
+    assert share.removeprefix("% (") in content.answer
+    said = [tile.words for tile in content.tiles] + [content.first.sentence if content.first else ""]
+    said += [words for section in content.sections for words in section.said]
+    said += [plot.sentence for section in content.sections for plot in section.plots]
+    assert not [words for words in said if share.removeprefix("% (") in words]
+    (details,) = landing_details(drawn)
+    assert f"The fractions are from {drawn.results.returns.from_} and hold over the input distributions" in details
+
+
+def test_the_share_has_its_interval_in_the_sentence(drawn: DrawnPage) -> None:
+    words, share = page_answer(drawn), drawn.results.returns.share
+    assert percents(words)[:2] == [round(100 * share.value), 90.0]
+    assert f"{100 * share.lower:.0f}-{100 * share.upper:.0f} %" in words
+    narrow = {"share": replace(share, lower=share.value - 0.004, upper=share.value + 0.004)}
+    assert page_answer(changed(drawn, returns=narrow)).startswith(f"{100 * share.value:.1f} %")
+
+
+def test_tiles_have_the_numbers_behind_the_sentence(drawn: DrawnPage) -> None:
+    rests, speed, *_ = landing_tiles(drawn)
+    median = drawn.results.spreads["speed_out"].quantiles["0.5"]
+    assert (rests.unit, speed.unit) == ("%", "cm/s")
+    assert float(speed.value) == pytest.approx(100 * median.value, rel=0.005)
+    assert f"90 % interval {100 * median.lower:.3g} to {100 * median.upper:.3g}" in speed.words
 
 
 def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) -> None:
     gravity = drawn.results.site.gravity_warning
-    lost, last = warnings(changed(drawn, emulator={"warning": None}))
+    lost, last = page_warnings(changed(drawn, emulator={"warning": None}))
     assert lost[:-1] == drawn.results.runs.warning
     assert gravity is not None
     assert last[1:-1] in gravity
-    few = warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
+    few = page_warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
     assert [words[:20] for words in few[1:3]] == ["The study has only 6", "The emulator is off."]
     calm = changed(drawn, site={"gravity_warning": None}, emulator={"warning": None}, runs={"warning": None})
-    assert warnings(calm) == []
+    assert page_warnings(calm) == []
 
 
 def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnPage, drawn_page: str) -> None:
@@ -109,20 +126,19 @@ def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnP
     assert first[1][:-1].replace("&nbsp;", " ") == drawn.results.runs.warning
 
 
-def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
+def test_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
     returns = drawn.results.returns
     share, held = (
         f"{100 * returns.share.value:.0f} %",
         f"{100 * returns.share.lower:.0f}-{100 * returns.share.upper:.0f} %",
     )
-    tile = drawn_tables.tiles(drawn)[0]
     rows = table_of(drawn, "The answer").rows
     outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
-    assert f"{tile.value} %" == rows[0][1] == share
+    assert rows[0][1] == share
     assert rows[1][1] == held
     (one,) = [cells for words, cells in outcomes.items() if words.startswith("return fraction")]
     assert one == [f"{share} ({held})", f"{100 * returns.emulator:.0f} %"]
-    assert share in captions.answer(drawn)
+    assert share in page_answer(drawn)
 
 
 def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: DrawnPage) -> None:
@@ -139,11 +155,11 @@ def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(drawn: Draw
     low, high = drawn.results.returns.next_bed or (0.0, 0.0)
     row = next(row for row in table_of(drawn, "The answer").rows if "new bed" in row[0])
     assert row == ["prediction interval for a new bed of 0.55 x 0.55 m", f"{100 * low:.0f}-{100 * high:.0f} %"]
-    assert "new bed" not in captions.answer(drawn)
+    assert "new bed" not in page_answer(drawn)
 
 
 def test_the_caption_of_what_decides_has_every_part_with_its_interval(drawn: DrawnPage) -> None:
-    words = drawn_captions.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
+    words = touchdowns.variance(changed(drawn, variance_shares={"speed_out": record(), "spin_out": record()}))
     for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
         assert shown in words
     assert "friction of the grains" in words
@@ -198,19 +214,19 @@ def record() -> VarianceParts:
 def test_the_caption_of_the_calibration_counts_what_luck_does_not_explain(drawn: DrawnPage) -> None:
     narrow = OutputScore(0.1, 0.6, (60, 10, 10, 10, 10, 10, 10, 10, 10, 60))
     scores = EmulatorScores(JointScore(0.1), {"speed_out": narrow})
-    words = drawn_captions.calibration(changed(drawn, emulator={"scores": scores}))
+    words = touchdowns.calibration(changed(drawn, emulator={"scores": scores}))
     assert percents(words)[:2] == [90.0, 60.0]
     assert "10 of 10 bars" in words
     assert words.endswith(drawn.results.emulator.statement)
 
 
 def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPage) -> None:
-    words, runs = drawn_captions.runs(drawn), drawn.results.runs
+    words, runs = touchdowns.runs(drawn), drawn.results.runs
     for number in (runs.count, runs.beds, *runs.outcomes.values()):
         assert re.search(rf"\b{number}\b", words)
     median = drawn.results.spreads["speed_out"].quantiles["0.5"]
     for end in (median.value, *median.bounds):
-        assert f"{end:.3g}" in words
+        assert f"{100 * end:.3g}" in words
 
 
 def test_every_output_of_the_runs_has_its_numbers_and_their_intervals(drawn: DrawnPage) -> None:

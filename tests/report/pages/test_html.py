@@ -5,9 +5,11 @@ from html.parser import HTMLParser
 
 import pytest
 
+from lithobrake.report.cells import flat, in_html, raised_units, show, unit_scales
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot, Tile
 from lithobrake.report.pages.html import LONG, page
-from lithobrake.report.words.numbers import area, flat, number, raised_units, show, unit_scales
+from lithobrake.statements.estimates import area
+from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
 
@@ -128,7 +130,7 @@ def test_numbers_in_words(value: float, text: str) -> None:
 
 def test_areas_have_two_digits_and_do_not_break() -> None:
     gap = "\N{NO-BREAK SPACE}"
-    assert [area(value) for value in (31637.5, 456.4, 20.46, 3.14)] == [
+    assert [in_html(area(value)) for value in (31637.5, 456.4, 20.46, 3.14)] == [
         f"32{gap}000{gap}m²", f"460{gap}m²", f"20{gap}m²", f"3.1{gap}m²",
     ]  # fmt: skip
 

@@ -1,0 +1,1 @@
+"""Every sentence about the results of a study that has a number in it; summary, page and command line take it here."""

@@ -1,0 +1,182 @@
+"""The polynomial chaos expansion of the first touchdown in sentences: its designs, indices, accuracy and samples."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from lithobrake.statements.estimates import bracket
+from lithobrake.statements.labels import PAPER_OUTPUTS, input_words, output
+from lithobrake.statements.touchdowns import (
+    CENTIMETRES,
+    leaving_samples,
+    none_leaves,
+    rebound_speed,
+    touchdown_outcomes,
+)
+from lithobrake.vocabulary.number_words import as_sentence, fixed, listing, number, thousands
+from lithobrake.vocabulary.percentages import at_level, intervals, percent
+
+if TYPE_CHECKING:
+    from lithobrake.results.model_results import DesignCounts, ExpansionResults, OutputErrors
+    from lithobrake.results.page_data import PaperPage
+    from lithobrake.results.summary import PaperResults
+    from lithobrake.results.telling_numbers import MainInput
+
+# Of the intervals of indices and scores, which are those of [Landings-PCE].
+LEVEL = 0.95
+QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
+POINT_WORDS = {
+    "smolyak": "on the Smolyak grid",
+    "sobol_sequence": "of a Sobol sequence",
+    "latin_hypercube": "of a Latin hypercube",
+    "fekete": "at approximate Fekete points",
+}
+
+
+def telling_sentences(results: "PaperResults", *, has_scatter: bool) -> list[str]:
+    """The most informative numbers behind the answer; has_scatter: whether samples have the scatter of the runs."""
+    from lithobrake.results.telling_numbers import TellingNumbers
+
+    telling = TellingNumbers.of(results)
+    ended = dict(telling.ended) | ({"failed": telling.failed} if telling.failed else {})
+    said = [touchdown_outcomes(ended, telling.ended.total(), "touchdowns")]
+    if telling.speed:
+        of = "with run-to-run scatter" if has_scatter else "by the expansion alone, without scatter"
+        shown = {level: telling.speed[level] for level in QUANTILES}
+        said.append(rebound_speed(f"the samples that leave the surface, {of}", shown))
+    return [*said, _largest_index(telling.main_input), _accuracy(telling.score)]
+
+
+def _largest_index(main: "MainInput") -> str:
+    """The dominant input of the rebound speed, with its interval, of what it is a share, and what rivals it."""
+    if main.total <= 0.0:
+        return "No input explains the rebound speed significantly."
+    low, high = main.interval
+    rivals = f", not distinguishable from {', '.join(main.equals)}" if main.equals else ""
+    return (
+        f"Largest total Sobol index of the rebound speed: {main.name}, {fixed(main.total)} ({at_level(LEVEL)} "
+        f"{fixed(low)} to {fixed(high)}, without truncation error){rivals}, as a share of the variance that the "
+        f"refined expansion of degree {main.degree} explains{noise(main.noise_share)}."
+    )
+
+
+def noise(share: float | None) -> str:
+    """Which part of the variance of the runs nothing explains; empty where that is not known."""
+    return "" if share is None else f"; {percent(share)} of the variance of the runs is scatter that no input explains"
+
+
+def _accuracy(score: "OutputErrors") -> str:
+    """How well the expansion predicts fresh runs."""
+    error, begin = f"{error_words(score)}, {_mape(score.mape)}", "On fresh runs with all inputs varying the"
+    if score.q2 is None:
+        return f"{begin} rebound speed does not vary: {error}."
+    words = (
+        f"explains {percent(score.q2)} of the variance of the rebound speed"
+        if score.q2 > 0.0
+        else "predicts the rebound speed no better than the mean of the runs"
+    )
+    return f"{begin} expansion {words}: Q2 = {q2(score, level=LEVEL)}, {error}."
+
+
+def error_words(score: "OutputErrors") -> str:
+    """The error of the rebound speed on new runs."""
+    error, spread = (number(CENTIMETRES * one, 2) for one in (score.rmse, score.std))
+    return f"error {error} cm/s at a spread of {spread} cm/s"
+
+
+def q2(errors: "OutputErrors", level: float | None = None) -> str:
+    """Q2 with its interval: "0.93 (0.80 to 0.97)"; level: where it is to be named."""
+    if errors.q2 is None:
+        return "undefined"
+    low, high = errors.q2_interval
+    has_interval = low is not None or high is not None
+    return f"{fixed(errors.q2)}{bracket(low, 1.0 if has_interval and high is None else high, fixed, level=level)}"
+
+
+def _mape(mape: float | None) -> str:
+    return f"MAPE {'undefined' if mape is None else f'{mape:.2g} %'}"
+
+
+def counts(data: "PaperPage") -> str:
+    """The figure of what the designs cost."""
+    table, design, designs = data.results.node_counts, data.study["design"], data.results.designs
+    level, inputs = design["screening_level"], len(data.results.screening.inputs)
+    grid = design["points"] == "smolyak"
+    place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
+    words = (
+        f"The screening of {inputs} inputs {place} takes {_runs(designs['screening'])} {POINT_WORDS[design['points']]}"
+    )
+    if grid and inputs in table.input_counts and level in table.levels:
+        full = table.tensor[table.input_counts.index(inputs)][table.levels.index(level)]
+        words += f", against {thousands(full)} on the full tensor grid"
+    place = f"at level {design['refined_level']}" if grid else f"of degree {design['refined_degree']}"
+    kept = len(data.results.kept_inputs)
+    refined = "the kept input" if kept == 1 else f"the {kept} kept inputs"
+    return f"{words}; the refined design in {refined} {place} takes {_runs(designs['refined'])}."
+
+
+def _runs(design: "DesignCounts") -> str:
+    """How many runs a design takes, and how they come about."""
+    count, points = design.replicate_count, design.point_count
+    return f"{design.run_count} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
+
+
+def sobol(data: "PaperPage") -> str:
+    """The figure of the inputs that matter."""
+    screening = data.results.screening
+    leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
+    shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
+    scatter = [f"{percent(share)} for the {output(name).words}" for name, share in shares.items() if share is not None]
+    rest = f"; scatter that no input explains is {listing(scatter)} of the variance of the runs" if scatter else ""
+    kept = listing([input_words(name) for name in data.results.kept_inputs])
+    share = min(data.results.kept_share[name] for name in data.study["design"]["kept_outputs"])
+    return as_sentence(
+        f"{listing(leaders)}{rest}; the second step keeps {kept}, which together account for at least "
+        f"{percent(share)} of the explained variance of each output that the selection uses"
+    )
+
+
+def _leader(name: str, screening: "ExpansionResults") -> str:
+    """The input that an output varies with most, if any was found, with its interval."""
+    first = screening.sobol_first[name]
+    main = max(first, key=lambda key: first[key])
+    if first[main] <= 0.0:
+        return f"no input explains the {output(name).words} significantly"
+    low, high = (percent(end) for end in screening.sobol_first_interval[name][main])
+    return (
+        f"the {output(name).words} depends most on the {input_words(main)} ({percent(first[main])}, {low} to {high}, "
+        "of its explained variance)"
+    )
+
+
+def errors(data: "PaperPage") -> str:
+    """The figure of how good the expansion is."""
+    kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
+    return (
+        f"On new runs in which the kept inputs vary the expansion reaches {kept}; when all inputs vary, {every} "
+        f"(in brackets {intervals(LEVEL)}; at a Q2 of 0 or less it explains nothing). Dashed lines: mean errors. A "
+        "small error with a small Q2 only means that the output hardly varies."
+    )
+
+
+def _explained(table: "Mapping[str, OutputErrors]") -> str:
+    """Explained share of the variance and mean error of the outputs of [Landings-PCE] on one set of runs."""
+    parts = []
+    for name in PAPER_OUTPUTS:
+        words = "an undefined Q2" if table[name].q2 is None else f"Q2 = {q2(table[name])}"
+        parts.append(f"{words} for the {output(name).words} ({_mape(table[name].mape)})")
+    return listing(parts)
+
+
+def samples(data: "PaperPage") -> str:
+    """The figure of what may come out."""
+    table = data.results.monte_carlo
+    total, leaving = table.sample_count, table.leaving_count
+    if not leaving:
+        return none_leaves(total)
+    speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
+    low, high = (number(CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
+    least, most = (number(output("elevation_out").factor * angle[level]) for level in (QUANTILES[0], QUANTILES[2]))
+    return (
+        f"{leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at {low} to "
+        f"{high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
+    )

@@ -1,0 +1,217 @@
+"""Landers at rest, in sentences: when, where and how they lie, what they see, and the captions of their figures."""
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from lithobrake.statements.estimates import area, extent, half_width, quantile, smallest_region, two_digits
+from lithobrake.statements.touchdowns import detected_parts, floor_words, variance, variance_parts
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import HOUR, MINUTE, as_sentence, out_of
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, intervals, percent, with_interval
+from lithobrake.vocabulary.quantities import SKY_WORDS
+
+if TYPE_CHECKING:
+    from lithobrake.results.journey_results import EmulatedJourneys, JourneyRest, SkyResults, SoilResults
+    from lithobrake.results.page_data import JourneyPage
+    from lithobrake.results.run_results import CountedShare
+
+# What the ends of journeys vary in, in a sentence and as rows of a figure.
+END_SIGNS = {
+    "at_rest": "whether a lander comes to rest",
+    "time_s": "the time to rest",
+    "distance_m": "the distance from the aim point",
+}  # fmt: skip
+END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m": "distance from\nthe aim point"}
+
+
+def times_and_distances(rest: "JourneyRest") -> list[str]:
+    """When those at rest came to rest, and how far away; nothing where none did."""
+    if not (rest.time_s.median.is_known and rest.distance_m.median.is_known):
+        return []
+    return [
+        f"Time from the first touchdown to rest: median {_time(rest.time_s.median)}, 95 % within "
+        f"{_time(rest.time_s.q95)}. Contacts: median {quantile(rest.contacts.median)}, 95 % at most "
+        f"{quantile(rest.contacts.q95)}. Distance from the aim point: median {quantile(rest.distance_m.median)} m, "
+        f"95 % within {quantile(rest.distance_m.q95)} m."
+    ]
+
+
+def _time(one: Estimate) -> str:
+    """A time with its interval, in minutes below two hours."""
+    size, unit = (MINUTE, "min") if one.value < 2.0 * HOUR else (HOUR, "h")
+    return f"{quantile(one, size)} {unit}"
+
+
+def rest_sentences(rest: "JourneyRest") -> list[str]:
+    """When and where those at rest came to rest, and on which side they lie."""
+    said = times_and_distances(rest)
+    if said and rest.regions:
+        half, most = rest.regions[0], rest.regions[-1]
+        large = f"the one that holds {percent(most.share)} covers {area(most.area_m2)} and is {extent(most)}"
+        said.append(as_sentence(f"{smallest_region(half, 'them')}; {large}"))
+    if said and rest.faces:
+        said.append(f"Side down: {sides_down(rest.faces)}.")
+    return said
+
+
+def sides_down(faces: "Mapping[str, CountedShare]") -> str:
+    """The sides that are down with their shares, the most frequent first."""
+    return ", ".join(f"{name} {with_interval(one.share)}" for name, one in by_share(faces))
+
+
+def by_share(faces: "Mapping[str, CountedShare]") -> "list[tuple[str, CountedShare]]":
+    """Sides by how often they are down, the most frequent first."""
+    return sorted(faces.items(), key=lambda one: -one[1].share.value)
+
+
+def sky(found: "Mapping[str, SkyResults]") -> list[str]:
+    """For which part of the time those at rest see the Sun, Earth and the orbiter."""
+    listed = [
+        f"{SKY_WORDS[name]} {quantile(one.day_fraction, 0.01)} % of the time"
+        + (f" (never by {with_interval(one.never.share)})" if one.never.count else "")
+        for name, one in found.items()
+    ]
+    return [f"Visible from the place of rest, median: {', '.join(listed)}."] if listed else []
+
+
+def soils(found: "Mapping[str, SoilResults]") -> list[str]:
+    """How many touchdowns there are on the soil of each region, and how many of them end at rest."""
+    listed = [
+        f"{name} ({percent(one.area_share)} of the surface) {one.touchdowns} touchdowns"
+        + (f", {with_interval(one.rests.share)} of which come to rest" if one.rests else "")
+        for name, one in found.items()
+    ]
+    return [f"By soil: {'; '.join(listed)}."] if listed else []
+
+
+def emulated_ends(ends: "Mapping[str, CountedShare]", agrees: bool | None, unknown: float, level: float = LEVEL) -> str:
+    """Whether the emulator of all touchdowns and the landings agree."""
+    rests = ends[JourneyEnd.AT_REST].share
+    said = f"The emulator of all touchdowns gives {with_interval(rests)} at rest"
+    more = f" and {percent(unknown)} with an unknown outcome" if unknown >= 0.005 else ""
+    verdict = "" if agrees is None else f": emulator and landings {agreement(agrees)} within their {intervals(level)}"
+    return f"{said}{more}{verdict}."
+
+
+def agreement(agrees: bool) -> str:
+    """Whether two agree."""
+    return "agree" if agrees else "do not agree"
+
+
+def emulator(found: "EmulatedJourneys | None") -> list[str]:
+    """Whether the emulator of the touchdowns agrees with the landings, and what it does for the shares."""
+    if found is None or not found.statement:
+        return []
+    control = found.control
+    if control is None or not control.is_used:
+        return [found.statement]
+    return [
+        found.statement,
+        f"As a control variate it narrows the interval of the fraction at rest from {half_width(control.half_width)} "
+        f"to {half_width(control.half_width_with)}, so the fraction may differ slightly from the count.",
+    ]
+
+
+def journey_ends_so_far(counts: Mapping[str, int], total: int, touchdowns: int, *, is_final: bool) -> str:
+    """How many journeys have ended, and how, for a terminal."""
+    found = [f"{counts[end]} {end.label}" for end in JourneyEnd if counts[end]]
+    ended, more = out_of(sum(counts.values()), total), "" if is_final else " so far"
+    return f"journeys: {ended} ended{more}{': ' if found else ''}{', '.join(found)}; {touchdowns} touchdowns"
+
+
+def has_places(data: "JourneyPage") -> bool:
+    """Whether any lander ended on the ground of the body."""
+    return any(data.ends[end].count for end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY))
+
+
+def rest_map(data: "JourneyPage") -> str:
+    """The map about the aim point."""
+    if not has_places(data):
+        return ""
+    rest, said = data.at_rest, []
+    if rest.regions:
+        shares = " and ".join(percent(one.share) for one in rest.regions)
+        said.append(f"Lines: the smallest regions that hold {shares} of the landers at rest.")
+    elif rest.why_no_regions:
+        said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
+    if data.results.delivery is not None and data.results.delivery.regions:
+        said.append("Blue: the same for the first impacts.")
+    if len(data.results.soils) > 1:
+        said.append("Dotted: boundaries of soil regions, to within a degree.")
+    return " ".join(said) or "Each dot is a lander."
+
+
+def outcomes(data: "JourneyPage", *, has_map: bool) -> str:
+    """The shares of the ends; has_map: whether the whole body stands beside them."""
+    if not has_places(data):
+        return ""
+    said = f"Shares of {len(data.journeys['end'])} journeys"
+    said += f" with their {intervals()}." if data.ends[JourneyEnd.AT_REST].share.lower is not None else "."
+    if not has_map:
+        return said
+    return (
+        f"{said} Map: the whole body in equal areas, on a sphere of the radius at the aim point; landers that "
+        "escaped, landed on the partner or failed are not on it."
+    )
+
+
+def times(data: "JourneyPage") -> str:
+    """The figure of times and distances."""
+    said = times_and_distances(data.at_rest)
+    more = (
+        f"Dots: median and 95th percentile; bars: their {intervals()} over beds and impact points, dotted where a "
+        "bound is unknown."
+    )
+    return " ".join([*said, more]) if said else ""
+
+
+def counts(data: "JourneyPage") -> str:
+    """The figure of touchdowns and contacts."""
+    total, journeys = data.journeys["touchdowns"].sum(), len(data.journeys["end"])
+    return (
+        f"{journeys} journeys with {total:.0f} touchdowns, {two_digits(total / journeys)} each. A touchdown is one "
+        "simulated landing and may have several contacts with hops between them."
+    )
+
+
+def attitude(data: "JourneyPage") -> str:
+    """The figure of sides and tilts."""
+    tilt = data.at_rest.tilt_deg
+    if not data.at_rest.faces or tilt is None or not tilt.median.is_known:
+        return ""
+    name, most = by_share(data.at_rest.faces)[0]
+    return (
+        f"The side {name} is down most often, for {with_interval(most.share)} of the landers at rest. Tilt of its "
+        f"axis from the plumb line: median {quantile(tilt.median)} deg, 95th percentile {quantile(tilt.q95)} deg. "
+        f"Brackets and bars: {intervals()}."
+    )
+
+
+def end_variance(data: "JourneyPage") -> str:
+    """The figure of what decides the ends; empty where the journeys cannot tell."""
+    known = {name: one for name, one in data.results.end_variance_shares.items() if one}
+    said = [variance_parts(f"{END_SIGNS[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
+    if said:
+        said.append(
+            "Delivery: position and velocity of the first impact, without attitude. Everything else includes all later "
+            "touchdowns."
+        )
+        said.append(floor_words(next(iter(known.values()))))
+    return " ".join(said)
+
+
+def first_variance(data: "JourneyPage") -> str:
+    """The figure of the parts of the variance; empty where it has none."""
+    if not any(data.results.variance_shares.values()):
+        return ""
+    correlations: Iterable[tuple[str, str, float]] = (data.study.get("delivery") or {}).get("correlations") or ()
+    pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
+    more = f" The parts assume independent inputs, but {pairs} are correlated: read their parts together."
+    return variance(data) + (more if pairs else "")
+
+
+def time_unit(data: "JourneyPage") -> tuple[float, str]:
+    """The unit of a column of times to rest [s], and its sign: minutes where nearly all are below five hours."""
+    late = data.at_rest.time_s.q95
+    return (HOUR, "h") if late.is_known and late.value >= 5.0 * HOUR else (MINUTE, "min")

@@ -1,0 +1,147 @@
+"""What a study asks beside its answer, in sentences: limit states, rare ones among them, and delivery options."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.statements.ends import unknown_outcome
+from lithobrake.statements.estimates import bracket, two_digits
+from lithobrake.vocabulary.number_words import counted, duration, number, thousands
+from lithobrake.vocabulary.percentages import at_level, intervals, percent, rare_percent, with_interval
+
+if TYPE_CHECKING:
+    from lithobrake.results.questions import AimResults, LimitStateResult, RareLimitState
+
+# Of those at rest, the share within the distance and time that are named.
+FAR = 0.95
+# Options up to so many are named.
+NAMED = 3
+# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
+FEW_ORIGINS = 3.0
+
+
+def limit_state(name: str, found: "LimitStateResult") -> str:
+    """The probability of a limit state: its interval, where it comes from, and correlated inputs."""
+    begin = f"{name} ({found.condition}): {rare_percent(found.probability.value)} of the landings"
+    one = found.probability
+    if one.bounds is None:
+        return f"{begin}, from {found.runs.from_}; no interval: {found.why}"
+    said = f"{begin}{bracket(one.lower, one.upper, rare_percent, level=one.level)}"
+    if found.source == "emulator":
+        said += f", from the emulator, since {found.failing_runs:.3g} landings that meet it are too few for an estimate"
+        if one.value < found.tail_limit:
+            said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
+    else:
+        said += f", from {found.runs.from_}"
+    made = [key for key, one in found.inputs.items() if one.found]
+    made.sort(key=lambda key: -found.inputs[key].distance.value)
+    none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
+    return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
+
+
+def rare_limit_state(name: str, found: Mapping[str, Any]) -> str:
+    """The probability of a rare limit state; found: the content of its file."""
+    said = f"no landing met it down to the last level, a probability of {number(found['rarest'], 1)}"
+    if found["reached"]:
+        interval = bracket(found["lower"], found["upper"], two_digits, level=found["level"])
+        said = f"probability {two_digits(found['probability'])}{interval}"
+    unknown = found["without_known_end"]
+    lost = f"; {unknown} with unknown outcome count as not meeting it" if unknown else ""
+    landings = f"{found['landings']} landings in {counted(found['levels'], 'level')} on {found['beds']} beds"
+    why = f" {found['why']}" if found["why"] else ""
+    warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
+
+
+def few_origins(origins: float, bed_count: int) -> str | None:
+    """That equal runs of the command would scatter much; None where they would not."""
+    if origins >= FEW_ORIGINS:
+        return None
+    what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")
+    return (
+        f"The landings that meet it descend from few {what} (effective number {origins:.1f}), so another seed may give "
+        f"a very different probability: raise {more}."
+    )
+
+
+def rare_warnings(rare: "Mapping[str, RareLimitState]") -> list[str]:
+    """Where the same with another seed may give quite another probability."""
+    return [f"{name}: {found.warning}" for name, found in rare.items() if found.warning]
+
+
+def rare_caption(rare: "Mapping[str, RareLimitState]") -> str:
+    """The figure of the levels."""
+    named = ", ".join(f"{name} ({found.condition})" for name, found in rare.items())
+    level = next(iter(rare.values())).probability.level
+    return (
+        f"Subset simulation with landings of {named}: each point is a level, and the next level starts "
+        f"from the landings beyond its threshold; at 0 the limit state is reached. Bars are {intervals(level)}."
+    )
+
+
+def options(table: "AimResults") -> str:
+    """The delivery options that cannot be distinguished from the best, the best's own share, and the best on hard
+    ground."""
+    aims, within = table.aims, f" within {', '.join(table.within)}" if table.within else ""
+    count = sum(aim.soil.allowed for aim in aims)
+    best, hard = table.best_on_soil, table.best_on_hard
+    if best is None:
+        return (
+            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
+        )
+    said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
+    most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
+    said.append(f"{most} come to rest with {option(table, best.aim)}: {_of_best(table)}")
+    on_hard = None if hard is None else aims[hard.aim].hard
+    if hard is not None and on_hard is not None:
+        where = "the same option" if best.aim == hard.aim else option(table, hard.aim)
+        said.append(f"On hard ground the best is {where}: {with_interval(on_hard.settled)}")
+    return ". ".join(said) + "."
+
+
+def _of_best(table: "AimResults") -> str:
+    """What becomes of the landers with the best option."""
+    best = table.best_on_soil
+    assert best is not None
+    part = table.aims[best.aim].soil
+    # The largest of many shares is too high by its selection, so the sentence has the share without it.
+    said = with_interval(best.own or part.settled, level=table.level)
+    if part.distance_p95 is not None and part.time_p95 is not None:
+        far, late = part.distance_p95.value, part.time_p95.value
+        said += f", {percent(FAR)} of these within {number(far)} m and {duration(late)}"
+    if part.missing >= 0.005:
+        said += f"; {unknown_outcome(part.missing)}{_rivals(table, best.aim)}"
+    return said
+
+
+def _alike(table: "AimResults", places: Sequence[int], count: int, within: str) -> str:
+    """Which of the allowed options cannot be distinguished from the best, it among them."""
+    surely = f"with {percent(table.level)} confidence"
+    if count == 1:
+        return f"Of {len(table.aims)} delivery options one is allowed{within}"
+    if len(places) == 1:
+        return f"One of {count} delivery options{within} is better than every other, {surely}"
+    named = f": {'; '.join(option(table, place) for place in sorted(places))}" if len(places) <= NAMED else ""
+    return f"{len(places)} of {count} delivery options{within} cannot be distinguished from the best, {surely}{named}"
+
+
+def _rivals(table: "AimResults", best: int) -> str:
+    """How many other options would be better if all landers of unknown outcome were at rest there."""
+    least = table.aims[best].soil.settled.value
+    count = sum(one.soil.settled.value + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
+    return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
+
+
+def option(table: "AimResults", place: int) -> str:
+    """An option in words."""
+    values = zip(table.names, table.aims[place].values, strict=True)
+    return ", ".join(f"{name} = {table.value_words(name, value)}" for name, value in values)
+
+
+def options_caption(table: "AimResults") -> str:
+    """The figure of the delivery options."""
+    crossed = " Options that the limits exclude are crossed out." if table.within else ""
+    return (
+        f"{table.statement} {thousands(table.lander_count)} landers at each delivery option, followed until they rest; "
+        f"below each number its {at_level(table.level)}. Dotted frames: options that cannot be distinguished "
+        f"from the best, which has a full frame.{crossed}"
+    )

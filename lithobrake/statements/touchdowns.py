@@ -1,0 +1,262 @@
+"""Touchdowns in sentences: how they ended, their rebounds, what explains these, and what their emulator is worth."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.statements.ends import missing_landings
+from lithobrake.statements.estimates import bracket, spread
+from lithobrake.statements.labels import FAILED, RUN_WORDS, input_words, output, output_words, part_words
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import counted, listing, number, out_of, thousands
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.percentages import intervals, part, percent, span, with_interval
+
+if TYPE_CHECKING:
+    from lithobrake.results.page_data import DrawnPage, RunsPage
+    from lithobrake.results.run_results import OutputEstimate, ReturnFraction, VarianceParts
+    from lithobrake.vocabulary.landing_fraction import LandingFraction
+
+CENTIMETRES = 100.0
+ELEVATION = "elevation_out"
+# An input with more than this part of what the soil does is named.
+MAIN = 0.5
+# Parts that are not detected, and those of which only terms of first and second degree are seen.
+NAMES = {"soil": "soil", "arrival": "delivery", "attitude": "attitude", "bed": "bed"}
+NO_FLIGHTS = "The return fraction is not known yet: it takes flights."
+# Half of the middle nine tenths of a normal distribution, in standard deviations.
+NINE_TENTHS = 1.645
+# What the bands of the emulator should hold of the runs (band_90 of its scores).
+BAND = 0.9
+
+
+def touchdown_outcomes(ended: Mapping[str, int], total: int, what: str) -> str:
+    """How touchdowns ended; ended: those of each outcome; total: of all with an outcome; what: they are."""
+    left, *others = TouchdownOutcome
+    found = [f"{out_of(ended.get(left, 0), total, what)} {left.label}"]
+    found += [f"{ended[one]} {RUN_WORDS[one]}" for one in (*others, FAILED) if ended.get(one)]
+    return f"{'; '.join(found)}."
+
+
+def rebound_speed(of: str, quantiles: Mapping[str, float], interval: str = "") -> str:
+    """Median and middle nine tenths of the rebound speed [m/s]; interval: of the median, in brackets."""
+    shown = [CENTIMETRES * one for one in quantiles.values()]
+    return spread(f"Rebound speed of {of}", shown, "cm/s", interval)
+
+
+def output_spread(name: str, one: "OutputEstimate") -> str:
+    """Median with its interval and middle nine tenths of an output over the landings that have it."""
+    shown, middle = output(name), one.quantiles["0.5"]
+    unit, factor = ("cm/s", CENTIMETRES) if shown.unit == "m/s" else (shown.unit, shown.factor)
+    ends = middle.on_scale(lambda value: value * factor)
+    words = f"{shown.words[:1].upper()}{shown.words[1:]} of {one.of}"
+    values = [found.value * factor for found in one.quantiles.values()]
+    return spread(words, values, unit, bracket(ends.lower, ends.upper, level=ends.level))
+
+
+def runs(data: "RunsPage") -> str:
+    """The figure of the landings: what they gave."""
+    table = data.results.runs
+    own = listing(["soil", *drawn_things(data.study)])
+    where = "all on one bed" if table.beds == 1 else f"on one of {table.beds} beds"
+    said = [f"Every dot is a landing with {own} of its own, {where}."]
+    said.append(touchdown_outcomes(table.outcomes, table.count, "landings"))
+    said += [output_spread(name, one) for name, one in data.results.spreads.items() if name in ("speed_out", ELEVATION)]
+    if table.over_rim:
+        said.append(f"Rings: {counted(table.over_rim, 'lander')} that left across the edge of the bed, in flight.")
+    record = data.results.variance_shares["speed_out"]
+    if record:
+        said.append(f"Right: the same speeds by bed; share of their variance between beds: {part(record.bed)}.")
+    return " ".join(said)
+
+
+def drawn_things(study: Mapping[str, Any]) -> list[str]:
+    """What every run draws for itself beside its soil; study: the tables of its file."""
+    impact = study["impact"]
+    place = impact["place"] or {}
+    has_place = impact["region"] is not None or any(isinstance(one, Mapping) for one in place.values())
+    found = {
+        "impact point": has_place,
+        "azimuth": impact["azimuth_deg"] == "random",
+        "attitude": impact["orientation"] == "random",
+    }
+    return [words for words, is_drawn in found.items() if is_drawn]
+
+
+def run_outcomes(data: "RunsPage") -> str:
+    """On how many beds the runs were made, and what those without an outcome could change."""
+    results = data.results
+    return " ".join([f"On {counted(results.runs.beds, 'bed')}.", *missing_landings(results.runs, results.returns)])
+
+
+def variance_parts(what: str, parts: str) -> str:
+    """What explains the variance of something; parts: its parts with their intervals."""
+    return f"Parts of the variance of {what}: {parts} ({intervals()})."
+
+
+def output_variance(name: str, record: "VarianceParts") -> str:
+    """What explains the variance of an output."""
+    whole = f"the {output_words(name)} over the input distributions of the study file"
+    return variance_parts(whole, all_parts(record))
+
+
+def variance(data: "RunsPage") -> str:
+    """The figure of what decides."""
+    records = {name: record for name, record in data.results.variance_shares.items() if record}
+    if not records:
+        return "The sources of the scatter cannot be separated: the runs are on one bed, or too few for their inputs."
+    first, *others = records
+    said = [output_variance(first, records[first])]
+    if others:
+        soils = [f"{part(records[name].soil)} of the {output_words(name)}" for name in others]
+        said.append(f"Soil, at least: {listing(soils)}.")
+    said.append(floor_words(records[first]))
+    if all(record.chaos is None for record in records.values()):
+        said.append("Without auxiliary runs chaos is not separated from everything else.")
+    return " ".join(said)
+
+
+def floor_words(record: "VarianceParts") -> str:
+    """Of which degree the parts are lower bounds, and for which ranges."""
+    doubled = record.soil_doubled
+    explains = f"at least {part(doubled)}" if doubled.value > 0.0 else part(doubled)
+    return (
+        f"Soil, delivery and attitude: {record.terms}, for the ranges of the study file; their other effects "
+        f"are in everything else. Soil with ranges twice as wide: {explains}."
+    )
+
+
+def all_parts(record: "VarianceParts") -> str:
+    """Every part of an output's variance with its interval."""
+    found = []
+    for name, one in record.parts.items():
+        more = _main_input(record) if name == "soil" else ""
+        whose = part_words(record, name).replace(", chaos", " with chaos").replace(",", "")
+        # What is not detected is not "at least" so much.
+        found.append(f"{whose if one.value > 0.0 else NAMES.get(name, whose)} {part(one, more)}")
+    return listing(found)
+
+
+def detected_parts(record: "VarianceParts") -> str:
+    """What of an output's variance is detected, likewise, but for everything else."""
+    detected = {name: one for name, one in record.parts.items() if one.value > 0.0 and name != "place"}
+    if not detected:
+        return "none is detected"
+    whose = [
+        f"{NAMES.get(name, name)}{' at least' if name != 'bed' else ''} {part(one)}" for name, one in detected.items()
+    ]
+    return listing(whose)
+
+
+def _main_input(record: "VarianceParts") -> str:
+    """Which input makes most of what the soil does, where one does and the soil does something."""
+    alone = {name: one.value for name, one in record.soil_by_input.items()}
+    name = max(alone, key=lambda one: alone[one], default="")
+    is_main = bool(name) and alone[name] > MAIN * record.soil.value and (record.soil_by_input[name].lower or 0.0) > 0.0
+    return f"; most of it {input_words(name)}" if is_main else ""
+
+
+def left_out(bed_count: int) -> str:
+    """What an emulator was validated on: beds that it had not seen, or, where there is but one, runs."""
+    return "held-out runs" if bed_count == 1 else "held-out beds"
+
+
+def so_far(captured: "LandingFraction", speed: Estimate | None, returns: "LandingFraction | None") -> list[str]:
+    """What the runs say while more of them come in, for a terminal; speed: the mean rebound speed [m/s]."""
+    lines = [f"so far, from {captured.from_}:", f"  captured: {_with_reason(captured)}"]
+    if speed is not None:
+        mean = speed.on_scale(lambda value: CENTIMETRES * value)
+        interval = bracket(mean.lower, mean.upper, level=mean.level)
+        lines.append(f"  mean rebound speed: {number(mean.value)} cm/s{interval}")
+    return [*lines, f"  {NO_FLIGHTS}" if returns is None else f"  return fraction: {_with_reason(returns)}"]
+
+
+def _with_reason(found: "LandingFraction") -> str:
+    """A share with its interval, which holds whatever became of landings without an outcome, or why it has none."""
+    share, why = found.share, found.share.why_missing
+    return with_interval(share, level=share.level) + ("" if why is None else f", without an interval: {why}")
+
+
+def luck(counts: Sequence[int]) -> tuple[float, float]:
+    """Between which counts nine of ten bins lie where all is right, if runs are independent."""
+    total, bins = sum(counts), len(counts)
+    half = NINE_TENTHS * math.sqrt(total / bins * (1.0 - 1.0 / bins))
+    return total / bins - half, total / bins + half
+
+
+def unlucky(counts: Sequence[int]) -> list[bool]:
+    """Which bins lie outside of that."""
+    low, high = luck(counts)
+    return [not low <= count <= high for count in counts]
+
+
+def band_luck(run_count: int) -> tuple[float, float]:
+    """Between which shares nine of ten right bands hold as many independent runs."""
+    half = NINE_TENTHS * math.sqrt(BAND * (1.0 - BAND) / run_count)
+    return BAND - half, BAND + half
+
+
+def calibration(data: "DrawnPage") -> str:
+    """The figure of the calibration: whether to believe the emulator."""
+    scores = data.emulator.scores.outputs
+    held = {name: score.band_90 for name, score in scores.items()}
+    bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
+    shares = [f"{percent(share)} of {output_words(name)}" for name, share in held.items()]
+    said = [
+        f"On {left_out(data.results.runs.beds)} the {percent(BAND)} bands contained {listing(shares)}.",
+        f"For a calibrated emulator the histogram is flat; the grey band covers {percent(BAND)} of the sampling "
+        "fluctuation of independent runs. High ends indicate bands that are too narrow, a hump in the middle bands "
+        "that are too wide, and a slope a bias.",
+        f"{out_of(sum(bins), len(bins), 'bars')} lie outside the grey band{' (orange)' if any(bins) else ''}; chance "
+        f"alone gives {number((1.0 - BAND) * len(bins), 2)}.",
+    ]
+    lucky = {name: band_luck(sum(score.pit)) for name, score in scores.items()}
+    for words, off in (
+        ("too narrow", [output_words(name) for name, share in held.items() if share < lucky[name][0]]),
+        ("too wide", [output_words(name) for name, share in held.items() if share > lucky[name][1]]),
+    ):
+        if off:
+            said.append(f"The bands of {listing(off)} are {words}, by more than chance explains.")
+    return " ".join([*said, data.emulator.statement])
+
+
+def samples(data: "DrawnPage") -> str:
+    """The figure of what may come out."""
+    outcome = data.samples["outcome"]
+    total, leaving = len(outcome), int((outcome == TouchdownOutcome.CLEAR).sum())
+    if not leaving:
+        return none_leaves(total)
+    return f"{leaving_samples(total, leaving, 'emulator')}; dots are the runs."
+
+
+def none_leaves(total: int) -> str:
+    """That there is nothing to draw."""
+    return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
+
+
+def leaving_samples(total: int, leaving: int, model: str) -> str:
+    """How many of the samples of a model leave the surface."""
+    return f"Of {thousands(total)} samples of the {model} {thousands(leaving)} leave the surface"
+
+
+def disagreement(returns: "ReturnFraction") -> str | None:
+    """That runs and emulator disagree; None where they agree, or no interval says how far they may."""
+    bounds = returns.share.bounds
+    if bounds is None or returns.emulator is None or bounds[0] <= returns.emulator <= bounds[1]:
+        return None
+    return (
+        f"The emulator gives a return fraction of {percent(returns.emulator, 1)}, outside the interval of the runs "
+        f"({span(*bounds, 1)}): do not rely on results of the emulator (flights, landing regions, "
+        "rest); make more runs"
+    )
+
+
+def followed(ground: str, count: int, model: str) -> str:
+    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
+    if ground == "hard":
+        return (
+            f"{count} journeys on the hard ground of [rest], from the impacts of the study file, without soil, bed or "
+            "emulator"
+        )
+    on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
+    return f"{count} journeys of {model} samples{on}"
