@@ -191,6 +191,7 @@ def _few_beds(study: Study) -> Iterator[str]:
         return
     from lithobrake.analysis.confidence import t_quantile
 
+    enough = FEWEST_BEDS_OF_INTERVAL
     if study.bed_count == 1:
         yield (
             "All runs land on one bed, and another bed would change the result: no number of this study will have an "
@@ -198,7 +199,6 @@ def _few_beds(study: Study) -> Iterator[str]:
         )
         return
     wider = t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0
-    enough = FEWEST_BEDS_OF_INTERVAL
     remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
     yield (
         f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
