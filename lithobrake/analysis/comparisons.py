@@ -16,6 +16,8 @@ from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
+UNKNOWN = Estimate(math.nan, None, None)
+
 
 @dataclass(frozen=True)
 class BestChoice:
@@ -162,9 +164,6 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
     scale = math.sqrt(_error_variance(draws, bed_count) / total) if total > 0.0 else 0.0
     scaled: NDArray[np.float64] = means.mean() + scale * deviations
     return scaled
-
-
-UNKNOWN = Estimate(math.nan, None, None)
 
 
 @dataclass(frozen=True)

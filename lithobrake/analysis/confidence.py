@@ -18,6 +18,10 @@ NEAR_CERTAIN = 0.1
 NORMAL_QUANTILE_95 = 1.959963984540054
 # Probabilities beyond this quantile are below the smallest float.
 MOST_QUANTILE = 40.0
+# Directions along which beds are told apart by less than this part of the best are told by the inputs already.
+SMALLEST_COUNT = 1e-9
+# A variance of beds that is not cut at 0 stays this part of its way off the pole of the F statistic.
+LEAST_SPREAD = 1e-6
 
 
 def t_quantile(freedom: float) -> float:
@@ -128,12 +132,6 @@ def answered_runs(values: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
     known = np.isfinite(of_all)
     beds = numbered_beds(bed, len(of_all))[known]
     return of_all[known], numbered_beds(beds, len(beds))
-
-
-# Directions along which beds are told apart by less than this part of the best are told by the inputs already.
-SMALLEST_COUNT = 1e-9
-# A variance of beds that is not cut at 0 stays this part of its way off the pole of the F statistic.
-LEAST_SPREAD = 1e-6
 
 
 @dataclass(frozen=True)

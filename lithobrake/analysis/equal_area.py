@@ -13,6 +13,7 @@ from lithobrake.vocabulary.given_numbers import whole_number
 FARTHEST = math.radians(120.0)
 # Directions among which the emptiest is sought: some 4 degrees apart.
 CANDIDATES = 3000
+FEWEST, MOST = 4, 20_000
 
 
 @dataclass(frozen=True)
@@ -82,9 +83,6 @@ def _even_directions(count: int) -> Array:
     turn = np.pi * (3.0 - math.sqrt(5.0)) * np.arange(count)
     across = np.sqrt(1.0 - height**2)
     return np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
-
-
-FEWEST, MOST = 4, 20_000
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from lithobrake.emulator import Draws, Emulator
 
 DRAW_COUNT = 400
+# Of an event that is rarer (or whose opposite is) runs have met too few for the probability to be told from them alone.
+RARE = 1.0 / 50.0
+# What answers: the runs themselves, or draws of the emulator.
+RUNS, EMULATOR = "runs", "emulator"
 
 
 @dataclass(frozen=True)
@@ -117,12 +121,6 @@ def _counts_of_beds(beds: np.ndarray, random: np.random.Generator) -> Array:
     count = int(beds.max()) + 1
     drawn = random.integers(count, size=(DRAW_COUNT, count))
     return np.array([np.bincount(one, minlength=count) for one in drawn], dtype=float)
-
-
-# Of an event that is rarer (or whose opposite is) runs have met too few for the probability to be told from them alone.
-RARE = 1.0 / 50.0
-# What answers: the runs themselves, or draws of the emulator.
-RUNS, EMULATOR = "runs", "emulator"
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,16 @@ SPREAD = SPREAD_RANGE[1]
 CORRELATION, JOURNEY_CORRELATION = 0.02, 0.07
 # Narrower intervals than this part of the spread would take a million million runs.
 NARROWEST = 1e-6
+# Correlations of two runs on one bed; before a study has runs they are as likely as by an exponential law.
+CORRELATIONS = np.linspace(0.0, 0.5, 101)
+STUDIES = 400
+# Runs of studies that are made up, in all: larger studies are fewer, and scatter less.
+MOST_RUNS, FEWEST_STUDIES = 1_000_000, 100
+# Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
+# of their scatter is rough, so no look asks for more than twice the runs.
+SMALLEST_STEP, LARGEST_STEP = 1.1, 2.0
+# Counts of runs are multiples of this.
+RUNS_A_STEP = 10
 
 
 def expected_half_width(
@@ -95,13 +105,6 @@ def _check_scatter(spread: float, correlation: float) -> None:
     """Refuse a spread below 0, and a correlation outside 0 to 1, with a ValueError."""
     finite_number("spread", spread, at_least=0.0, at_most=LARGEST)
     finite_number("correlation", correlation, at_least=0.0, at_most=1.0)
-
-
-# Correlations of two runs on one bed; before a study has runs they are as likely as by an exponential law.
-CORRELATIONS = np.linspace(0.0, 0.5, 101)
-STUDIES = 400
-# Runs of studies that are made up, in all: larger studies are fewer, and scatter less.
-MOST_RUNS, FEWEST_STUDIES = 1_000_000, 100
 
 
 class RunLaw(Protocol):
@@ -246,13 +249,6 @@ def _likelihood(known: Array, beds: Labels) -> Array:
     density = stats.f.pdf(float(found.squares.mean()) / found.within / scale, len(found.squares), found.within_freedom)
     likelihood: Array = density / scale
     return likelihood
-
-
-# Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
-# of their scatter is rough, so no look asks for more than twice the runs.
-SMALLEST_STEP, LARGEST_STEP = 1.1, 2.0
-# Counts of runs are multiples of this.
-RUNS_A_STEP = 10
 
 
 def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:

@@ -21,6 +21,15 @@ Values = Mapping[str, NDArray[np.float64]]
 ALSO_OF_CAPTURED = ("contact_duration", "penetration", "peak_acceleration", "energy_lost")
 # Distances where there is none: of what is true or false alone, or is not known, and of what lies on the boundary.
 FAR, NEAR = 1e30, 1e-30
+# Share of the points of a level that make the next one.
+LEVEL_SHARE = 0.1
+# Share of moves to aim for. Source: [Papaioannou-2015], section 3.3.
+BEST_ACCEPTANCE = 0.44
+# How far a first move goes, as a part of the standard deviation of the seeds.
+FIRST_STEP = 0.6
+# Levels after which a probability is below 1e-20 and the model is more likely wrong than that rare.
+MOST_LEVELS = 20
+Margin = Callable[[Array], ArrayLike]
 
 
 class Met(NamedTuple):
@@ -105,18 +114,6 @@ def _distance(condition: Condition, values: Values, scale: Mapping[str, float]) 
 def _numbers(comparison: Comparison, values: Values) -> list[Any]:
     """The numbers of each side: [count] of an output, or the one that was written."""
     return [values[side] if isinstance(side, str) else side for side in comparison.sides]
-
-
-# Share of the points of a level that make the next one.
-LEVEL_SHARE = 0.1
-# Share of moves to aim for. Source: [Papaioannou-2015], section 3.3.
-BEST_ACCEPTANCE = 0.44
-# How far a first move goes, as a part of the standard deviation of the seeds.
-FIRST_STEP = 0.6
-# Levels after which a probability is below 1e-20 and the model is more likely wrong than that rare.
-MOST_LEVELS = 20
-
-Margin = Callable[[Array], ArrayLike]
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,19 @@ SMALLEST_RESULTANT = 0.7
 SMALLEST_COUNT = 10
 # Places closer together than this [rad] differ by rounding only.
 SMALLEST_SIZE = 1e-12
+FEWEST_POINTS = 5
+# Points this much nearer to a line than they reach along it have no area.
+THINNEST = 1e-6
+# Median of the squared distance from the middle in standard deviations, of a normal law in the plane.
+NORMAL_MEDIAN = 2.0 * math.log(2.0)
+# The map reaches so many bandwidths beyond the points; a region, fewer: a lone point keeps an island about it.
+MARGIN, REACH = 4.0, 3.0
+# Cells of the map along each axis: three to a bandwidth, within these bounds.
+FEWEST_CELLS, MOST_CELLS = 300, 1200
+# Cells of a region, and then points of its cells and outlines, among which its extent is looked for.
+EXTENT_CELLS, EXTENT_POINTS = 1500, 3000
+# Points whose distances from all others are worked out at once: bounds the memory.
+BLOCK = 1000
 
 
 @dataclass(frozen=True)
@@ -103,21 +116,6 @@ def _laid_flat(
     angle = np.arctan2(length, places @ middle)
     flat = level * np.divide(angle, length, out=np.ones_like(angle), where=length > 0.0)[:, None]
     return flat, (math.degrees(latitude), math.degrees(longitude))
-
-
-FEWEST_POINTS = 5
-# Points this much nearer to a line than they reach along it have no area.
-THINNEST = 1e-6
-# Median of the squared distance from the middle in standard deviations, of a normal law in the plane.
-NORMAL_MEDIAN = 2.0 * math.log(2.0)
-# The map reaches so many bandwidths beyond the points; a region, fewer: a lone point keeps an island about it.
-MARGIN, REACH = 4.0, 3.0
-# Cells of the map along each axis: three to a bandwidth, within these bounds.
-FEWEST_CELLS, MOST_CELLS = 300, 1200
-# Cells of a region, and then points of its cells and outlines, among which its extent is looked for.
-EXTENT_CELLS, EXTENT_POINTS = 1500, 3000
-# Points whose distances from all others are worked out at once: bounds the memory.
-BLOCK = 1000
 
 
 @dataclass(frozen=True)

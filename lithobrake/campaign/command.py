@@ -21,6 +21,12 @@ from lithobrake.files.reading import content_hash
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.plain_text import closest
 
+ANSWER = "outputs.json"
+# How long to wait for the last of what a program printed, where something that it left running may print on [s].
+_LINGER = 1.0
+# Names have dots; blanks inside the braces are the author's taste.
+PLACE = re.compile(r"\{\{\s*([\w.\-]+)\s*\}\}")
+
 
 def read_answer(path: Path) -> dict[str, Any]:
     """What a program wrote into a file whose ending DECODERS has.
@@ -108,13 +114,6 @@ def _is_number(value: Any) -> bool:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return abs(value) <= sys.float_info.max
-
-
-ANSWER = "outputs.json"
-# How long to wait for the last of what a program printed, where something that it left running may print on [s].
-_LINGER = 1.0
-# Names have dots; blanks inside the braces are the author's taste.
-PLACE = re.compile(r"\{\{\s*([\w.\-]+)\s*\}\}")
 
 
 @dataclass(frozen=True)

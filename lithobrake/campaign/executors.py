@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 _POLL_INTERVAL = 0.2
 # So many processes in a row that die before they begin with a call are no accident.
 _STILLBORN_LIMIT = 3
+# How long to look for the scheduler, and how often the size of the cluster is asked for [s].
+_CONNECT_TIMEOUT, _CLUSTER_POLL_INTERVAL = 10.0, 5.0
+# Calls are handed out for so many workers at least: a cluster that is still empty will grow.
+_SMALLEST_CAPACITY = 16
 
 
 class WorkerDiedError(RuntimeError):
@@ -247,12 +251,6 @@ def _own_executor() -> LocalExecutor:
     # One for all threads of a worker of the cluster; its processes keep the kernels that they have loaded for further
     # runs.
     return LocalExecutor(available_cores())
-
-
-# How long to look for the scheduler, and how often the size of the cluster is asked for [s].
-_CONNECT_TIMEOUT, _CLUSTER_POLL_INTERVAL = 10.0, 5.0
-# Calls are handed out for so many workers at least: a cluster that is still empty will grow.
-_SMALLEST_CAPACITY = 16
 
 
 class DaskExecutor(Executor):

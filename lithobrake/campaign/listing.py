@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 # What a terminal is left with for the outcome or the reason at least.
 _REASON_WIDTH = 24
 _GAP, _LAST = "  ", "outcome or reason"
+# A chance below this, over all corners looked at, is no chance [-].
+_CHANCE = 0.01
 
 
 def write_csv(records: Sequence[Record], file: TextIO, units: Mapping[str, str] | None = None) -> None:
@@ -122,10 +124,6 @@ def _width(columns: Sequence[list[str]]) -> int:
 
 def _cut(text: str, width: int) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
-
-
-# A chance below this, over all corners looked at, is no chance [-].
-_CHANCE = 0.01
 
 
 def missing(x: "np.ndarray", reasons: Sequence[str | None], names: Sequence[str], largest_share: float) -> str:

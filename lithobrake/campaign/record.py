@@ -20,6 +20,23 @@ from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, re
 from lithobrake.vocabulary.number_words import duration as duration_words
 
 log = logging.getLogger(__name__)
+# What the hash of a row, in the column CHECKSUM, is of; how often a failed run was tried may be reset.
+CHECKSUM = "sha256"
+# What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
+OF_FIRST = {"attempts": "1", "started": "NULL"}
+FORMAT_VERSION = 3
+# Ledgers of earlier formats have no hashes: their rows are taken as they stand.
+FIRST_HASHED = 3
+# Characters of a key that are shown; two runs of a campaign that share them are not met.
+KEY_LENGTH = 12
+# Runs may have taken days: no damage is a reason to write over them.
+LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
+OBJECTS = ("inputs", "outputs", "draws")
+_FORM = {
+    "key": str, "status": str, "outcome": str | None, "inputs": {str: NUMBER}, "outputs": {str: NUMBER}, "draws": dict,
+    "seed": int, "replicate": int, "attempts": int, "reason": str | None, "wall_s": NUMBER | None,
+    "cpu_s": NUMBER | None, "host": str | None, "version": str, "started": str | None, "ended": str | None,
+}  # fmt: skip
 
 
 class RunStatus(StrEnum):
@@ -58,24 +75,7 @@ class Record:
 
 
 COLUMNS = tuple(Record.__dataclass_fields__)
-# What the hash of a row, in the column CHECKSUM, is of; how often a failed run was tried may be reset.
-CHECKSUM = "sha256"
 HASHED = tuple(name for name in COLUMNS if name != "attempts")
-# What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
-OF_FIRST = {"attempts": "1", "started": "NULL"}
-FORMAT_VERSION = 3
-# Ledgers of earlier formats have no hashes: their rows are taken as they stand.
-FIRST_HASHED = 3
-# Characters of a key that are shown; two runs of a campaign that share them are not met.
-KEY_LENGTH = 12
-# Runs may have taken days: no damage is a reason to write over them.
-LEFT = "it is left as it is: put a copy of it back, or move it away to have all its runs made again"
-OBJECTS = ("inputs", "outputs", "draws")
-_FORM = {
-    "key": str, "status": str, "outcome": str | None, "inputs": {str: NUMBER}, "outputs": {str: NUMBER}, "draws": dict,
-    "seed": int, "replicate": int, "attempts": int, "reason": str | None, "wall_s": NUMBER | None,
-    "cpu_s": NUMBER | None, "host": str | None, "version": str, "started": str | None, "ended": str | None,
-}  # fmt: skip
 
 
 def reading_ledger(path: Path) -> AbstractContextManager[None]:

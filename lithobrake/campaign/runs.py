@@ -17,6 +17,10 @@ from lithobrake.campaign.single_run import Limits, Model, run_key, run_seed
 if TYPE_CHECKING:
     import numpy as np
 
+Inputs = Mapping[str, float]
+# Inputs of the next run of a chain, by its number and its records so far; None: it has ended.
+Next = Callable[[int, Sequence[Record]], Inputs | None]
+
 
 @dataclass(frozen=True)
 class Runs:
@@ -159,11 +163,6 @@ def given_or_own(executor: Executor | None) -> Iterator[Executor]:
         yield own
     finally:
         own.shutdown(cancel_futures=True)
-
-
-Inputs = Mapping[str, float]
-# Inputs of the next run of a chain, by its number and its records so far; None: it has ended.
-Next = Callable[[int, Sequence[Record]], Inputs | None]
 
 
 @dataclass

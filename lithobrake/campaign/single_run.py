@@ -22,6 +22,9 @@ from lithobrake.campaign.record import RunStatus, utc_now
 # A program that repeats a warning at every step would fill the disk; what it read stands at the beginning, and why it
 # ended at the end (docs/decisions/campaign.md).
 KEPT = 1 << 20
+# A model takes its inputs by name and a seed. It gives its outputs by name, or {"outcome": text, "outputs": numbers by
+# name, "draws": JSON values}; an output that is NaN has no value.
+Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
 class CappedLog(io.RawIOBase):
@@ -73,11 +76,6 @@ def last_words(path: Path) -> str:
         file.seek(max(size - KEPT, 0))
         lines = file.read().decode("utf-8", "replace").splitlines()
     return next((line.strip()[-200:] for line in reversed(lines) if line.strip()), "it printed nothing")
-
-
-# A model takes its inputs by name and a seed. It gives its outputs by name, or {"outcome": text, "outputs": numbers by
-# name, "draws": JSON values}; an output that is NaN has no value.
-Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
 def run_model(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:

@@ -25,6 +25,24 @@ MAIN = "__main__"
 _IMPORTED = "__mp_main__"
 # How a process finds a script: "name" or "path", and which.
 Source = tuple[str, str]
+_UNREACHABLE = (
+    "the model is defined in a notebook, an interactive session or a piped script, which worker processes cannot "
+    "import; write it to a file, say model.py, and import it from there"
+)
+# One run fills one core; a numerical library that starts threads of its own would only slow the others down.
+_THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+# What a process says when it has all that a call needs and begins with it.
+BEGUN = b"begun"
+# What a process begins with: the modules that the coordinator finds, and then its calls. Nothing here imports the
+# coordinator's script, as the processes of the standard library do: it may be piped, or start a campaign unguarded.
+_START = """
+import sys
+from multiprocessing.connection import Connection
+calls, life = map(Connection, map(int, sys.argv[1:]))
+sys.path[:], sys.argv, main = calls.recv()
+from lithobrake.campaign.worker import serve
+serve(calls, life, main)
+"""
 
 
 class MainModuleError(ValueError):
@@ -58,12 +76,6 @@ class MainModule:
         # Calls refer to what the script defines by the first name, objects that are made here by the second.
         sys.modules[MAIN] = sys.modules[_IMPORTED] = module
         self._is_there = True
-
-
-_UNREACHABLE = (
-    "the model is defined in a notebook, an interactive session or a piped script, which worker processes cannot "
-    "import; write it to a file, say model.py, and import it from there"
-)
 
 
 def main_source() -> Source | None:
@@ -111,12 +123,6 @@ def refuse_while_importing() -> None:
         )
 
 
-# One run fills one core; a numerical library that starts threads of its own would only slow the others down.
-_THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-# What a process says when it has all that a call needs and begins with it.
-BEGUN = b"begun"
-
-
 @dataclass(frozen=True)
 class Call:
     """A pickled call, who waits for its answer, and what it may take."""
@@ -124,18 +130,6 @@ class Call:
     future: "Future[Any]"
     content: bytes
     limits: Limits
-
-
-# What a process begins with: the modules that the coordinator finds, and then its calls. Nothing here imports the
-# coordinator's script, as the processes of the standard library do: it may be piped, or start a campaign unguarded.
-_START = """
-import sys
-from multiprocessing.connection import Connection
-calls, life = map(Connection, map(int, sys.argv[1:]))
-sys.path[:], sys.argv, main = calls.recv()
-from lithobrake.campaign.worker import serve
-serve(calls, life, main)
-"""
 
 
 class Worker:

@@ -15,6 +15,10 @@ Indices = NDArray[np.int64]
 
 # Terms that are looked at for one more input: with more, neither they nor any matrix of them would fit into memory.
 LOOKED_AT = 20_000_000
+# Limits computed by a user in another order of operations may differ from ours in the last digits.
+ROUNDING = 1e-12
+# Equal steps of probability between which the quantiles of an input may be taken as straight.
+QUANTILE_STEPS = 512
 
 
 def multi_index_set(
@@ -52,12 +56,6 @@ def multi_index_set(
         used = spent[row, power]
     keys = [-rows[:, column] for column in reversed(range(input_count))]
     return np.ascontiguousarray(rows[np.lexsort([*keys, rows.sum(axis=1)])])
-
-
-# Limits computed by a user in another order of operations may differ from ours in the last digits.
-ROUNDING = 1e-12
-# Equal steps of probability between which the quantiles of an input may be taken as straight.
-QUANTILE_STEPS = 512
 
 
 def points_of(inputs: Mapping[str, Distribution], x: ArrayLike) -> Array:

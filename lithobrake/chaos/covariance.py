@@ -13,6 +13,11 @@ from lithobrake.vocabulary.arrays import Array
 
 # Nodes of the quadrature that projects a bump on polynomials.
 RULE_NODES = 160
+Gradient = Callable[[Array], Array]
+# The squared lengths of the Gaussians that make up a Matern covariance.
+MIXTURE_NODES = 16
+MIXTURE_LOG_RANGE = (-6.0, 2.0)
+MATERN_ORDER = 2.5
 
 
 class UnivariateCovariance(ABC):
@@ -110,13 +115,6 @@ def _weighted_table(entry: Distribution, degree: int) -> tuple[Array, Array]:
     """
     nodes, weights = entry.rule(RULE_NODES)
     return nodes, entry.recurrence(degree).values(nodes) * weights
-
-
-Gradient = Callable[[Array], Array]
-# The squared lengths of the Gaussians that make up a Matern covariance.
-MIXTURE_NODES = 16
-MIXTURE_LOG_RANGE = (-6.0, 2.0)
-MATERN_ORDER = 2.5
 
 
 class Covariance(ABC):

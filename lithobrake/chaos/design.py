@@ -19,6 +19,9 @@ from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_
 
 # Points of one scrambled Sobol sequence: its digits have no more places.
 MOST_SOBOL = 2**30
+# Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
+RULE_NODES = 200
+CANDIDATES_PER_TERM = 15
 
 
 def checked_count(count: int, input_count: int = 1) -> int:
@@ -150,11 +153,6 @@ class GaussianCopula:
 
     def _physical(self, uniforms: Array) -> Array:
         return np.column_stack([entry.ppf(uniforms[:, k]) for k, entry in enumerate(self.inputs.values())])
-
-
-# Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
-RULE_NODES = 200
-CANDIDATES_PER_TERM = 15
 
 
 def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: Indices) -> Array:

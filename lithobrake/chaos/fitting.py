@@ -33,6 +33,7 @@ MARGIN, MARGIN_IN_TAILS = 0.95, 0.3
 # at three standard deviations.
 TAIL_DEGREE, TAIL_GROWTH, TAIL_DISTANCE = 10, 2000.0, 3.0
 CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
+METHODS = ("ols", "lars", "omp", "gaussian_process")
 
 
 def _as_solution(process: GaussianProcess, training: Training) -> Solution:
@@ -122,9 +123,6 @@ def best_solutions(training: Training, progress: Callable[[int, int], None]) -> 
         chosen.append(best)
         table[name] = {label: one.expected_error for label, one in scores.items()}
     return chosen, {"candidates": table, "challenger": {"model": CHALLENGER, "rmse_estimate": challenger}}
-
-
-METHODS = ("ols", "lars", "omp", "gaussian_process")
 
 
 @one_thread()

@@ -16,6 +16,7 @@ from lithobrake.vocabulary.arrays import Array
 RANK_TOLERANCE = 1e-10
 # Lost terms that a refusal names.
 LOST_LISTED = 20
+HIGHEST_DEGREE = 15
 
 
 @dataclass(frozen=True)
@@ -152,9 +153,6 @@ def summary(solutions: Sequence[Solution], names: Sequence[str], y: Array) -> di
         "rrmse_estimate": [entry["rrmse_estimate"] for entry in outputs.values()],
         "outputs": outputs,
     }
-
-
-HIGHEST_DEGREE = 15
 
 
 def solve_ols(training: Training, indices: Indices) -> list[Solution]:

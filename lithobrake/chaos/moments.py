@@ -20,6 +20,13 @@ TERM_LIMIT = 2500
 LARGEST_KEY = float(2**62)
 # Entries of a product below this times the largest are rounding: of even measures every second one is zero.
 ROUNDING = 1e-13
+# Nodes times outputs of the full grid, and entries of products, beyond which sampling takes over: seconds of work.
+NODE_LIMIT = 30_000_000
+PRODUCT_LIMIT = 20_000_000
+# An entry of a product costs about as much as so many nodes.
+NODES_PER_PRODUCT = 50
+# Points of the Sobol sequence that stands in where both exact ways are too long.
+SAMPLE_COUNT = 100_000
 
 
 class Linearisation:
@@ -184,15 +191,6 @@ def interaction(indices: Indices, coefficients: Array, members: Sequence[int]) -
     """Sobol index of exactly this set of inputs, [output_count]. Source: [Sudret-2008], Eq 35."""
     wanted = np.isin(np.arange(indices.shape[1]), list(members))
     return _shares(indices, coefficients, ((indices > 0) == wanted).all(axis=1)[None, :])[0]
-
-
-# Nodes times outputs of the full grid, and entries of products, beyond which sampling takes over: seconds of work.
-NODE_LIMIT = 30_000_000
-PRODUCT_LIMIT = 20_000_000
-# An entry of a product costs about as much as so many nodes.
-NODES_PER_PRODUCT = 50
-# Points of the Sobol sequence that stands in where both exact ways are too long.
-SAMPLE_COUNT = 100_000
 
 
 @dataclass(frozen=True)

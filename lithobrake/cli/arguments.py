@@ -18,6 +18,43 @@ from lithobrake.vocabulary.progress import Progress
 
 # 2 is the exit code of Click for wrong arguments, and 130 that of shells for a command ended by SIGINT (128 + 2).
 BAD_INPUT, INTERRUPTED = 2, 130
+# Groups of commands in the help, in this order.
+START, RUN, LOOK = "Start", "Run a study", "Look at results"
+EXPORT, EXPERT = "Pass results on", "Expert: single stages and special questions"
+app = typer.Typer(
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_enable=False,
+)
+# More processes than any machine runs at once.
+MOST_WORKERS = 10_000
+StudyPath = Annotated[
+    Path,
+    typer.Argument(
+        metavar="STUDY.toml",
+        help="The study file, or the name of a study that comes with the package (lithobrake examples).",
+        show_default=False,
+    ),
+]
+OutPath = Annotated[
+    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
+]
+ExecutorName = Annotated[
+    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+]
+Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", min=1, max=MOST_WORKERS, metavar="N", help="Number of processes; the default is all cores."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
+StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
 @contextmanager
@@ -129,17 +166,6 @@ def study_headline(folder: Path) -> list[str]:
     return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
 
-# Groups of commands in the help, in this order.
-START, RUN, LOOK = "Start", "Run a study", "Look at results"
-EXPORT, EXPERT = "Pass results on", "Expert: single stages and special questions"
-
-app = typer.Typer(
-    no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-)
-
-
 def _show_version(asked: bool) -> None:
     if asked:
         print(f"lithobrake {__version__}")
@@ -154,37 +180,6 @@ def main(
     ] = False,
 ) -> None:
     """Predict where a lander comes to rest on a small body whose soil is unknown, with confidence intervals."""
-
-
-# More processes than any machine runs at once.
-MOST_WORKERS = 10_000
-StudyPath = Annotated[
-    Path,
-    typer.Argument(
-        metavar="STUDY.toml",
-        help="The study file, or the name of a study that comes with the package (lithobrake examples).",
-        show_default=False,
-    ),
-]
-OutPath = Annotated[
-    str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
-]
-ExecutorName = Annotated[
-    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
-]
-Scheduler = Annotated[
-    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
-]
-Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        "--workers", min=1, max=MOST_WORKERS, metavar="N", help="Number of processes; the default is all cores."
-    ),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON, all numbers in SI.")]
-Force = Annotated[bool, typer.Option("--force", help="Replace files that exist.")]
-StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
 def study_folder(study: Path, out: str | None) -> Path:

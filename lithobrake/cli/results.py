@@ -37,6 +37,20 @@ if TYPE_CHECKING:
     from lithobrake.results.study_results import StudyResults
     from lithobrake.study import Study
 
+JourneyNumber = Annotated[
+    int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
+]
+# What `runs` lists first, in columns with these heads, and the most characters of a line.
+TOLD = {
+    "journey": ("", "journey"),
+    "touchdown": ("touch-", "down"),
+    "speed_out": ("rebound", "speed"),
+    "bed": ("", "bed"),
+    "impact.place.x": ("impact", "x"),
+    "impact.place.y": ("impact", "y"),
+}
+LISTED = 100
+
 
 def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> None:
     """Raise ValueError for a file of another kind, but for these, and for one that exists unless it may be replaced."""
@@ -73,21 +87,6 @@ def show_touchdowns(motion: "JourneyMotion") -> None:
 
     for bodies in motion.bodies:
         show(bodies)
-
-
-JourneyNumber = Annotated[
-    int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
-]
-# What `runs` lists first, in columns with these heads, and the most characters of a line.
-TOLD = {
-    "journey": ("", "journey"),
-    "touchdown": ("touch-", "down"),
-    "speed_out": ("rebound", "speed"),
-    "bed": ("", "bed"),
-    "impact.place.x": ("impact", "x"),
-    "impact.place.y": ("impact", "y"),
-}
-LISTED = 100
 
 
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake report runs/study")

@@ -20,6 +20,15 @@ from lithobrake.vocabulary.constants import DAY
 PLACE = Path(".local", "state", "lithobrake", "cache.key")
 _LENGTH = 32
 _OPEN_TO_OTHERS = 0o077
+log = logging.getLogger(__name__)
+_SIGNATURE_LENGTH = 32
+_LOCK = "lock"
+_WRITABLE_BY_OTHERS = 0o022
+# What is kept within a limit is named by hashes, and a draft of it as `atomic_path` names that.
+_REMOVABLE = re.compile(r"[0-9a-f]{64}|\.[0-9a-f]{64}\.\d+\.part")
+_REMEDY = "set LITHOBRAKE_CACHE to a folder that is yours alone"
+# A draft that is older [s] was left behind by a process that was killed while it wrote.
+_ABANDONED = DAY
 
 
 def user_key() -> bytes:
@@ -59,18 +68,6 @@ def _make(path: Path) -> None:
         return
     finally:
         draft.unlink(missing_ok=True)
-
-
-log = logging.getLogger(__name__)
-
-_SIGNATURE_LENGTH = 32
-_LOCK = "lock"
-_WRITABLE_BY_OTHERS = 0o022
-# What is kept within a limit is named by hashes, and a draft of it as `atomic_path` names that.
-_REMOVABLE = re.compile(r"[0-9a-f]{64}|\.[0-9a-f]{64}\.\d+\.part")
-_REMEDY = "set LITHOBRAKE_CACHE to a folder that is yours alone"
-# A draft that is older [s] was left behind by a process that was killed while it wrote.
-_ABANDONED = DAY
 
 
 class DiskCache:

@@ -26,6 +26,10 @@ from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import NativeLowering, NopythonRewrites
 from numba.core.untyped_passes import InlineClosureLikes
 
+log = logging.getLogger(__name__)
+# Versions of Numba and llvmlite, up to their patch releases, that tests/compilation ran with.
+KNOWN = {("0.68", "0.50")}
+
 
 class FoldingBuilder(ir.IRBuilder):
     """Writes instructions, but none that would read a member which was put into a tuple before."""
@@ -131,12 +135,6 @@ class KernelPipeline(Compiler):
             ]
             passes.finalize()
         return found
-
-
-log = logging.getLogger(__name__)
-
-# Versions of Numba and llvmlite, up to their patch releases, that tests/compilation ran with.
-KNOWN = {("0.68", "0.50")}
 
 
 @cache

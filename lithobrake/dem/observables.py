@@ -14,6 +14,14 @@ from lithobrake.dem.stepping.time_step_stability import largest_step, shortest_c
 from lithobrake.dem.world_state import WorldState
 from lithobrake.vocabulary.arrays import Floats
 
+CONTACT = np.dtype(
+    [
+        ("body_a", np.int64), ("body_b", np.int64), ("part_a", np.int64), ("part_b", np.int64),
+        ("point", np.float64, 3), ("normal", np.float64, 3),
+        ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
+    ]
+)  # fmt: skip
+
 
 def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:
     """Return the kinetic energy [J] of bodies, shape [...], from vectors of shape [..., 3]."""
@@ -45,15 +53,6 @@ def ledger(
         "friction": float(lost[FRICTION]), "rolling": float(lost[ROLLING]),
     }  # fmt: skip
     return {**parts, "total": float(np.sum(list(parts.values())))}
-
-
-CONTACT = np.dtype(
-    [
-        ("body_a", np.int64), ("body_b", np.int64), ("part_a", np.int64), ("part_b", np.int64),
-        ("point", np.float64, 3), ("normal", np.float64, 3),
-        ("overlap", np.float64), ("normal_force", np.float64), ("tangential_force", np.float64, 3),
-    ]
-)  # fmt: skip
 
 
 class BodyMotion(NamedTuple):

@@ -32,6 +32,7 @@ from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.material import Material
 
 NOTHING_WATCHED = -1
+FORMAT_VERSION = 7
 
 
 class WorldState:
@@ -149,9 +150,6 @@ class WorldState:
         spin = np.zeros_like(momentum)
         write_spins(rotation, momentum, self.inverse_inertia[some], spin)
         return spin
-
-
-FORMAT_VERSION = 7
 
 
 def _shape_text(shape: Shape) -> str:

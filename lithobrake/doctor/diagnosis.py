@@ -30,6 +30,12 @@ _REQUIREMENT = re.compile(
     r"(?P<name>[\w.-]+)[^;>]*(?:>=\s*(?P<lowest>[\d.]+))?"  # numpy>=1.26
     r"[^;]*(?:;.*extra\s*==\s*[\"'](?P<extra>\w+))?"  # ; extra == "data"
 )
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+# A load above this part of the cores is other work, which makes all of this slower.
+BUSY = 0.7
+NOT_INSTALLED = (
+    "  unknown, since lithobrake lies in a folder and is not installed: pip install FOLDER, with pyproject.toml"
+)
 
 
 @dataclass(frozen=True)
@@ -89,9 +95,6 @@ def _numbers(version: str) -> list[int]:
     return [int(number) for number in re.match(r"\d*(?:\.\d+)*", version)[0].split(".") if number]  # type: ignore[index]
 
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-
-
 @dataclass(frozen=True)
 class FoundCache:
     """The folder of compiled kernels, gravity tables and beds (None: none to be trusted), and what it has of them."""
@@ -141,13 +144,6 @@ class FoundMachine:
             browser=next(filter(None, map(shutil.which, BROWSERS)), None),
             cache=FoundCache.look() if has_libraries else None,
         )
-
-
-# A load above this part of the cores is other work, which makes all of this slower.
-BUSY = 0.7
-NOT_INSTALLED = (
-    "  unknown, since lithobrake lies in a folder and is not installed: pip install FOLDER, with pyproject.toml"
-)
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,10 @@ _BLOCK = 1 << 20
 # densities over several bounces follows the bumps that narrow kernels leave between rows (docs/decisions/chaos.md has
 # how often intervals held the truth by this factor).
 DENSITY_FACTOR = 1.5
+# Of the variance of a direction that beds may have at most: with all of it runs on one bed would be alike.
+MOST_OF_BED = 0.95
+# Of an observation: the squares of larger ones overflow, and these say nothing either.
+LARGEST_ERROR = 1e100
 
 
 @dataclass(frozen=True)
@@ -97,10 +101,6 @@ def _log_sum(logarithms: Array, log_chances: Array) -> Array:
     return total
 
 
-# Of the variance of a direction that beds may have at most: with all of it runs on one bed would be alike.
-MOST_OF_BED = 0.95
-
-
 @dataclass(frozen=True)
 class BedEffect:
     """A bed's effect given the runs that were seen on it, normal, in the coordinates of covariance 1.
@@ -171,10 +171,6 @@ class BedEffect:
     @property
     def _next(self) -> Array:
         return np.eye(len(self.before)) - self.before + self.covariance
-
-
-# Of an observation: the squares of larger ones overflow, and these say nothing either.
-LARGEST_ERROR = 1e100
 
 
 def kernels_of(model: Parts) -> Kernels:

@@ -23,6 +23,9 @@ MOST_BEYOND = 0.02
 # Deviations of the scatter from the nearer bound.
 DISTANT = 3.0
 FOLDS = 5
+OUTCOME_FOLDS = 5
+# A term of which a ridge leaves less than this is left out: it would cost time at every draw.
+TRACE = 1e-3
 
 
 def with_distant_bounds(runs: TrainingRuns, indices: Indices, matrix: Array) -> TrainingRuns:
@@ -63,11 +66,6 @@ def _law(design: TermTable, coordinate: Array, test: NDArray[np.bool_]) -> tuple
 
 def _log_normal_density(y: Array, location: Array, scale: Array) -> Array:
     return np.asarray(-0.5 * ((y - location) / scale) ** 2 - np.log(scale))
-
-
-OUTCOME_FOLDS = 5
-# A term of which a ridge leaves less than this is left out: it would cost time at every draw.
-TRACE = 1e-3
 
 
 @one_thread()

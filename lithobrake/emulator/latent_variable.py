@@ -20,6 +20,9 @@ LATENTS: dict[str, tuple[Distribution, int]] = {"normal": (Normal(0.0, 1.0), 100
 LEAST_NODE_WEIGHT = 1e-9
 # Cubic in the latent variable: enough for skewness and two branches.
 LATENT_DEGREE = 3
+# Relative change of the mean logarithm of the density at which a climb ends.
+TOLERANCE = 1e-7
+MOST_STEPS = 300
 
 
 @dataclass(frozen=True)
@@ -74,11 +77,6 @@ def latent_terms(inputs: Mapping[str, Distribution], degree: int, latent: str) -
     mixed = (of_inputs > 0) & (power > 0)
     kept = (of_inputs <= degree) & (~mixed | (of_inputs + power <= max(degree, 2)))
     return LatentTerms(dict(inputs), latent, indices[kept])
-
-
-# Relative change of the mean logarithm of the density at which a climb ends.
-TOLERANCE = 1e-7
-MOST_STEPS = 300
 
 
 @dataclass(frozen=True)

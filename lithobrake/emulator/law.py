@@ -16,6 +16,16 @@ LOGARITHM_FLOOR = 0.15
 # A residual counts as no more than this many mean sizes of its place.
 LARGEST_SIZE = 4.0
 SCALE_STEPS = 3
+# Widths of a kernel that looks at all inputs, in units of the root mean square distance of two points, and of one that
+# looks at a single input, in deviations of it.
+BANDWIDTHS = (0.9, 0.65)
+WIDTHS = (0.8, 0.4, 0.2)
+# Of the normal rule for the smoothing; the rule itself would take a third off the skewness of a few hundred rows.
+SMOOTHING_FACTOR = 0.5
+# Inverse penalties of the slopes, from none to hardly any penalty; the first is as good as no inputs.
+INVERSE_PENALTIES = (1e-6, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
+# Half an event for each class keeps chances of rare classes from 0 and 1. Source: [Firth-1993].
+HALF_EVENT = 0.5
 
 
 @dataclass(frozen=True)
@@ -125,14 +135,6 @@ def _log_sizes(size: Array, weights: Array) -> Array:
     return np.log(size + LOGARITHM_FLOOR * (mean if mean > 0.0 else 1.0))
 
 
-# Widths of a kernel that looks at all inputs, in units of the root mean square distance of two points, and of one that
-# looks at a single input, in deviations of it.
-BANDWIDTHS = (0.9, 0.65)
-WIDTHS = (0.8, 0.4, 0.2)
-# Of the normal rule for the smoothing; the rule itself would take a third off the skewness of a few hundred rows.
-SMOOTHING_FACTOR = 0.5
-
-
 def kernels(input_count: int) -> list[tuple[float, ...]]:
     """Widths [input_count] of the kernels that rows may be drawn by: first none, which draws from all rows alike."""
     # The root mean square distance of two independent points of variance 1 in each input.
@@ -193,12 +195,6 @@ def smoothed(rows: Array, size: float, root: Array, random: np.random.Generator)
     """Rows [..., output_count] with normal noise of this size added and the variance given back."""
     noise = random.standard_normal(rows.shape) @ root.T
     return (rows + size * noise) / np.sqrt(1.0 + size**2)
-
-
-# Inverse penalties of the slopes, from none to hardly any penalty; the first is as good as no inputs.
-INVERSE_PENALTIES = (1e-6, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
-# Half an event for each class keeps chances of rare classes from 0 and 1. Source: [Firth-1993].
-HALF_EVENT = 0.5
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,10 @@ HIGHEST_DEGREE, OWN_DEGREE, LEAST_DEGREE = 12, 5, 2
 OF_UNBOUNDED = 3
 # With more inputs than this there are no products: of thirty inputs there are 435, which tell more than runs do.
 MOST_OF_SECOND_DEGREE = 20
+# Least squares with fewer runs to a term has standard errors that are themselves hardly known.
+RUNS_PER_TERM = 4
+MEAN_LAW_DEGREE = 5
+PERMUTATIONS = 399
 
 
 @dataclass(frozen=True)
@@ -60,11 +64,6 @@ def terms_up_to(inputs: Mapping[str, Distribution], degree: int) -> Terms:
     """All terms up to a total degree, as far as the inputs determine them."""
     highest = [int(min(degree, entry.highest_degree)) for entry in inputs.values()]
     return Terms(dict(inputs), multi_index_set(len(inputs), degree, max_degrees=highest)[1:])
-
-
-# Least squares with fewer runs to a term has standard errors that are themselves hardly known.
-RUNS_PER_TERM = 4
-MEAN_LAW_DEGREE = 5
 
 
 @dataclass(frozen=True)
@@ -135,9 +134,6 @@ def noise_freed_squares(matrix: Array, y: Array, weights: Array) -> tuple[Array,
     residual = (y - full @ coefficients) ** 2 / (1.0 - leverage)
     variances = (weights * residual) @ influence**2
     return (coefficients**2 - variances)[1:], float(coefficients[0])
-
-
-PERMUTATIONS = 399
 
 
 def found_inputs(

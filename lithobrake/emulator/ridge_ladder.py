@@ -20,6 +20,19 @@ STEPS = 60
 # Change of the evidence at which a search ends.
 TOLERANCE = 1e-3
 REFUSED = 1e10
+# Of a rung that walks: the deviation of a square beside that of a linear term. Finer steps gave the same errors.
+FADE = 0.4
+# Penalties in units of the number of runs: of a term of an orthonormal basis 1 / (1 + penalty) is left.
+PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
+# With more inputs than this a ridge that walks has no products and squares: of thirty inputs there are 465, for each of
+# as many sets of inputs, which takes minutes and tells more than any runs do.
+MOST_OF_SECOND_DEGREE = 12
+# Rungs of less weight are left out of the average.
+LEAST_WEIGHT = 0.005
+# Of a learnt rung an input takes no part if less than this is left of each of its terms.
+LEAST_LEFT = 0.1
+# Of a run, what a fit has to leave of it for its residual to be inflated in full.
+LEAST_FREE = 0.05
 
 
 def exponents(indices: Indices) -> Array:
@@ -68,21 +81,6 @@ def _loss(powers: Array, vector: Array, gram: Array, moments: Array, total: floa
     by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (count - 1.0) / (unexplained * total)
     # The penalty is one over the square of a factor that all terms have.
     return float(value), np.append(powers.T @ by_factor, -0.5 * by_factor.sum())
-
-
-# Of a rung that walks: the deviation of a square beside that of a linear term. Finer steps gave the same errors.
-FADE = 0.4
-# Penalties in units of the number of runs: of a term of an orthonormal basis 1 / (1 + penalty) is left.
-PENALTIES = (1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0)
-# With more inputs than this a ridge that walks has no products and squares: of thirty inputs there are 465, for each of
-# as many sets of inputs, which takes minutes and tells more than any runs do.
-MOST_OF_SECOND_DEGREE = 12
-# Rungs of less weight are left out of the average.
-LEAST_WEIGHT = 0.005
-# Of a learnt rung an input takes no part if less than this is left of each of its terms.
-LEAST_LEFT = 0.1
-# Of a run, what a fit has to leave of it for its residual to be inflated in full.
-LEAST_FREE = 0.05
 
 
 @dataclass(frozen=True)

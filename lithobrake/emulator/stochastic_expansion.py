@@ -38,6 +38,12 @@ FORMAT = "lithobrake stochastic expansion"
 HALVINGS = 60
 # Nodes of the noise in a mean of bounded outputs.
 NOISE_NODES = 16
+HIGHEST_DEGREE = 5
+# With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
+RUNS_PER_TERM = 5
+# Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
+NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
+FOLDS = 5
 
 
 @dataclass(frozen=True)
@@ -221,14 +227,6 @@ def load_stochastic_expansion(path: str | os.PathLike[str]) -> StochasticExpansi
         return StochasticExpansion(runs, terms, coefficients, noise, float(content["held_out"]), weights)
 
     return read(FORMAT, build, path)
-
-
-HIGHEST_DEGREE = 5
-# With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
-RUNS_PER_TERM = 5
-# Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
-NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
-FOLDS = 5
 
 
 @one_thread()

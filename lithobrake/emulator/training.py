@@ -14,6 +14,12 @@ from lithobrake.chaos.training import check_magnitude
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
+WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
+# Fewer residuals than this are no distribution to draw from.
+FEWEST = 8
+# What a coordinate may lose of the range of its output.
+ROUNDING = 1e-4
+
 
 def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:
     """Coordinates of outputs y strictly between bounds of the same shape; an infinite bound is none."""
@@ -56,13 +62,6 @@ def from_coordinate(coordinate: Array, lower: Array, upper: Array) -> Array:
 def inside(y: Array, lower: Array, upper: Array) -> Array:
     """Outputs with those beyond bounds put onto the next number inside."""
     return np.clip(y, np.nextafter(lower, np.inf), np.nextafter(upper, -np.inf))
-
-
-WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
-# Fewer residuals than this are no distribution to draw from.
-FEWEST = 8
-# What a coordinate may lose of the range of its output.
-ROUNDING = 1e-4
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,12 @@ from lithobrake.emulator.training import TrainingRuns
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.percentages import HIGH, LOW
 
+# Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
+MOST_FOLDS = 12
+# Rows of an ensemble whose mutual distances are taken; of more than this every second, third, ... one.
+MOST_MEMBERS = 300
+BAND = (LOW, HIGH)
+
 
 def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
     """Fold of each run [run_count], whole groups together, numbered from 0."""
@@ -70,13 +76,6 @@ def pit(values: Array, weights: Array, observed: Array) -> Array:
     Uniform between 0 and 1 where ensembles are right.
     """
     return (weights * ((values < observed[:, None]) + 0.5 * (values == observed[:, None]))).sum(axis=1)
-
-
-# Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
-MOST_FOLDS = 12
-# Rows of an ensemble whose mutual distances are taken; of more than this every second, third, ... one.
-MOST_MEMBERS = 300
-BAND = (LOW, HIGH)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,14 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, VELOCITY_OUT
 Row = Mapping[str, Any]
 # An impact with so small a part of its velocity along the ground has no direction there.
 VERTICAL = 1e-9
+log = logging.getLogger(__name__)
+VERSION = "2.0"
+# Between two states a lander turns no farther, unless the user chooses a step; beyond the second a step says nothing of
+# the way between [rad].
+STEP_ANGLE, BLIND_ANGLE = math.radians(10.0), math.radians(90.0)
+# Of the polynomials between states.
+DEGREE = 7
+QUATERNION = "Each quaternion (Q1, Q2, Q3, QC; QC is its scalar) turns components along REF_FRAME_A into those along "
 
 
 @dataclass(frozen=True)
@@ -161,15 +169,6 @@ def _rows(table: Table) -> list[Row]:
     return [{name: table[name][row] for name in table} for row in range(table.row_count)]
 
 
-log = logging.getLogger(__name__)
-
-VERSION = "2.0"
-# Between two states a lander turns no farther, unless the user chooses a step; beyond the second a step says nothing of
-# the way between [rad].
-STEP_ANGLE, BLIND_ANGLE = math.radians(10.0), math.radians(90.0)
-# Of the polynomials between states.
-DEGREE = 7
-QUATERNION = "Each quaternion (Q1, Q2, Q3, QC; QC is its scalar) turns components along REF_FRAME_A into those along "
 QUATERNION += "the lander's own axes, SC_BODY_1, which are those of its shape in the study."
 
 

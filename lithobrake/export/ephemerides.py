@@ -20,6 +20,16 @@ from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
 
 STEPS = 100
+log = logging.getLogger(__name__)
+# Fewer flights have a covariance without full rank.
+FEWEST = 7
+# A line of text with a time and six numbers of 16 digits; six lines with the 21 of a covariance, and one with a time.
+BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
+# Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
+FIRST, FRAME = -1_000_000, 1_400_000
+FLIGHTS, CONSTANTS = "flights.bsp", "body.tpc"
+# Epoch of J2000 as a Julian date.
+J2000 = 2_451_545.0
 
 
 def checked_step(flown: Flown, step: float | None) -> float:
@@ -80,14 +90,6 @@ def _keys(flown: Flown) -> list[tuple[int, int]]:
 def _sentence(sample: int, arc: int, count: int) -> str:
     words = "; between flights that do not follow at once the lander slid over the ground" if count > 1 else ""
     return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
-
-
-log = logging.getLogger(__name__)
-
-# Fewer flights have a covariance without full rank.
-FEWEST = 7
-# A line of text with a time and six numbers of 16 digits; six lines with the 21 of a covariance, and one with a time.
-BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
 
 
 def write_ephemerides(
@@ -170,13 +172,6 @@ def _cloud(flown: Flown, axes: Frame, step: float, progress: Progress) -> Segmen
             f"so this is no path of one lander; it ends before fewer than {FEWEST} flights are left."
         ],
     )
-
-
-# Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
-FIRST, FRAME = -1_000_000, 1_400_000
-FLIGHTS, CONSTANTS = "flights.bsp", "body.tpc"
-# Epoch of J2000 as a Julian date.
-J2000 = 2_451_545.0
 
 
 def write_spk(

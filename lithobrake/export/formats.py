@@ -16,6 +16,8 @@ from lithobrake.view import contact_sheet, write_vtkhdf
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.study_files import JOURNEYS_FILE, REST_FILE
 
+IMPACTS, REST, CZML = "impacts.geojson", "rest.geojson", "landers.czml"
+
 
 @dataclass(frozen=True)
 class ExportOptions:
@@ -112,7 +114,6 @@ def _sheet(results: StudyResults, folder: Path, chosen: ExportOptions) -> None:
     contact_sheet(_landing(results, chosen.run, chosen.progress), folder / f"{_landing_name(chosen)}.png")
 
 
-IMPACTS, REST, CZML = "impacts.geojson", "rest.geojson", "landers.czml"
 KINDS = {
     "oem": Kind(lambda results, chosen: [f"{name}.oem" for name in flight_names(chosen.samples)], _oem),
     "aem": Kind(

@@ -37,6 +37,7 @@ NO_FLOATS: dict[str, Callable[[Any], int | str]] = {
     **dict.fromkeys(("sample", "facet", "journey", "bed", "contacts", "touchdowns", "touchdown"), int),
     **dict.fromkeys(("ground", "face", "key", "outcome"), str),
 }
+UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
 
 
 @dataclass(frozen=True)
@@ -205,9 +206,6 @@ def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[An
         "features": features,
     }
     write_json(path, content, indent=None)
-
-
-UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
 
 
 def site_cells_file(place: Path) -> Path:

@@ -20,6 +20,12 @@ VERSION = "2.0"
 LINE = 100
 # Of an epoch.
 YEARS = (1900, 2999)
+FRAMES = ("inertial", "fixed", "icrf")
+# An epoch that nobody takes for that of a landing.
+NO_EPOCH = "2000-01-01T12:00:00"
+# Files have times in whole microseconds [s].
+RESOLUTION = 1e-6
+POLE = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 @dataclass(frozen=True)
@@ -110,14 +116,6 @@ def comment_lines(sentences: Sequence[str]) -> Iterator[str]:
 def number_texts(values: Array) -> str:
     """Numbers with all their digits."""
     return " ".join(f"{value:.16e}" for value in values.tolist())
-
-
-FRAMES = ("inertial", "fixed", "icrf")
-# An epoch that nobody takes for that of a landing.
-NO_EPOCH = "2000-01-01T12:00:00"
-# Files have times in whole microseconds [s].
-RESOLUTION = 1e-6
-POLE = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 @dataclass(frozen=True)

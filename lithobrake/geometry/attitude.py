@@ -9,6 +9,13 @@ import numpy as np
 from lithobrake.geometry.limits import alike
 from lithobrake.vocabulary.arrays import Array
 
+UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"
+# The smallest and the largest value of each term.
+RANGES = {UPRIGHT: (0.0, 1.0), LEAN: (-1.0, 1.0), ALONG: (-1.0, 1.0), FACING: (-1.0, 1.0), HEADING: (-1.0, 1.0)}
+CUBE_RANGES = {UPRIGHT: (1.0 / 3.0, 1.0), LEAN: (-0.3, 0.3), ALONG: (-0.5, 0.5)}
+# A law whose terms vary by less than this, squared, has no such term.
+LEAST_VARIANCE = 1e-9
+
 
 def uniform_attitude(first: float, second: float, third: float) -> np.ndarray:
     """Return the attitude of three uniform numbers; even numbers give attitudes that are even over all rotations.
@@ -54,14 +61,6 @@ def quaternion_products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     w, v, s, u = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
     scalar = w * s - np.sum(v * u, axis=1, keepdims=True)
     return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=1)
-
-
-UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"
-# The smallest and the largest value of each term.
-RANGES = {UPRIGHT: (0.0, 1.0), LEAN: (-1.0, 1.0), ALONG: (-1.0, 1.0), FACING: (-1.0, 1.0), HEADING: (-1.0, 1.0)}
-CUBE_RANGES = {UPRIGHT: (1.0 / 3.0, 1.0), LEAN: (-0.3, 0.3), ALONG: (-0.5, 0.5)}
-# A law whose terms vary by less than this, squared, has no such term.
-LEAST_VARIANCE = 1e-9
 
 
 @dataclass(frozen=True)

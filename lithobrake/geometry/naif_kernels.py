@@ -26,6 +26,13 @@ INSTALL = 'pip install "lithobrake[spice]"'
 # Shapes of millions of plates take some seconds; a damaged kernel may lead round in a circle [s].
 TIME_LIMIT = 300.0
 _PROGRAM = f"from {__name__} import answer; answer()"
+# Bodies that SPICE's own table of names may lack.
+NUMBERS = {key: body.kernel_number for key, body in KNOWN_BODIES.items() if body.kernel_number is not None}
+# What others, older kernels among them, call the same two bodies.
+OLD_NUMBERS = dict.fromkeys((2065803, 20065803), NUMBERS["didymos"])
+PLATE_MODEL = 2  # data type of a segment
+VERTEX_SIZE, PLATE_SIZE = 24, 12  # in a kernel [bytes]
+Plates = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def spice() -> Any:
@@ -101,12 +108,6 @@ def answer() -> None:
 
 def _damaged(kernels: Sequence[str], words: str) -> ValueError:
     return ValueError(f"{', '.join(kernels)}: not a kernel that SPICE can read ({words}); fetch it again")
-
-
-# Bodies that SPICE's own table of names may lack.
-NUMBERS = {key: body.kernel_number for key, body in KNOWN_BODIES.items() if body.kernel_number is not None}
-# What others, older kernels among them, call the same two bodies.
-OLD_NUMBERS = dict.fromkeys((2065803, 20065803), NUMBERS["didymos"])
 
 
 def spin(kernels: Sequence[str], body: str | int) -> tuple[float, float, float, float]:
@@ -187,12 +188,6 @@ def _constants(loaded: Any, number: int, name: str) -> list[float]:
     if not loaded.bodfnd(number, name):
         raise ValueError(f"the kernels have no BODY{number}_{name}; add the constants (PCK) of the body")
     return [float(value) for value in loaded.bodvcd(number, name, 10)[1]]
-
-
-PLATE_MODEL = 2  # data type of a segment
-VERTEX_SIZE, PLATE_SIZE = 24, 12  # in a kernel [bytes]
-
-Plates = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def read_shape_kernel(path: Path) -> Plates:

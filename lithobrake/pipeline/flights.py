@@ -38,6 +38,14 @@ PATHS = 16
 MOST_ARCS = 128
 # Parts of each flight's time, of which the ends are joined by straight lines.
 PARTS = 192
+# Flights of which the Jacobi constant is looked at.
+CHECKED = 200
+# docs/flights.md says what each is.
+COLUMNS = (
+    "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
+    *(f"site_{key}" for key in SITE_KEYS),
+    "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -131,16 +139,6 @@ def _write(folder: "StudyFolder", position: np.ndarray, time: np.ndarray, ways: 
         file["time"].attrs.update({"units": "s", "long_name": "time since the start"})
         file["sample"].attrs.update({"units": "", "long_name": "number of the sample or of the journey, from 0"})
         file.attrs["format_version"], file.attrs["status"] = FORMAT_VERSION, ways.status
-
-
-# Flights of which the Jacobi constant is looked at.
-CHECKED = 200
-# docs/flights.md says what each is.
-COLUMNS = (
-    "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
-    *(f"site_{key}" for key in SITE_KEYS),
-    "status", "time_s", "latitude_deg", "longitude_deg", "facet", "impact_speed", "impact_incidence_deg",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,11 @@ if TYPE_CHECKING:
 
 # Columns of standard deviations begin so; those of words.
 ERROR, OUTCOME, BED = "error:", "outcome", "bed"
+POSTERIOR, PICTURE = "posterior.json", "posterior.png"
+# Points of the posterior that the file keeps and the picture draws.
+DRAWN = 2000
+# What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
+OWN = "impact."
 
 
 def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
@@ -118,13 +123,6 @@ class ExpectedInference:
             return [f"Bounces: {self.why}."]
         first = f"Bounces with observed {', '.join(self.outputs)}, for an exact emulator:"
         return [first, *(f"  {name}: {one.words()}" for name, one in self.inputs.items())]
-
-
-POSTERIOR, PICTURE = "posterior.json", "posterior.png"
-# Points of the posterior that the file keeps and the picture draws.
-DRAWN = 2000
-# What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
-OWN = "impact."
 
 
 @dataclass(frozen=True)

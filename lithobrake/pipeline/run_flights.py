@@ -24,6 +24,18 @@ FLIGHT_COUNT = 64
 # Numbers of a site in the order of their powers: those that matter most fill their plane best.
 FIRST = ("heading_deg", "partner_longitude_deg")
 LATTICE = (*FIRST, *(key for key in SITE_KEYS if key not in FIRST))
+RUN_FLIGHTS_FILE: str = "run_flights.csv"
+IMPACTS: str = "run_impacts.csv"
+# What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
+FATES = (
+    *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),
+    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
+)
+RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
+COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
+# Of each flight of the drawn runs that ends on the body.
+IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
+IMPACT_COLUMNS = ("run", *IMPACT_NUMBERS)
 
 
 def run_sites(site: Site, run_count: int, flight_count: int = FLIGHT_COUNT) -> dict[str, np.ndarray]:
@@ -53,20 +65,6 @@ def _generator(count: int) -> int:
     """The number next to the golden section of a count that has no divisor with it."""
     golden = 0.5 * (math.sqrt(5.0) - 1.0) * count
     return min((one for one in range(1, count + 1) if math.gcd(one, count) == 1), key=lambda one: abs(one - golden))
-
-
-RUN_FLIGHTS_FILE: str = "run_flights.csv"
-IMPACTS: str = "run_impacts.csv"
-# What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
-FATES = (
-    *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),
-    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
-)
-RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
-COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
-# Of each flight of the drawn runs that ends on the body.
-IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
-IMPACT_COLUMNS = ("run", *IMPACT_NUMBERS)
 
 
 @dataclass(frozen=True)

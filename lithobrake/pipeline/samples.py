@@ -17,6 +17,12 @@ from lithobrake.vocabulary.quantities import RUN, TOUCHDOWN, VELOCITY_OUT, quant
 from lithobrake.vocabulary.study_files import SAMPLES_FILE
 
 VELOCITY = VELOCITY_OUT
+FORMAT_VERSION = 2
+SAMPLE_OUTCOMES = tuple(SampleOutcome)
+CLEAR, CAPTURED = SAMPLE_OUTCOMES.index(SampleOutcome.CLEAR), SAMPLE_OUTCOMES.index(SampleOutcome.CAPTURED)
+OUTSIDE = SAMPLE_OUTCOMES.index(SampleOutcome.OUTSIDE)
+# Those after which nobody knows where the lander is.
+MISSING = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 
 
 def outgoing(outputs: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
@@ -49,14 +55,6 @@ def rolling_spin(velocity: np.ndarray, size: np.ndarray) -> np.ndarray:
     axis = np.where(length > 0.0, across / np.where(length > 0.0, length, 1.0), np.array([0.0, 1.0, 0.0]))
     spin: np.ndarray = axis * size[:, None]
     return spin
-
-
-FORMAT_VERSION = 2
-SAMPLE_OUTCOMES = tuple(SampleOutcome)
-CLEAR, CAPTURED = SAMPLE_OUTCOMES.index(SampleOutcome.CLEAR), SAMPLE_OUTCOMES.index(SampleOutcome.CAPTURED)
-OUTSIDE = SAMPLE_OUTCOMES.index(SampleOutcome.OUTSIDE)
-# Those after which nobody knows where the lander is.
-MISSING = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,11 @@ from lithobrake.vocabulary.study_files import TOUCHDOWNS_FILE
 
 # Places of each cell that are looked at.
 PLACES = 24
+TITLE = "landers at the sites"
+# Ends of the spread over the places of a cell.
+WORDS = {GRAVITY: "gravity", SLOPE: "slope", IMPACT_SPEED: "impact speed", IMPACT_INCIDENCE: "impact angle"}
+# Regions of equal area, and journeys that say something of one.
+REGIONS, FEWEST_JOURNEYS = 8, 8
 
 
 @dataclass(frozen=True)
@@ -95,9 +100,6 @@ def _seen(job: Job, name: SkyBody, points: np.ndarray, up: np.ndarray, random: n
     return found
 
 
-TITLE = "landers at the sites"
-
-
 @dataclass(frozen=True)
 class SiteLanders:
     """What became of the landers of each cell, all arrays [cell_count, lander_count].
@@ -138,10 +140,6 @@ def site_arrivals(job: Job, cells: EqualAreaCells, lander_count: int) -> Arrival
     site = {key: np.tile(values, cells.total) for key, values in one.site.items()} | aims
     number, refit = np.tile(one.number, cells.total), np.tile(np.arange(lander_count) % REFIT_COUNT, cells.total)
     return Arrivals.of(job.site, number, one.rows * cells.total, site, refit)
-
-
-# Ends of the spread over the places of a cell.
-WORDS = {GRAVITY: "gravity", SLOPE: "slope", IMPACT_SPEED: "impact speed", IMPACT_INCIDENCE: "impact angle"}
 
 
 def site_cells(
@@ -223,10 +221,6 @@ def _beyond(beyond: np.ndarray) -> str:
 def _spread(values: np.ndarray) -> SiteSpread:
     low, high = np.quantile(values, [LOW, HIGH]).tolist()
     return SiteSpread(float(values.mean()), low, high)
-
-
-# Regions of equal area, and journeys that say something of one.
-REGIONS, FEWEST_JOURNEYS = 8, 8
 
 
 def first_places(job: Job) -> tuple[np.ndarray, np.ndarray]:

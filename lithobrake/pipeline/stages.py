@@ -72,6 +72,109 @@ RUN_PARTS = (
     "pipeline/design", "pipeline/runs/energy_bound.py", "pipeline/runs/landings.py", "pipeline/runs/run_table.py",
     "chaos", "vocabulary/quantities.py", "geometry/attitude.py",
 )  # fmt: skip
+BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
+FIRST_LANDING = Stage("landing", "preview landing", landing_files, land_once, ("bed",), landing_dependencies)
+# Without parts of its own: the choice of the run is made by code that is among those of the runs.
+TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
+FLIGHT_FILES = (SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE, BODY_FILE, PATHS_FILE)
+FLIGHT_PARTS = (
+    "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
+    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
+    "vocabulary/known_bodies.py", "vocabulary/quantities.py",
+)  # fmt: skip
+# After the side runs, since pairs and twins fly with the runs that they belong to.
+FLY_RUNS = Stage(
+    "fly_runs",
+    "flights of the runs",
+    same_files(RUN_FLIGHTS_FILE, IMPACTS),
+    fly_runs,
+    ("side_runs",),
+    run_flight_dependencies,
+    FLIGHT_PARTS,
+)
+FLY = Stage("fly", "flights", same_files(*FLIGHT_FILES), fly_samples, ("sample",), flight_dependencies, FLIGHT_PARTS)
+EMULATOR_PARTS = (
+    "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
+    "analysis", "results/explorer_tables.py", "vocabulary/quantities.py",
+)  # fmt: skip
+EMULATOR = Stage(
+    "emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER_FILE), make_emulator, ("runs",), parts=EMULATOR_PARTS
+)
+REST_PARTS = ("pipeline/first_bounces", *FLIGHT_PARTS)
+REST = Stage("rest", "bounces until rest", rest_files, follow_samples, ("fly",), rest_dependencies, REST_PARTS)
+AIM = Stage("aim", "aims", aim_files, follow_aims, ("fly",), aim_dependencies, REST_PARTS)
+JOURNEY_PARTS = (
+    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/frames.py", *RUN_PARTS, *FLIGHT_PARTS,
+)  # fmt: skip
+EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
+EMULATED = Stage(
+    "emulated",
+    "journeys by the emulator",
+    same_files(*EMULATED_FILES),
+    make_emulated,
+    ("runs",),
+    emulated_dependencies,
+    EMULATED_PARTS,
+)
+OPTIONS = Stage(
+    "aim", "delivery options", option_files, follow_options, ("emulated",), option_dependencies, EMULATED_PARTS
+)
+SKY_PARTS = ("pipeline/sky.py", "pipeline/site.py", *FLIGHT_PARTS)
+SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",), sky_dependencies, SKY_PARTS)
+ANSWER_PARTS = (
+    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys"),
+    *("analysis", "chaos", "emulator", "results", "statements", "vocabulary"),
+)
+ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, ("fly_runs",), parts=ANSWER_PARTS)
+JOURNEY_SUMMARY = Stage(
+    "summary",
+    "summary",
+    same_files(SUMMARY_FILE),
+    write_journey_summary,
+    ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
+    summary_dependencies,
+    ANSWER_PARTS,
+)
+SUMMARY = Stage(
+    "summary",
+    "summary",
+    same_files(SUMMARY_FILE),
+    write_drawn_summary,
+    ("landing", "telling_landing", "estimate", "rest", "aim"),
+    summary_dependencies,
+    ANSWER_PARTS,
+)
+PAPER_PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
+MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_dependencies)
+REFINE = Stage("refine", "refinement", same_files(REFINED_FILE), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
+TEST = Stage("test", "scores", same_files(SCORES_FILE), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
+FLY_EXPANSION_SAMPLES = Stage(
+    "fly",
+    "flights",
+    same_files(*FLIGHT_FILES, "flights_without_scatter.csv"),
+    fly_expansion_samples,
+    ("sample",),
+    flight_dependencies,
+    FLIGHT_PARTS,
+)
+FOLLOW_EXPANSION_SAMPLES = Stage(
+    "rest",
+    "bounces until rest",
+    rest_files,
+    follow_expansion_samples,
+    ("fly",),
+    rest_dependencies,
+    (*PAPER_PARTS, *REST_PARTS),
+)
+PAPER_SUMMARY = Stage(
+    "summary",
+    "summary",
+    same_files(SUMMARY_FILE),
+    write_summary,
+    ("landing", "rest"),
+    summary_dependencies,
+    (*PAPER_PARTS, *ANSWER_PARTS),
+)
 
 
 def drawn_dependencies(study: Study) -> Any:
@@ -83,8 +186,6 @@ def _side_files(study: Study) -> list[str]:
     return [file_of(design) for design in SIDE_DESIGNS] if study.design.side_runs else []
 
 
-BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
-FIRST_LANDING = Stage("landing", "preview landing", landing_files, land_once, ("bed",), landing_dependencies)
 DRAWN_RUNS = Stage(
     "runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), drawn_dependencies, RUN_PARTS
 )
@@ -97,43 +198,12 @@ SIDE_RUNS = Stage(
     lambda study: [study.design.side_runs, study.design.twin_shift],
     RUN_PARTS,
 )
-# Without parts of its own: the choice of the run is made by code that is among those of the runs.
-TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
-
-
-FLIGHT_FILES = (SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE, BODY_FILE, PATHS_FILE)
-FLIGHT_PARTS = (
-    "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
-    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
-    "vocabulary/known_bodies.py", "vocabulary/quantities.py",
-)  # fmt: skip
-
-# After the side runs, since pairs and twins fly with the runs that they belong to.
-FLY_RUNS = Stage(
-    "fly_runs",
-    "flights of the runs",
-    same_files(RUN_FLIGHTS_FILE, IMPACTS),
-    fly_runs,
-    ("side_runs",),
-    run_flight_dependencies,
-    FLIGHT_PARTS,
-)
-FLY = Stage("fly", "flights", same_files(*FLIGHT_FILES), fly_samples, ("sample",), flight_dependencies, FLIGHT_PARTS)
-
-
-EMULATOR_PARTS = (
-    "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
-    "analysis", "results/explorer_tables.py", "vocabulary/quantities.py",
-)  # fmt: skip
 
 
 def sample_dependencies(study: Study) -> Any:
     return study.monte_carlo.model_dump()
 
 
-EMULATOR = Stage(
-    "emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER_FILE), make_emulator, ("runs",), parts=EMULATOR_PARTS
-)
 SAMPLE = Stage(
     "sample",
     "samples",
@@ -143,17 +213,6 @@ SAMPLE = Stage(
     sample_dependencies,
     EMULATOR_PARTS,
 )
-
-
-REST_PARTS = ("pipeline/first_bounces", *FLIGHT_PARTS)
-
-REST = Stage("rest", "bounces until rest", rest_files, follow_samples, ("fly",), rest_dependencies, REST_PARTS)
-AIM = Stage("aim", "aims", aim_files, follow_aims, ("fly",), aim_dependencies, REST_PARTS)
-
-
-JOURNEY_PARTS = (
-    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/frames.py", *RUN_PARTS, *FLIGHT_PARTS,
-)  # fmt: skip
 
 
 def journey_dependencies(study: Study) -> Any:
@@ -185,56 +244,6 @@ FOLLOW_JOURNEYS = Stage(
 )
 
 
-EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
-
-EMULATED = Stage(
-    "emulated",
-    "journeys by the emulator",
-    same_files(*EMULATED_FILES),
-    make_emulated,
-    ("runs",),
-    emulated_dependencies,
-    EMULATED_PARTS,
-)
-OPTIONS = Stage(
-    "aim", "delivery options", option_files, follow_options, ("emulated",), option_dependencies, EMULATED_PARTS
-)
-
-
-SKY_PARTS = ("pipeline/sky.py", "pipeline/site.py", *FLIGHT_PARTS)
-
-SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",), sky_dependencies, SKY_PARTS)
-
-
-ANSWER_PARTS = (
-    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys"),
-    *("analysis", "chaos", "emulator", "results", "statements", "vocabulary"),
-)
-
-ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, ("fly_runs",), parts=ANSWER_PARTS)
-JOURNEY_SUMMARY = Stage(
-    "summary",
-    "summary",
-    same_files(SUMMARY_FILE),
-    write_journey_summary,
-    ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
-    summary_dependencies,
-    ANSWER_PARTS,
-)
-SUMMARY = Stage(
-    "summary",
-    "summary",
-    same_files(SUMMARY_FILE),
-    write_drawn_summary,
-    ("landing", "telling_landing", "estimate", "rest", "aim"),
-    summary_dependencies,
-    ANSWER_PARTS,
-)
-
-
-PAPER_PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
-
-
 def _design(*names: str) -> Callable[[Study], Any]:
     return lambda study: [study.design.model_dump()[name] for name in names]
 
@@ -245,7 +254,6 @@ def _screening_dependencies(study: Study) -> Any:
     return [design_dependencies(study), study.seed, *own(study)]
 
 
-MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_dependencies)
 SCREENING_RUNS = Stage(
     "screening_runs",
     "screening runs",
@@ -267,7 +275,6 @@ REFINED_RUNS = Stage(
     _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs"),
     PAPER_PARTS,
 )
-REFINE = Stage("refine", "refinement", same_files(REFINED_FILE), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
 TEST_RUNS = Stage(
     "test_runs",
     "test runs",
@@ -277,7 +284,6 @@ TEST_RUNS = Stage(
     _design("test_count"),
     PAPER_PARTS,
 )
-TEST = Stage("test", "scores", same_files(SCORES_FILE), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
@@ -286,33 +292,6 @@ SAMPLE_EXPANSION = Stage(
     ("refine", "test"),
     sample_dependencies,
     (*PAPER_PARTS, *EMULATOR_PARTS),
-)
-FLY_EXPANSION_SAMPLES = Stage(
-    "fly",
-    "flights",
-    same_files(*FLIGHT_FILES, "flights_without_scatter.csv"),
-    fly_expansion_samples,
-    ("sample",),
-    flight_dependencies,
-    FLIGHT_PARTS,
-)
-FOLLOW_EXPANSION_SAMPLES = Stage(
-    "rest",
-    "bounces until rest",
-    rest_files,
-    follow_expansion_samples,
-    ("fly",),
-    rest_dependencies,
-    (*PAPER_PARTS, *REST_PARTS),
-)
-PAPER_SUMMARY = Stage(
-    "summary",
-    "summary",
-    same_files(SUMMARY_FILE),
-    write_summary,
-    ("landing", "rest"),
-    summary_dependencies,
-    (*PAPER_PARTS, *ANSWER_PARTS),
 )
 
 

@@ -38,6 +38,8 @@ _STAGE_OF_DESIGN = {
     "screening": "screening_runs", "refined": "refined_runs", "test_kept": "test_runs", "test_all": "test_runs",
     "drawn": "runs", "soil_pairs": "side_runs", "twins": "side_runs",
 }  # fmt: skip
+# Files are looked at before they are read, so this is said where one changed within the moment between.
+AGAIN = "give the same command again to remake it"
 
 
 @dataclass(frozen=True)
@@ -90,10 +92,6 @@ class Notes:
         """Where the study file of a folder was when it last ran; None where that is not noted."""
         # A folder and its study file that move together, or to another machine, stay together.
         return Path(os.path.normpath(folder.resolve() / self.study["file"])) if self.study["file"] else None
-
-
-# Files are looked at before they are read, so this is said where one changed within the moment between.
-AGAIN = "give the same command again to remake it"
 
 
 class FileState(StrEnum):

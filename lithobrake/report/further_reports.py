@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # Answers of the tiles.
 TOLD = 4
+# Sites of the short table.
+BEST = 12
 
 
 def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: Path) -> Path:
@@ -84,10 +86,6 @@ def _comparison_table(comparison: StudyComparison) -> PageTable:
 def _settings(comparison: StudyComparison) -> PageTable:
     rows = [[name, *values] for name, values in comparison.settings.items()]
     return PageTable("Differences between the study files", ["key", "A", "B"], rows)
-
-
-# Sites of the short table.
-BEST = 12
 
 
 def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from lithobrake.touchdown import Bed, Lander, Landing, Outcome
     from lithobrake.vocabulary.arrays import Array, Integers
 
+# Keys of [site] that name the body and its files.
+OF_FILES = ("body", "name", "unit", "gravity_facets", "partner", "kernels", "kernel_body", "epoch")
+
 
 @dataclass(frozen=True, eq=False)
 class MovingBodies:
@@ -77,10 +80,6 @@ class MovingBodies:
 def _parts(rows: Any, start: Any) -> tuple[Any, ...]:
     """The rows of each body."""
     return tuple(rows[first:last] for first, last in pairwise(start))
-
-
-# Keys of [site] that name the body and its files.
-OF_FILES = ("body", "name", "unit", "gravity_facets", "partner", "kernels", "kernel_body", "epoch")
 
 
 def land_again(

@@ -8,6 +8,12 @@ from lithobrake.vocabulary.estimate import Number, Share
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import short_repr
 
+# Names of SiteEnds.
+SHARES = tuple(end.value for end in (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY))
+MEDIANS = ("time_s", "distance_m")
+# A site has no result where more of its landers have an impact that the emulator does not know.
+MOST_UNKNOWN = 0.1
+
 
 @dataclass(frozen=True)
 class BedNumbers:
@@ -109,13 +115,6 @@ class SiteResults:
     def holds(self) -> bool:
         """Whether the ground holds what lies there."""
         return self.effective_acceleration_outward < 0.0
-
-
-# Names of SiteEnds.
-SHARES = tuple(end.value for end in (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY))
-MEDIANS = ("time_s", "distance_m")
-# A site has no result where more of its landers have an impact that the emulator does not know.
-MOST_UNKNOWN = 0.1
 
 
 @dataclass(frozen=True)

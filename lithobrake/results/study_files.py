@@ -30,6 +30,16 @@ if TYPE_CHECKING:
 
 # What the folder notes about its files, what is held while a study is at work there, and the copy of its file.
 KEYS, LOCK = "keys.json", ".lock"
+JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = JOURNEYS_FILE, TOUCHDOWNS_FILE, "designs/touchdowns.csv"
+# Columns that every table of journeys has; one of an earlier version lacks attitudes.
+NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
+# Columns of the runs that the table of touchdowns has already.
+_TWICE = ("input:journey", "input:touchdown", "key", "outcome")
+SUMMARY_FORMAT = 4
+# Columns that hold no numbers.
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
+# Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
+OF_SAMPLES = (SAMPLES_FILE, SAMPLE_FLIGHTS_FILE, REST_FILE, EMULATOR_FILE, EXPLORER_FILE)
 
 
 def intact_file(folder: Path, name: str, remedy: str) -> Path:
@@ -54,13 +64,6 @@ def intact_file(folder: Path, name: str, remedy: str) -> Path:
     return path
 
 
-JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = JOURNEYS_FILE, TOUCHDOWNS_FILE, "designs/touchdowns.csv"
-# Columns that every table of journeys has; one of an earlier version lacks attitudes.
-NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
-# Columns of the runs that the table of touchdowns has already.
-_TWICE = ("input:journey", "input:touchdown", "key", "outcome")
-
-
 def joined_touchdowns(
     touchdowns: Sequence[Mapping[str, Any]], runs: Iterable[Mapping[str, Any]], ledger: "Iterable[Record]"
 ) -> list[dict[str, Any]]:
@@ -81,13 +84,6 @@ def _of_run(name: str) -> bool:
 def _cost(record: "Record", name: str) -> float:
     value = getattr(record, name)
     return math.nan if value is None else float(value)
-
-
-SUMMARY_FORMAT = 4
-# Columns that hold no numbers.
-_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
-# Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
-OF_SAMPLES = (SAMPLES_FILE, SAMPLE_FLIGHTS_FILE, REST_FILE, EMULATOR_FILE, EXPLORER_FILE)
 
 
 class StudyFiles:

@@ -9,6 +9,12 @@ from typing import Any
 
 from lithobrake.serve.clients import ClientGoneError, ClientServer, has_left
 
+FEATURES = ("Evaluate", "Gradient", "ApplyJacobian", "ApplyHessian")
+PORT = 4242
+PROTOCOL = 1.0
+# Of a request [bytes]: vectors here have tens of numbers.
+LARGEST = 1 << 20
+
 
 @dataclass(frozen=True)
 class ServedModel:
@@ -28,7 +34,6 @@ class ServedModel:
             raise ValueError(f"model {self.name} has {len(self.inputs)} inputs and {len(self.outputs)} outputs")
 
 
-FEATURES = ("Evaluate", "Gradient", "ApplyJacobian", "ApplyHessian")
 # Evaluates a model at a point with a configuration; the last argument says whether the client has left meanwhile, and
 # an evaluation that ends for that raises ClientGoneError.
 Evaluate = Callable[[ServedModel, list[float], Mapping[str, Any], Callable[[], bool]], list[float]]
@@ -97,12 +102,6 @@ def _point(model: ServedModel, given: Any) -> list[float]:
     if not all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) < 1e300 for one in numbers):
         raise RequestError("InvalidInput", f"input of model {model.name} is {numbers}; allowed: finite numbers")
     return [float(number) for number in numbers]
-
-
-PORT = 4242
-PROTOCOL = 1.0
-# Of a request [bytes]: vectors here have tens of numbers.
-LARGEST = 1 << 20
 
 
 class _Server(ClientServer):

@@ -12,6 +12,9 @@ from lithobrake.smallbody.polyhedron_gravity import ROWS, PolyhedronTerms, field
 from lithobrake.smallbody.simd import LANES, WIDTH, angle, log_ratio
 from lithobrake.vocabulary.arrays import Floats, Integers
 
+# Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
+MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
+
 
 class Gravity(NamedTuple):
     """What the gravity of one shape is read from: its facets, its series, and a table, which may be empty."""
@@ -119,10 +122,6 @@ def field(points: NDArray[np.float64], gravity: Gravity) -> NDArray[np.float64]:
     result = np.empty((len(points), 5))
     _evaluate(np.ascontiguousarray(points, dtype=np.float64), result, gravity)
     return result
-
-
-# Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
-MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 
 
 def gradient(points: NDArray[np.float64], polyhedron: PolyhedronTerms, multipole: Multipole) -> NDArray[np.float64]:

@@ -13,6 +13,14 @@ from lithobrake.files.reading import read_rows
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import CAPTURED
 
+# Levels of the quantiles of each cell; the outermost are the smallest and largest value.
+LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
+DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")
+# Follows from the two restitutions and the direction; for tools that ask for it.
+FRICTION = "friction"
+EDGES = ("speed_from [m/s]", "speed_to [m/s]", "incidence_from_deg", "incidence_to_deg")
+COUNTS = ("samples", "runs", CAPTURED, "correlation")
+
 
 @dataclass(frozen=True)
 class Impacts:
@@ -90,15 +98,6 @@ class HardSurface:
         velocity = np.stack([kept * along, np.zeros_like(up), up], axis=1)
         captured = apex < self.rest_height
         return Rebounds(velocity, impacts.spin, captured, np.zeros(len(up), dtype=bool))
-
-
-# Levels of the quantiles of each cell; the outermost are the smallest and largest value.
-LEVELS = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
-DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")
-# Follows from the two restitutions and the direction; for tools that ask for it.
-FRICTION = "friction"
-EDGES = ("speed_from [m/s]", "speed_to [m/s]", "incidence_from_deg", "incidence_to_deg")
-COUNTS = ("samples", "runs", CAPTURED, "correlation")
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from lithobrake.vocabulary.arrays import Floats, Integers, ShortIntegers
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
+RIM = 1e-9  # part of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
 
 class Grid(NamedTuple):
@@ -224,9 +225,6 @@ def near_heights(
     """Write height_near of points [count, 3]: inf and -1 where the surface is farther than a cell's edge."""
     for r in range(len(points)):
         height[r], nearest[r] = height_near(grid, corner, outward, points[r])
-
-
-RIM = 1e-9  # part of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
 
 @kernel

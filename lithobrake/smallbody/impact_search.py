@@ -35,6 +35,10 @@ DENSE = np.array(
         69997945 / 29380423,
     ]
 )
+ON_SURFACE, ALOFT = 0, 1
+# Halvings of a fraction of the step, down to its rounding.
+BISECTIONS = 48
+SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
 
 @kernel
@@ -99,12 +103,6 @@ def dense_output(curve: Floats, fraction: float, i: int) -> float:
     inner = curve[3, i] + remaining * curve[4, i]
     value: float = curve[0, i] + fraction * (curve[1, i] + remaining * (curve[2, i] + fraction * inner))
     return value
-
-
-ON_SURFACE, ALOFT = 0, 1
-# Halvings of a fraction of the step, down to its rounding.
-BISECTIONS = 48
-SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
 
 class Ground(NamedTuple):

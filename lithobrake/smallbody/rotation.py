@@ -14,6 +14,11 @@ from lithobrake.smallbody.simd import LANES
 from lithobrake.vocabulary.arrays import Array, Floats, Vector
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
+# Between two states a quaternion is a cubic; the bounds of its rates are those at so many places, and a little more.
+PLACES, SAFETY = 4, 1.1
+# The angle [rad] between two states, above which a cubic is no good curve between them.
+WIDEST = 0.5
+
 
 class Turning(NamedTuple):
     """The history of an attitude; one without states stands for a body that stands still.
@@ -96,12 +101,6 @@ def pull_out_of_body(lane: Floats, count: int, turn: Floats) -> None:
         x, y, z = lane[PULL_X * LANES + j], lane[(PULL_X + 1) * LANES + j], lane[(PULL_X + 2) * LANES + j]
         for k in range(3):
             lane[(PULL_X + k) * LANES + j] = turn[k, j] * x + turn[3 + k, j] * y + turn[6 + k, j] * z
-
-
-# Between two states a quaternion is a cubic; the bounds of its rates are those at so many places, and a little more.
-PLACES, SAFETY = 4, 1.1
-# The angle [rad] between two states, above which a cubic is no good curve between them.
-WIDEST = 0.5
 
 
 class Attitudes(NamedTuple):

@@ -24,6 +24,10 @@ PLACES = 720
 EYE = 1e-6
 # Multiples of it, less the whole turns, fill the circle evenly however many are taken: the golden ratio.
 EVEN = 0.5 * (1.0 + 5.0**0.5)
+# Attraction of the Sun [km3/s2], nominal, and the astronomical unit [km]. Source: [Prsa-2016], [IAU-2012].
+SUN, ASTRONOMICAL_UNIT = 1.327_124_4e11, 149_597_870.7
+# Julian date of the epoch of J2000, and the same as a date.
+J2000, AT_J2000 = 2_451_545.0, datetime(2000, 1, 1, 12)
 
 
 class Screen(NamedTuple):
@@ -123,12 +127,6 @@ def _take_out_hidden(
                     t, _ = intersect_facet(corner, f, eyes[p], directions[p, d])
                     if 0.0 < t < distance[p, d]:
                         seen[p, d] = False
-
-
-# Attraction of the Sun [km3/s2], nominal, and the astronomical unit [km]. Source: [Prsa-2016], [IAU-2012].
-SUN, ASTRONOMICAL_UNIT = 1.327_124_4e11, 149_597_870.7
-# Julian date of the epoch of J2000, and the same as a date.
-J2000, AT_J2000 = 2_451_545.0, datetime(2000, 1, 1, 12)
 
 
 class HeliocentricOrbit(NamedTuple):

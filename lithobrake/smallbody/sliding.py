@@ -11,6 +11,14 @@ from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.arrays import Array, Integers
 
 CROSSINGS = 8  # edges that one way may go over
+# The way across a slope is then right to half a percent.
+TURN = 0.05  # rad by which the velocity may turn in a step
+FACET_STEP = 0.25  # of a facet's size: how far a step may go
+NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step
+# A trough between facets is entered and left ever faster: what so many steps do not carry ten times NEAR rests there.
+TRAPPED = 64
+# Over mass and squared radius, of a ball: what rolls is slower to gain and to lose speed by this and one.
+ROLLING_INERTIA = 0.4
 
 
 def unit(vectors: Array) -> Array:
@@ -107,16 +115,6 @@ class Fold:
         level = np.einsum("ni,ni->n", vectors, self.along)[:, None] * self.along
         folded: Array = level - np.einsum("ni,ni->n", vectors, self.inward)[:, None] * self.onward
         return folded
-
-
-# The way across a slope is then right to half a percent.
-TURN = 0.05  # rad by which the velocity may turn in a step
-FACET_STEP = 0.25  # of a facet's size: how far a step may go
-NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step
-# A trough between facets is entered and left ever faster: what so many steps do not carry ten times NEAR rests there.
-TRAPPED = 64
-# Over mass and squared radius, of a ball: what rolls is slower to gain and to lose speed by this and one.
-ROLLING_INERTIA = 0.4
 
 
 @dataclass(frozen=True)

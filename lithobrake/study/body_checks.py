@@ -23,6 +23,7 @@ SMALLEST, LARGEST = 1.0, 1e6
 FASTEST = 1.0
 # Of a body, as other programs take it too.
 NAME = r"[A-Za-z0-9][\w -]{0,39}"
+SYNCHRONOUS = [key for key, body in KNOWN_BODIES.items() if body.is_synchronous]
 
 
 def body_problems(study: Study) -> Iterator[str]:
@@ -178,9 +179,6 @@ def _largest(value: Scalar) -> float:
 def _ball_radius(volume: float) -> float:
     """Radius [m] of the ball of a volume [m3]."""
     return (0.75 * volume / math.pi) ** (1.0 / 3.0)
-
-
-SYNCHRONOUS = [key for key, body in KNOWN_BODIES.items() if body.is_synchronous]
 
 
 def rotation_problems(study: Study) -> Iterator[str]:

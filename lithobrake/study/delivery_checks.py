@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 # Of numbers that were written with ten digits.
 ROUNDING = 1e-9
+AIM = ("latitude_deg", "longitude_deg")
+ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 def covariance_problems(matrix: Matrix) -> Iterator[str]:
@@ -74,10 +76,6 @@ def _smallest(matrix: Matrix) -> float:
     variances = np.array([matrix[row][row] for row in range(SIDE)])
     scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
     return float(np.linalg.eigvalsh(np.array(matrix) / np.outer(scale, scale))[0])
-
-
-AIM = ("latitude_deg", "longitude_deg")
-ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 def delivery_problems(study: Study) -> Iterator[str]:

@@ -21,6 +21,18 @@ from lithobrake.study.quantity import (
 
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6
+Error = Annotated[Scalar, MaybeUncertain("m")]
+Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
+# Of its keys, those that say where the lander arrives; the others say how.
+PLACE_KEYS = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
+# Those of a lander that is flown to the ground from a state, and of draws that go together: of no other table.
+OWN_KEYS = ("correlations", "frame", "epoch", "states", "release")
+# What such a flight tells and no one gives; from the aim point no direction is then better than another.
+FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
+ANY_HEADING = Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
+# Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
+# (docs/decisions/touchdown.md).
+HELD_SPEED = 0.03
 
 
 class SquareMatrix:
@@ -82,20 +94,6 @@ class ReleaseSection(Section):
     covariance: Annotated[Matrix, SquareMatrix()] | None = None
     """Instead of these: six rows of six numbers, for x, y, z, vx, vy, vz along the axes of delivery.frame [m2, m2/s,
     m2/s2]."""
-
-
-Error = Annotated[Scalar, MaybeUncertain("m")]
-Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
-# Of its keys, those that say where the lander arrives; the others say how.
-PLACE_KEYS = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
-# Those of a lander that is flown to the ground from a state, and of draws that go together: of no other table.
-OWN_KEYS = ("correlations", "frame", "epoch", "states", "release")
-# What such a flight tells and no one gives; from the aim point no direction is then better than another.
-FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
-ANY_HEADING = Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
-# Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
-# (docs/decisions/touchdown.md).
-HELD_SPEED = 0.03
 
 
 class DeliverySection(Section):

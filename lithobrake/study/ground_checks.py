@@ -20,6 +20,11 @@ GRAINS_PER_LANDER = 1e6
 INERTIAS = (1e-6, 1e2)
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
+TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
+# What the skins of lists of neighbours add to that (dem/bodies/vectors.py): of two grains, and of one and the lander.
+SKINS, SKINS_AT_LANDER = 0.5, 0.7
+# Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
+LEAST_FRICTION = 0.4
 
 
 def size_problems(study: Study, radius: float) -> Iterator[str]:
@@ -101,13 +106,6 @@ def _first_overlap(study: Study, mass: float, radius: float, speed: float) -> fl
 def _ball_mass(density: float, diameter: float) -> float:
     """Mass [kg] of a ball of a density [kg/m3] and a diameter [m]; infinite for absurd ones."""
     return density * math.pi / 6.0 * diameter * diameter * diameter
-
-
-TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
-# What the skins of lists of neighbours add to that (dem/bodies/vectors.py): of two grains, and of one and the lander.
-SKINS, SKINS_AT_LANDER = 0.5, 0.7
-# Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
-LEAST_FRICTION = 0.4
 
 
 def widths_in_grains(study: Study) -> tuple[float, float]:

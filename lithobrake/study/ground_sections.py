@@ -20,6 +20,9 @@ Metres = Annotated[float, Number("m", above=0)]
 # (docs/estimates.md).
 LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
 MOST_BEDS = 1000
+# As a table has them that gives the density too.
+ALL_PROPERTIES = ("density", *SURFACE_PROPERTIES)
+Ends = tuple[float, float]
 
 
 class Constant(Section):
@@ -124,10 +127,6 @@ def default_bed_count(run_count: int, runs_a_bed: int) -> int:
     return min(run_count, MOST_BEDS, max(FEWEST_BEDS_OF_INTERVAL, -(-run_count // runs_a_bed)))
 
 
-# As a table has them that gives the density too.
-ALL_PROPERTIES = ("density", *SURFACE_PROPERTIES)
-
-
 def allowed(name: str, kind: type[Number] = MaybeUncertain) -> Number:
     """The unit and the range of a property."""
     known = PROPERTIES[name]
@@ -169,9 +168,6 @@ _GrainProperties: Any = with_properties(Section, ALL_PROPERTIES, needed=True)
 
 class GrainSection(_GrainProperties):
     """The rock of the grains."""
-
-
-Ends = tuple[float, float]
 
 
 _SoilProperties: Any = with_properties(

@@ -13,6 +13,13 @@ from lithobrake.study.quantity import Uncertain, reach, usual_reach
 from lithobrake.vocabulary.plain_text import show
 
 Place = tuple[float, float, float]
+# Of what a user names.
+NAME = r"[\w-]+"
+# Thinner boxes are slips, and no equation of motion can be solved for them.
+THINNEST = 1e-3
+# Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
+ROUNDING = 1e-9
+TAKES = {"box": "edges", "sphere": "diameter", "hull": "file"}
 
 
 class Solid(NamedTuple):
@@ -105,15 +112,6 @@ def turned(point: Place, quaternion: tuple[float, float, float, float]) -> Place
         2 * (x * y + w * z) * a + (1 - 2 * (x * x + z * z)) * b + 2 * (y * z - w * x) * c,
         2 * (x * z - w * y) * a + 2 * (y * z + w * x) * b + (1 - 2 * (x * x + y * y)) * c,
     )
-
-
-# Of what a user names.
-NAME = r"[\w-]+"
-# Thinner boxes are slips, and no equation of motion can be solved for them.
-THINNEST = 1e-3
-# Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
-ROUNDING = 1e-9
-TAKES = {"box": "edges", "sphere": "diameter", "hull": "file"}
 
 
 def shape_problems(path: str, section: LanderSection | PartSection) -> Iterator[str]:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import numpy as np
 
 Along = Annotated[Scalar, MaybeUncertain("m")]
+# Outward, by the lander's own axes, in the order of SIDES.
+OUTWARD = tuple(tuple((1.0 if side[0] == "+" else -1.0) * (axis == side[1]) for axis in "xyz") for side in SIDES)
 
 
 class CentreSection(Section):
@@ -130,10 +132,6 @@ class LanderSection(_LanderProperties, _LanderBody):
         # Six elements of the tensor have products of inertia, which take the mirror planes of the box away; three have
         # not.
         return self.edges is not None and not self.part and self.centre_of_mass is None and len(self.inertia or ()) < 6
-
-
-# Outward, by the lander's own axes, in the order of SIDES.
-OUTWARD = tuple(tuple((1.0 if side[0] == "+" else -1.0) * (axis == side[1]) for axis in "xyz") for side in SIDES)
 
 
 def side_toward(direction: "np.ndarray") -> "np.ndarray":

@@ -17,6 +17,10 @@ from lithobrake.vocabulary.quantities import ARRIVAL
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
 PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
+POLE = ("pole_right_ascension_deg", "pole_declination_deg")
+EXAMPLE = "2027-04-20T12:00:00"
+# What tells where Sun and Earth are, by the module that each is imported by.
+SKY_KEYS = {"spiceypy": "spiceypy", "erfa": "pyerfa"}
 
 
 def aim_problems(study: Study) -> Iterator[str]:
@@ -104,12 +108,6 @@ def _limit_problems(study: Study) -> Iterator[str]:
                 f'aim.within has "{text}"; allowed: one of {", ".join(names)}, compared by <, <=, > or >= with a '
                 'number, as in "incidence_deg < 45"; write it so'
             )
-
-
-POLE = ("pole_right_ascension_deg", "pole_declination_deg")
-EXAMPLE = "2027-04-20T12:00:00"
-# What tells where Sun and Earth are, by the module that each is imported by.
-SKY_KEYS = {"spiceypy": "spiceypy", "erfa": "pyerfa"}
 
 
 def sky_problems(study: Study) -> Iterator[str]:

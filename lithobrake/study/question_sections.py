@@ -17,6 +17,9 @@ AT_REST = JourneyEnd.AT_REST.value
 SIDE = "aim.sides"
 AIM_RESULTS = ("missing", "distance_p95", "time_p95")
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
+Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
+Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
+SkyBody = Literal["sun", "earth", "orbiter"]
 
 
 def aim_results(*, is_journey: bool) -> tuple[str, ...]:
@@ -99,11 +102,6 @@ class AimLimit:
     def keeps(self, value: float | None) -> bool:
         """Whether a value keeps it; what is not known does not."""
         return value is not None and bool(COMPARED[self.sign](value, self.number))
-
-
-Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
-Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
-SkyBody = Literal["sun", "earth", "orbiter"]
 
 
 class OrbitSection(Section):

@@ -9,43 +9,7 @@ from lithobrake.study.template import DISTRIBUTION_WORDS, commented, sections
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody
 
-
-def known_body(name: str) -> KnownBody:
-    """The body of a name in any case. Raises ValueError for another name."""
-    return by_name("body", KNOWN_BODIES, name, "for another body write its mass and spin into [site]")
-
-
 _CDS = "largest mass and envelope in [CDS-2022], without deployable parts"
-
-
-@dataclass(frozen=True)
-class KnownLander:
-    """A box without wings and booms: name as it is printed, edges [m], mass [kg], and where they come from."""
-
-    name: str
-    edges: tuple[float, float, float]
-    mass: float
-    source: str
-
-
-_LANDERS = (
-    KnownLander("1U", (0.1, 0.1, 0.1135), 2.0, _CDS),
-    KnownLander("2U", (0.1, 0.1, 0.227), 4.0, _CDS),
-    KnownLander("3U", (0.1, 0.1, 0.3405), 6.0, _CDS),
-    KnownLander("6U", (0.2263, 0.1, 0.366), 12.0, _CDS),
-    KnownLander("12U", (0.2263, 0.2263, 0.366), 24.0, _CDS),
-    KnownLander("Juventas", (0.37, 0.23, 0.10), 12.0, "[ESA-2024]; its four booms of 1.5 m are left out"),
-    KnownLander("Milani", (0.13, 0.246, 0.366), 12.0, "[Hera-2024]; its wings are left out"),
-    KnownLander("MASCOT", (0.275, 0.29, 0.195), 10.0, "[Scholten-2019]"),
-)
-LANDERS = {lander.name.lower(): lander for lander in _LANDERS}
-
-
-def known_lander(name: str) -> KnownLander:
-    """The lander of a name in any case. Raises ValueError for another name."""
-    return by_name("lander", LANDERS, name, "for another one write its edges and mass")
-
-
 GRAIN_SIZE = 0.4  # diameter of the grains over the longest edge of the lander
 # Width of the ground before it repeats, over the diagonal of the lander; and what stays free beside that, in grains.
 WIDTH, FREE = 2.15, 3.4
@@ -59,7 +23,6 @@ FAST_WORDS = "far below the escape speed; free fall is faster, and needs stiffer
 STIFFNESS, SOFTEST = 16_000.0, 2e5
 LOST_PARTNER = "A mesh has no partner: the other body of the binary has no gravity and cannot be hit."
 DENSITY = 2500.0  # kg/m3
-
 _STUDY = """\
 # Where does a lander come to rest? Each one is followed from delivery to rest, with a landing simulated at each impact.
 # Replace lander, body, delivery and ground by those of your mission. An unknown number is a table with a distribution,
@@ -103,11 +66,43 @@ count = 48
 duration = 172_800.0    # s, two days
 
 """
-
 _ALL_KEYS = """\
 # All keys of a study file by their tables, with meaning, unit, range and default. Copy those that you need to the
 # tables above. A key marked "number or table" takes a number, or one of these distributions:
 """
+
+
+def known_body(name: str) -> KnownBody:
+    """The body of a name in any case. Raises ValueError for another name."""
+    return by_name("body", KNOWN_BODIES, name, "for another body write its mass and spin into [site]")
+
+
+@dataclass(frozen=True)
+class KnownLander:
+    """A box without wings and booms: name as it is printed, edges [m], mass [kg], and where they come from."""
+
+    name: str
+    edges: tuple[float, float, float]
+    mass: float
+    source: str
+
+
+_LANDERS = (
+    KnownLander("1U", (0.1, 0.1, 0.1135), 2.0, _CDS),
+    KnownLander("2U", (0.1, 0.1, 0.227), 4.0, _CDS),
+    KnownLander("3U", (0.1, 0.1, 0.3405), 6.0, _CDS),
+    KnownLander("6U", (0.2263, 0.1, 0.366), 12.0, _CDS),
+    KnownLander("12U", (0.2263, 0.2263, 0.366), 24.0, _CDS),
+    KnownLander("Juventas", (0.37, 0.23, 0.10), 12.0, "[ESA-2024]; its four booms of 1.5 m are left out"),
+    KnownLander("Milani", (0.13, 0.246, 0.366), 12.0, "[Hera-2024]; its wings are left out"),
+    KnownLander("MASCOT", (0.275, 0.29, 0.195), 10.0, "[Scholten-2019]"),
+)
+LANDERS = {lander.name.lower(): lander for lander in _LANDERS}
+
+
+def known_lander(name: str) -> KnownLander:
+    """The lander of a name in any case. Raises ValueError for another name."""
+    return by_name("lander", LANDERS, name, "for another one write its edges and mass")
 
 
 def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float], shape: str | None = None) -> str:

@@ -22,6 +22,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION
 TABLES = "study"
 # No key takes more levels of tables and lists.
 DEEPEST = 10
+INPUTS, SITE = "solver.inputs.", "site."
 
 
 @dataclass(frozen=True)
@@ -120,9 +121,6 @@ def _text(value: str, key: str, name: str) -> str:
 
 def _dotted(key: str, inner: str) -> str:
     return f"{key}.{inner}" if key else inner
-
-
-INPUTS, SITE = "solver.inputs.", "site."
 
 
 def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:

@@ -18,6 +18,16 @@ from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.quantities import describe
 
 RAYS_PER_DIAMETER = 4
+FORMAT_VERSION = 2
+# A bed ends at the walls of a box, or goes on with its own image on every side.
+SIDES = ("walls", "periodic")
+# Friction of the floor under grains on a slope without walls, at least, over the tangent of the slope.
+# On such a floor grains settle and hold down to a friction of 0.4 of the tangent; studies that go lower are refused.
+HOLDING = 2.0
+SCALARS = (
+    "width", "gravity", "density", "young_modulus", "poisson_ratio", "seed", "surface_height", "surface_top",
+    "solid_fraction", "coordination_number",
+)  # fmt: skip
 
 
 def rotation_matrix(quaternion: Floats) -> Floats:
@@ -69,14 +79,6 @@ def _top(grain: ConvexHull, turn: Floats, x: Floats, y: Floats) -> Floats:
     beside = ((normals[:, 2:] == 0.0) & (rest < 0.0)).any(axis=0)
     found: Floats = np.where((top >= bottom) & ~beside, top, -np.inf)
     return found
-
-
-FORMAT_VERSION = 2
-# A bed ends at the walls of a box, or goes on with its own image on every side.
-SIDES = ("walls", "periodic")
-# Friction of the floor under grains on a slope without walls, at least, over the tangent of the slope.
-# On such a floor grains settle and hold down to a friction of 0.4 of the tangent; studies that go lower are refused.
-HOLDING = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,12 +227,6 @@ class Bed:
             groups: dict[str, Any] = {g: {n: file[g][n][()] for n in file.get(g, {})} for g in ("frames", "history")}
             arrays: dict[str, Any] = {name: file[name][()] for name in ("position", "orientation", "diameter")}
             return Bed(grains=read_hulls(file), **arrays, **groups, **scalars)
-
-
-SCALARS = (
-    "width", "gravity", "density", "young_modulus", "poisson_ratio", "seed", "surface_height", "surface_top",
-    "solid_fraction", "coordination_number",
-)  # fmt: skip
 
 
 def plain(value: Any) -> Any:

@@ -16,6 +16,16 @@ SIZE_DISTRIBUTIONS = ("constant", "uniform", "normal", "power_law")
 QUANTILES = 10_000
 # A mean so many standard deviations beyond the limits is no normal distribution between them.
 FARTHEST_MEAN = 100.0
+# Points of the cloud whose envelope is a boulder, at least: of fewer hardly an envelope keeps to BOULDER_REACH.
+BOULDER_POINTS = 30
+# Part of the volume that poured grains fill: where the surface will lie is not known before the bed is poured.
+SOLID_FRACTION = 0.6
+PLACES_TRIED = 1000
+SURFACE_STEPS = 40
+# Of its height, that a boulder reaches above the floor at least.
+LEAST_HEIGHT = 0.05
+# Of its height, by which it stands over the floor before it is let go.
+CLEARANCE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,18 +125,6 @@ def random_orientation(generator: np.random.Generator) -> Floats:
     # Four normal numbers have no preferred direction, so their quaternion is even on the sphere of unit quaternions.
     quaternion = generator.normal(size=4)
     return quaternion / np.linalg.norm(quaternion)
-
-
-# Points of the cloud whose envelope is a boulder, at least: of fewer hardly an envelope keeps to BOULDER_REACH.
-BOULDER_POINTS = 30
-# Part of the volume that poured grains fill: where the surface will lie is not known before the bed is poured.
-SOLID_FRACTION = 0.6
-PLACES_TRIED = 1000
-SURFACE_STEPS = 40
-# Of its height, that a boulder reaches above the floor at least.
-LEAST_HEIGHT = 0.05
-# Of its height, by which it stands over the floor before it is let go.
-CLEARANCE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)

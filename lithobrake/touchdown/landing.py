@@ -16,6 +16,13 @@ from lithobrake.vocabulary.arrays import Floats, Vector
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
 
+LEAVING = (
+    "speed_out", "elevation_out", "azimuth_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z",
+    *SPIN_OUT, *ORIENTATION_OUT, OVER_RIM,
+)  # fmt: skip
+OUTPUTS = (*LEAVING, "contact_duration", "penetration", "peak_acceleration", "energy_lost")
+SPHERE_PICTURE_POINTS = 200
+
 
 @dataclass(frozen=True, kw_only=True)
 class Landing:
@@ -63,14 +70,6 @@ class Landing:
                 -self.speed * math.cos(self.incidence),
             ]
         )
-
-
-LEAVING = (
-    "speed_out", "elevation_out", "azimuth_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z",
-    *SPIN_OUT, *ORIENTATION_OUT, OVER_RIM,
-)  # fmt: skip
-OUTPUTS = (*LEAVING, "contact_duration", "penetration", "peak_acceleration", "energy_lost")
-SPHERE_PICTURE_POINTS = 200
 
 
 @dataclass(frozen=True, eq=False)

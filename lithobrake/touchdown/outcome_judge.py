@@ -16,6 +16,15 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, PERIODS_TRAVELLED,
 # factor of e: what moves by less than REST_WAY meanwhile was within 0.6 % of its size of balance, or rests.
 TOPPLING_TIMES = 1.0
 REST_WAY = 0.015  # of the smallest edge, by any point of the lander
+CAPTURED_ENERGY = 1e-4  # of the energy of impact
+CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its energy lifted it
+# A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
+CAPTURED_CONTACTS = 10.0
+# Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
+SUNK_FRACTION = 0.5
+# Where a boulder is looked for under the main shape of a lander, in its bounding radii: its centre, and eight points
+# around it.
+FOOTPRINT = np.array([[0.0, 0.0]] + [[math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)] for k in range(8)])
 
 
 class RestWatch:
@@ -46,17 +55,6 @@ def rest_time(lander: Lander, inward_gravity: float) -> float:
     if inward_gravity <= 0.0:
         return math.inf
     return TOPPLING_TIMES * math.sqrt(lander.smallest_edge / inward_gravity)
-
-
-CAPTURED_ENERGY = 1e-4  # of the energy of impact
-CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its energy lifted it
-# A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.
-CAPTURED_CONTACTS = 10.0
-# Of the lander's smallest edge: deeper in the floor an overlap is no contact, and nothing that follows is a landing.
-SUNK_FRACTION = 0.5
-# Where a boulder is looked for under the main shape of a lander, in its bounding radii: its centre, and eight points
-# around it.
-FOOTPRINT = np.array([[0.0, 0.0]] + [[math.cos(k * math.pi / 4.0), math.sin(k * math.pi / 4.0)] for k in range(8)])
 
 
 def capture_lift(lander: Lander, gravity: float) -> float:

@@ -23,6 +23,8 @@ SLOWEST = 1e-3
 MOST_TILES = 2.0
 # Of a window [pixels].
 SIZE = (1280, 800)
+VERSION = (2, 1)
+EMPTY = ("Vertices", "Lines", "Strips")
 
 
 class DrawnMotion:
@@ -127,10 +129,6 @@ def show(bodies: "MovingBodies") -> None:
             lambda value: drawn.go_to(round(value)), [0, last], value=0, title="frame", fmt="%.0f", style="modern"
         )
     drawn.plotter.show(title="lithobrake")
-
-
-VERSION = (2, 1)
-EMPTY = ("Vertices", "Lines", "Strips")
 
 
 def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 ALL_KINDS = (".vtkhdf", *KINDS, ".png")
 # Of a contact sheet.
 PICTURES = 12
+JOURNEY_KINDS = (".html", *KINDS, ".png", ".vtkhdf")
+# Of these kinds each touchdown has a file of its own.
+FILE_EACH = (".vtkhdf", ".h5")
 
 
 def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:
@@ -52,11 +55,6 @@ def contact_sheet(bodies: "MovingBodies", path: str | Path, picture_count: int =
     with figure_style(), atomic_path(path) as draft:
         figure = landing_figure(scene(bodies, has_lander=True), picture_count)
         figure.savefig(draft, format="png")
-
-
-JOURNEY_KINDS = (".html", *KINDS, ".png", ".vtkhdf")
-# Of these kinds each touchdown has a file of its own.
-FILE_EACH = (".vtkhdf", ".h5")
 
 
 def write_journey(motion: "JourneyMotion", path: Path, seconds: float = 8.0, progress: Progress = silent) -> list[Path]:

@@ -2,6 +2,8 @@
 
 from enum import StrEnum
 
+RETURNS = "returns"
+
 
 class _Ending(StrEnum):
     """A word that compares equal to plain text, and what it means; label: a few words for it beside a number."""
@@ -76,7 +78,6 @@ class JourneyEnd(_Ending):
     FAILED = "failed", "A landing or flight of the journey failed.", "failed"
 
 
-RETURNS = "returns"
 # Of a captured lander also whether gravity and rotation together hold it where it lies, or lift it off.
 CAPTURED = TouchdownOutcome.CAPTURED.value
 SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value

@@ -12,6 +12,10 @@ from typing import Any
 # A control sequence (colours, cursor), a string for the terminal itself (its title, its clipboard), any other.
 _ESCAPE = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b[]PX^_].*?(?:\x07|\x1b\\|$)|\x1b[ -/]*[0-~]?", re.DOTALL)
 LONGEST = 200  # characters of a value that a sentence shows
+# Of a terminal of 80 columns and 24 lines one line is the prompt's.
+WIDTH, LINES = 79, 22
+# A blank between a name and its unit, at which no line is broken.
+_FIRM = "\u00a0"
 
 
 def plain(text: str) -> str:
@@ -79,12 +83,6 @@ def _text(value: object, levels: int = 4) -> str:
 def _visible(character: str) -> str:
     """A character as it is, or by its escape sequence where it is a line break or shows nothing."""
     return character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
-
-
-# Of a terminal of 80 columns and 24 lines one line is the prompt's.
-WIDTH, LINES = 79, 22
-# A blank between a name and its unit, at which no line is broken.
-_FIRM = "\u00a0"
 
 
 def in_lines(text: str, indent: str = "") -> str:

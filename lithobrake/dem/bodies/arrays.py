@@ -5,6 +5,10 @@ from typing import NamedTuple
 from lithobrake.compilation.compiled import kernel
 from lithobrake.vocabulary.arrays import Flags, Floats, Integers
 
+# Columns of `lost`.
+DAMPING, FRICTION, ROLLING = 0, 1, 2
+LOSSES = 3
+
 
 class Cores(NamedTuple):
     """Constant: the convex cores of all shapes, one after the other. `start[s]:start[s + 1]` belongs to shape s.
@@ -106,11 +110,6 @@ class Pairs(NamedTuple):
     feature: Integers  # [pair_count, INLINE_FEATURES], the first of them, see feature_id.py
     overflow_row: Integers  # [pair_count], row of those that found no room there, -1: none
     overflow: Integers  # [row_count, overflow_max]
-
-
-# Columns of `lost`.
-DAMPING, FRICTION, ROLLING = 0, 1, 2
-LOSSES = 3
 
 
 class Laws(NamedTuple):

@@ -10,6 +10,10 @@ from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Period
 from lithobrake.vocabulary.arrays import Floats, Vector
 
+NO_PERIOD = Period(0.0, 0.0, 0.0, 0.0)
+# Over which bounding radii and skins of the two largest bodies a period extends at least.
+IMAGES = 2.0
+
 
 @kernel
 def dot(a: Vector, b: Vector) -> float:
@@ -81,11 +85,6 @@ def transposed_times(matrices: Any, i: int, a: Vector) -> Vector:
         m[0, 1] * a[0] + m[1, 1] * a[1] + m[2, 1] * a[2],
         m[0, 2] * a[0] + m[1, 2] * a[1] + m[2, 2] * a[2],
     )
-
-
-NO_PERIOD = Period(0.0, 0.0, 0.0, 0.0)
-# Over which bounding radii and skins of the two largest bodies a period extends at least.
-IMAGES = 2.0
 
 
 @kernel

@@ -10,6 +10,11 @@ from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes
 from lithobrake.vocabulary.material import SHARED_PROPERTIES, Material
 
+SHEAR_MODULUS_RULES = ("mindlin", "paper")
+PAIR_RULES = ("smaller", "mean", "geometric")
+DAMPING_MASSES = ("contact", "paper")
+TANGENTIAL_DASHPOTS = ("mindlin", "none")
+
 
 def restitution_of(damping_ratio: float) -> float:
     """Return the restitution of a Hertz contact with this damping ratio and no attraction.
@@ -44,12 +49,6 @@ def damping_ratio_of(restitution: float) -> float:
     while restitution_of(upper) > restitution:
         upper *= 2.0
     return float(brentq(lambda zeta: restitution_of(zeta) - restitution, 0.0, upper, xtol=1e-15, rtol=1e-14))
-
-
-SHEAR_MODULUS_RULES = ("mindlin", "paper")
-PAIR_RULES = ("smaller", "mean", "geometric")
-DAMPING_MASSES = ("contact", "paper")
-TANGENTIAL_DASHPOTS = ("mindlin", "none")
 
 
 class PairLaw(NamedTuple):

@@ -20,6 +20,20 @@ from lithobrake.dem.local_stepping.free_motion import (
 )
 from lithobrake.vocabulary.arrays import Floats, Integers, Vector
 
+# A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
+# Half takes the least time: with a fifth, bodies are planned anew 2.7 times as often; with all of it, pairs are looked
+# at 13 % more often.
+NOTED_CHANGE = 0.5
+# A contact keeps its step until the one that it should have is below, or above, these parts of it.
+# Steps that follow the collision at every look are uneven, which costs a frictionless landing 5 % of its energy.
+SHORTER, LONGER = 0.8, 2.0
+# One that has become shorter by this factor does not wait for the next look.
+URGENT = 0.5
+# Time from first to deepest touch and back, over deepest overlap by speed: Hertz (1882), see time_step.py.
+HERTZ_TIME = 2.943
+# Fewer steps in a collision do not follow it.
+FEWEST_STEPS = 5.0
+
 
 class Agenda(NamedTuple):
     """A heap of items 0 to before capacity."""
@@ -96,21 +110,6 @@ def take_off(agenda: Agenda, item: int) -> None:
     other = agenda.heap[last]
     if other != item and move_up(agenda, other, place) == place:
         move_down(agenda, other, place)
-
-
-# A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
-# Half takes the least time: with a fifth, bodies are planned anew 2.7 times as often; with all of it, pairs are looked
-# at 13 % more often.
-NOTED_CHANGE = 0.5
-# A contact keeps its step until the one that it should have is below, or above, these parts of it.
-# Steps that follow the collision at every look are uneven, which costs a frictionless landing 5 % of its energy.
-SHORTER, LONGER = 0.8, 2.0
-# One that has become shorter by this factor does not wait for the next look.
-URGENT = 0.5
-# Time from first to deepest touch and back, over deepest overlap by speed: Hertz (1882), see time_step.py.
-HERTZ_TIME = 2.943
-# Fewer steps in a collision do not follow it.
-FEWEST_STEPS = 5.0
 
 
 class Plans(NamedTuple):

@@ -7,6 +7,14 @@ from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Two edges whose directions differ by less than this angle (squared) have no single closest point.
 PARALLEL = 1e-12
+# Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
+# the face below it, or 0), two edges (i and j), two spheres.
+CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
+KIND_BITS, INDEX_BITS = 40, 20
+# Features that every pair has room for; few need more.
+INLINE_FEATURES = 6
+# In `feature_count`: the cores penetrate each other, and all their features are looked at.
+ALL_FEATURES = -1
 
 
 @kernel
@@ -182,16 +190,6 @@ def lowest_height(cores: Cores, shape: int, direction: Vector) -> float:
     for k in range(start + 1, cores.vertex_start[shape + 1]):
         lowest = min(lowest, dot(row(cores.vertex, k), direction))
     return lowest
-
-
-# Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
-# the face below it, or 0), two edges (i and j), two spheres.
-CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
-KIND_BITS, INDEX_BITS = 40, 20
-# Features that every pair has room for; few need more.
-INLINE_FEATURES = 6
-# In `feature_count`: the cores penetrate each other, and all their features are looked at.
-ALL_FEATURES = -1
 
 
 @kernel

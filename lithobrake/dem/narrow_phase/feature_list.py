@@ -35,6 +35,13 @@ from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch, Simplex, TurnedFeatures
 from lithobrake.vocabulary.arrays import Floats, Vector
 
+# The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
+MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
+# A pair in motion has a margin for about so many steps at its present speed, up to that part of the contact radii.
+STEPS_LISTED = 24.0
+# Part of a margin that is kept back: covers the round-off in summing travels.
+BOUND_SLACK = 1e-6
+
 
 class Band(NamedTuple):
     """The space between two cores along a direction of the first's frame, and what is too far behind it."""
@@ -160,14 +167,6 @@ def box_in_band(begin: Vector, along: Vector, depth: float, climb: float, deepes
 def beyond(low: Vector, high: Vector, farthest: float) -> bool:
     """Whether lowest coordinates lie farther above highest ones, along any axis, than may be."""
     return low[0] - high[0] >= farthest or low[1] - high[1] >= farthest or low[2] - high[2] >= farthest
-
-
-# The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
-MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04
-# A pair in motion has a margin for about so many steps at its present speed, up to that part of the contact radii.
-STEPS_LISTED = 24.0
-# Part of a margin that is kept back: covers the round-off in summing travels.
-BOUND_SLACK = 1e-6
 
 
 @kernel

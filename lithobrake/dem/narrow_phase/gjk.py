@@ -7,6 +7,14 @@ from lithobrake.dem.narrow_phase.scratch import Simplex
 from lithobrake.vocabulary.arrays import Floats, Vector
 
 Weights = tuple[float, float, float, float]
+# Squared distance still to be gained, over the squared distance, at which the search ends.
+CONVERGED = 1e-14
+# Distance over the size of the pair that may still be gained where the search cannot go on.
+EXACT = 1e-13
+# Distance over the size of the pair below which cores are taken as touching.
+TOUCHING = 1e-13
+ITERATIONS = 100
+APART, CLOSE, PENETRATING, UNSURE = 0, 1, 2, 3
 
 
 @kernel
@@ -96,17 +104,6 @@ def simplex_weights(count: int, a: Vector, b: Vector, c: Vector, d: Vector) -> W
         weight_a, weight_b, weight_c = triangle_weights(a, b, c)
         return (weight_a, weight_b, weight_c, 0.0)
     return tetrahedron_weights(a, b, c, d)
-
-
-# Squared distance still to be gained, over the squared distance, at which the search ends.
-CONVERGED = 1e-14
-# Distance over the size of the pair that may still be gained where the search cannot go on.
-EXACT = 1e-13
-# Distance over the size of the pair below which cores are taken as touching.
-TOUCHING = 1e-13
-ITERATIONS = 100
-
-APART, CLOSE, PENETRATING, UNSURE = 0, 1, 2, 3
 
 
 @kernel

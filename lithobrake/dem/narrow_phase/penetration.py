@@ -16,6 +16,12 @@ PARALLEL = 1e-24
 NO_NORMAL = (0.0, 0.0, 0.0)
 # Signed distance, unit normal from first to second.
 Separation = tuple[float, Vector]
+# Edges must come closer by this part than corners, whose points are the more exact ones where both are the same.
+TIE = 1e-15
+# Distance, point on first, point on second.
+Gap = tuple[float, Vector, Vector]
+# Where the deepest points are looked for from, beyond the way out, over the size of the pair: far above round-off.
+STAND_OFF = 0.01
 
 
 @large_kernel
@@ -136,13 +142,6 @@ def gap_along(cores: Cores, relative: Floats, shapes: tuple[int, int], there: Ve
     return lowest_height(cores, shapes[1], transposed_times(relative, 0, normal)) + dot(there, normal) - top
 
 
-# Edges must come closer by this part than corners, whose points are the more exact ones where both are the same.
-TIE = 1e-15
-
-# Distance, point on first, point on second.
-Gap = tuple[float, Vector, Vector]
-
-
 @large_kernel
 def find_closest_points(
     cores: Cores, simplex: Simplex, turned: TurnedFeatures, relative: Floats, shapes: tuple[int, int], rotation: Floats,
@@ -210,10 +209,6 @@ def edges_to_edges(cores: Cores, relative: Floats, shapes: tuple[int, int], ther
             if distance < (1.0 - TIE) * best[0]:
                 best = (distance, here, hither)
     return best
-
-
-# Where the deepest points are looked for from, beyond the way out, over the size of the pair: far above round-off.
-STAND_OFF = 0.01
 
 
 @large_kernel

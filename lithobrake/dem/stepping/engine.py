@@ -30,6 +30,15 @@ from lithobrake.vocabulary.material import Material
 
 # A shape and where its centroid stands from the centre of mass [m], frame of the shape.
 PlacedShape = tuple[Shape, Offset]
+# Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
+# A wider skin lasts longer but lists more pairs: from 0.2 to 0.3 landings gain 5 % and spheres at rest lose 10 %.
+SKIN = 0.25
+NO_REACTIONS = new_reactions(0)
+# What changes of bodies and does not follow from the rest; what a checkpoint keeps of them.
+MOVING = (
+    "position", "velocity", "quaternion", "angular_momentum", "force", "torque", "half_spin", "travel", "travel_listed",
+    "dragged",
+)  # fmt: skip
 
 
 def parts_of(bodies: list[RigidBody]) -> list[PlacedPart]:
@@ -153,17 +162,6 @@ def bodies_of(
     )  # fmt: skip
     write_matrices(arrays)
     return arrays
-
-
-# Skin of the neighbour list over the smallest bounding radius: costs or saves time, changes no result.
-# A wider skin lasts longer but lists more pairs: from 0.2 to 0.3 landings gain 5 % and spheres at rest lose 10 %.
-SKIN = 0.25
-NO_REACTIONS = new_reactions(0)
-# What changes of bodies and does not follow from the rest; what a checkpoint keeps of them.
-MOVING = (
-    "position", "velocity", "quaternion", "angular_momentum", "force", "torque", "half_spin", "travel", "travel_listed",
-    "dragged",
-)  # fmt: skip
 
 
 def pool_of(thread_count: int) -> ThreadPoolExecutor | None:

@@ -16,6 +16,11 @@ from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_step_stability import step_is_too_large
 from lithobrake.vocabulary.arrays import Floats, Vector
 
+# Where it stands in a record: largest force [N]; first and last instant of touch (NaN: none) by the clock of the
+# stepping, steps taken or seconds (World.watched gives seconds); whether anything touches it, 1 or 0; steps taken.
+PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT, TOUCHED, STEPS = 0, 1, 2, 3, 4
+DONE, LIST_USED_UP, FEATURES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
+
 
 @large_kernel
 def contact_forces(system: System, step: Step, kept: bool, start: int, stop: int) -> float:
@@ -71,11 +76,6 @@ def gather_reactions(bodies: Bodies, pairs: Pairs, reactions: Reactions, partiti
             add_wrench(bodies, pairs.second[pair], 1.0, row(reactions.force, pair), row(reactions.second_torque, pair))
 
 
-# Where it stands in a record: largest force [N]; first and last instant of touch (NaN: none) by the clock of the
-# stepping, steps taken or seconds (World.watched gives seconds); whether anything touches it, 1 or 0; steps taken.
-PEAK_FORCE, FIRST_CONTACT, LAST_CONTACT, TOUCHED, STEPS = 0, 1, 2, 3, 4
-
-
 def new_record() -> Floats:
     return np.array([0.0, np.nan, np.nan, 0.0, 0.0])
 
@@ -89,9 +89,6 @@ def record_touch(force: Vector, touched: bool, now: float, record: Floats) -> No
         if np.isnan(record[FIRST_CONTACT]):
             record[FIRST_CONTACT] = now
         record[LAST_CONTACT] = now
-
-
-DONE, LIST_USED_UP, FEATURES_OVERFLOW, STEP_TOO_LARGE, DIVERGED = 0, 1, 2, 3, 4
 
 
 @kernel

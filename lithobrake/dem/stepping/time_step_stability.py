@@ -20,6 +20,10 @@ from lithobrake.vocabulary.material import Material
 STEPS_PER_CONTACT = 50.0
 # Factor of the duration of an elastic Hertz collision, see contact_duration.
 HERTZ_DURATION = 2.868
+# Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
+STABLE_FRACTION = 0.8
+# Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by <= 0.08.
+LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 
 def checked_step(time_step: float, allowed: str = "a finite value above 0") -> float:
@@ -152,12 +156,6 @@ def chosen_step(
     """Return the step [s] of a world that was given none; arguments of meeting_speed_bound and shortest_contact."""
     speed = meeting_speed_bound(position, velocity, spin, bodies, planes, gravity)
     return shortest_contact(bodies, planes, options, speed) / STEPS_PER_CONTACT
-
-
-# Largest c dt + (w dt)^2 / 4 that is allowed; 1 is the limit of stability.
-STABLE_FRACTION = 0.8
-# Steps from look to look while no contact turns farther in a step than this phase [rad]; t_c / 50 turns by <= 0.08.
-LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 
 class ContactStiffness(NamedTuple):

@@ -38,6 +38,12 @@ from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 from lithobrake.vocabulary.study_files import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 
+# In the order of the summary.
+FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
+NORMAL_QUANTILE_90 = 1.6448536269514722
+Rows = Sequence[dict[str, str]]
+POSITION = tuple(f"position_{axis}" for axis in "xyz")
+
 
 def site_results(site: Site) -> SiteResults:
     """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
@@ -90,12 +96,6 @@ def _of_kernels(study: Study) -> KernelNumbers | None:
     own = (spin.period, spin.pole_right_ascension_deg, spin.pole_declination_deg, spin.prime_meridian_deg)
     partner = () if place is None else (place.longitude_deg, place.latitude_deg, place.distance, place.period)
     return KernelNumbers(*own, *partner)
-
-
-# In the order of the summary.
-FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
-NORMAL_QUANTILE_90 = 1.6448536269514722
-Rows = Sequence[dict[str, str]]
 
 
 def shares(samples: Samples, flights: Rows, *, holds: bool) -> SampleShares:
@@ -209,9 +209,6 @@ def _ends(
 def proportion(count: int, total: int) -> CountedShare:
     """A count and its share of a total; no interval, which would have to hold for other beds and places."""
     return CountedShare(count, Estimate(count / total, None, None))
-
-
-POSITION = tuple(f"position_{axis}" for axis in "xyz")
 
 
 def delivery_results(job: Job, first: DesignRuns, journey_count: int) -> DeliveryResults:

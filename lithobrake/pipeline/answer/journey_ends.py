@@ -23,6 +23,8 @@ from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, SIDES, SOIL
 from lithobrake.vocabulary.study_files import JOURNEYS_FILE, SKY_FILE, TOUCHDOWNS_FILE
 
+Sides = dict[str, SideResults]
+
 
 @dataclass(frozen=True)
 class JourneyTable:
@@ -109,9 +111,6 @@ def end_share(
     """
     found = share_estimate(met.astype(float), bed, explained=explained, why=why)
     return CountedShare(int(met.sum()), found.share)
-
-
-Sides = dict[str, SideResults]
 
 
 def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:

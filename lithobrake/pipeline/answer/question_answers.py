@@ -47,6 +47,11 @@ from lithobrake.vocabulary.outcomes import (
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
 from lithobrake.vocabulary.study_files import AIM_FILE
 
+# The outcome of these landers is unknown.
+UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
+# The words of bounces and of journeys.
+RESTS = (SETTLED, AT_REST)
+
 
 def limit_state_results(
     study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, CountedShare], *, holds: bool
@@ -158,10 +163,6 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
     return drawn if drawn[1].min() >= 2 else None
 
 
-# The outcome of these landers is unknown.
-UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
-# The words of bounces and of journeys.
-RESTS = (SETTLED, AT_REST)
 # More options than these make no sentence.
 
 

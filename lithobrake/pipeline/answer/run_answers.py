@@ -27,6 +27,17 @@ from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
 
 # The stage after which every run has its answer.
 ANSWERED_AFTER = "fly_runs"
+FAILED = "failed"
+KNOWN = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
+# In the order in which a sentence names them.
+LOST = (TouchdownOutcome.LEFT_SIDEWAYS, TouchdownOutcome.TIME_LIMIT, FAILED)
+# Share of the landings without an outcome above which a study warns of it [-].
+WARNED = 0.02
+# Words of a run that its touchdown alone decides; all others take flights.
+OF_TOUCHDOWN = (CAPTURED,)
+SHARES = (0.5, 0.95)
+# Of more places than these, the first: they are samples, and the work grows with their square.
+MOST_PLACES = 5000
 
 
 def answer_words(study: Study) -> str:
@@ -84,14 +95,6 @@ def why_no_interval(study: Study) -> str | None:
     return scope(study).why_no_interval
 
 
-FAILED = "failed"
-KNOWN = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
-# In the order in which a sentence names them.
-LOST = (TouchdownOutcome.LEFT_SIDEWAYS, TouchdownOutcome.TIME_LIMIT, FAILED)
-# Share of the landings without an outcome above which a study warns of it [-].
-WARNED = 0.02
-
-
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
     """How many of the landings have no outcome, by how they ended; outcomes: landings by outcome."""
     lost = {str(name): outcomes[name] for name in LOST if outcomes.get(name)}
@@ -117,10 +120,6 @@ def left_in_flight(runs: DesignRuns) -> np.ndarray:
 def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
     """Which of the landings a number describes, in words; known: those that have one [run_count]."""
     return statements.described([outcome for outcome, one in zip(outcomes, known, strict=True) if one], len(outcomes))
-
-
-# Words of a run that its touchdown alone decides; all others take flights.
-OF_TOUCHDOWN = (CAPTURED,)
 
 
 def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:
@@ -152,11 +151,6 @@ def _words(fate: str, count: int) -> dict[str, np.ndarray]:
     """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
     held = {word: word == fate for word in RUN_FATES} | {RETURNS: fate in RETURNING}
     return {word: np.full(count, float(one)) for word, one in held.items()}
-
-
-SHARES = (0.5, 0.95)
-# Of more places than these, the first: they are samples, and the work grows with their square.
-MOST_PLACES = 5000
 
 
 def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:

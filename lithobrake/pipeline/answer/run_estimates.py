@@ -69,6 +69,11 @@ if TYPE_CHECKING:
 MISSING = "missing"
 # These add up to 1; every other share holds some of them.
 PARTS = (*FlightStatus, CAPTURED)
+# Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
+SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
+Inputs = dict[str, tuple["Distribution", np.ndarray]]
+ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
+SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 
 
 def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> ReturnFraction:
@@ -161,11 +166,6 @@ def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction
     return share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why)
 
 
-# Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
-SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
-Inputs = dict[str, tuple["Distribution", np.ndarray]]
-
-
 def parts_of_variance(
     job: Job, runs: DesignRuns, y: np.ndarray, of: str, twins: np.ndarray | None = None
 ) -> VarianceParts | None:
@@ -240,10 +240,6 @@ def _parts(
     attitude = independent_terms(job.design, runs.inputs)
     found = variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
     return None if found is None else VarianceParts.of_shares(found, of)
-
-
-ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
-SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 
 
 def estimate(job: Job) -> None:

@@ -55,6 +55,10 @@ from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
 from lithobrake.vocabulary.study_files import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 
+# Adds what came of the landings to what they say.
+Completed = Callable[[Job, DrawnResults, DesignRuns, Estimates], DrawnResults]
+PIT_BINS = 10
+
 
 def summary_dependencies(study: Study) -> dict[str, Any]:
     """What the summary depends on beside the files of the stages before it."""
@@ -139,10 +143,6 @@ def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
     )
 
 
-# Adds what came of the landings to what they say.
-Completed = Callable[[Job, DrawnResults, DesignRuns, Estimates], DrawnResults]
-
-
 def write_results(job: Job, completed: Completed) -> None:
     """Write summary.json: study, results, provenance."""
     side = job.study.design.side_runs
@@ -185,9 +185,6 @@ def results_of_landings(job: Job, estimates: Estimates, distinct: DesignRuns) ->
         sky={},
         soils={},
     )
-
-
-PIT_BINS = 10
 
 
 def write_drawn_summary(job: Job) -> None:

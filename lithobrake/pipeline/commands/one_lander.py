@@ -36,6 +36,7 @@ _NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)",
 OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT, *GROUND)
 # Seeds of pours are told apart by the number of the bed in so many bits.
 LAST_BED = 2**32 - 1
+Row = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -186,9 +187,6 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
     if key == "bed" and not (value == round(value) and 0.0 <= value <= LAST_BED):
         raise ValueError(f"--set {key} is {value:g}; allowed: a whole number from 0 to {LAST_BED}")
     return key, value
-
-
-Row = dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)

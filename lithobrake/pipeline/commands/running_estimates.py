@@ -25,6 +25,17 @@ if TYPE_CHECKING:
 CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
 # Of fewer runs no interval says anything.
 FEWEST_RUNS = 2
+NUMBER, TOUCHDOWN = "journey", "touchdown"
+# How a journey ended whose last touchdown did so; after any other it flies on.
+ENDS: dict[str, JourneyEnd] = {
+    TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST,
+    TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY,
+}
+# What stays the same over the touchdowns of a journey: its lander, its bed, and its soil where regions have none of
+# their own.
+SOIL, KEPT = "grain.", ("lander.", "solver.")
+# Stands for the moment at which a touchdown will have ended: after all others, as text.
+_LATER = "~"
 
 
 @dataclass(frozen=True)
@@ -89,19 +100,6 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
         speed_out=mean_estimate(speed, bed) if len(np.unique(bed[np.isfinite(speed)])) > 1 else None,
         returns=share_estimate(returns, bed, like_missing=over) if np.isfinite(returns).any() else None,
     )
-
-
-NUMBER, TOUCHDOWN = "journey", "touchdown"
-# How a journey ended whose last touchdown did so; after any other it flies on.
-ENDS: dict[str, JourneyEnd] = {
-    TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST,
-    TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY,
-}
-# What stays the same over the touchdowns of a journey: its lander, its bed, and its soil where regions have none of
-# their own.
-SOIL, KEPT = "grain.", ("lander.", "solver.")
-# Stands for the moment at which a touchdown will have ended: after all others, as text.
-_LATER = "~"
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,10 @@ from lithobrake.vocabulary.study_files import EMULATOR_FILE
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
 RUN_KEYS = ("seed", "inputs", "setting")
 FLIGHT = ("status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg")
+# Longest evaluation [s], where neither the command nor the study's campaign.wall_limit says another.
+TIME_LIMIT = 600.0
+# Whether the client is still there is looked at so often [s].
+_LOOK = 0.2
 
 
 def served_models(study: Path, out: Path) -> list[ServedModel]:
@@ -226,12 +230,6 @@ def _seed(config: Mapping[str, Any]) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**53:
         raise ValueError(f"config.seed is {seed!r}; allowed: a whole number from 0 to 2^53")
     return seed
-
-
-# Longest evaluation [s], where neither the command nor the study's campaign.wall_limit says another.
-TIME_LIMIT = 600.0
-# Whether the client is still there is looked at so often [s].
-_LOOK = 0.2
 
 
 class EvaluationProcess:

@@ -24,6 +24,16 @@ if TYPE_CHECKING:
 Row = dict[str, float]
 # A lander that comes in along the ground meets it from above all the same.
 FLATTEST_DEG = 89.9
+# Angle of an impact from the normal of the shape's facet, where the ground that is met faces another way.
+MEAN_INCIDENCE = "impact.mean_incidence_deg"
+# The steepest bed of hulls that was seen to hold (docs/decisions/touchdown.md). Soil lies on no steeper ground: what
+# was there has run down, so the bed of a touchdown is tilted no farther.
+STEEPEST_DEG = 35.0
+Interval = tuple[float, float]
+# Sizes of grains out of their distribution, evenly by share, whose mean is that of all.
+SIZE_COUNT = 1000
+# Of a lander that is flown to the ground [m/s]: the smallest width is the same at every speed.
+ANY_SPEED = 1.0
 
 
 def impact_inputs(speed: float, incidence: float) -> Row:
@@ -99,10 +109,6 @@ def turned_in_flight(
     return after, spin_after - turning
 
 
-# Angle of an impact from the normal of the shape's facet, where the ground that is met faces another way.
-MEAN_INCIDENCE = "impact.mean_incidence_deg"
-
-
 def roughness(study: Study) -> float:
     """Root mean square slope of the ground at the lander's scale [rad]."""
     return math.radians(study.site.roughness_deg or 0.0)
@@ -169,11 +175,6 @@ def _seen_from(row: Row, axes: np.ndarray, met: np.ndarray) -> Row:
     }
 
 
-# The steepest bed of hulls that was seen to hold (docs/decisions/touchdown.md). Soil lies on no steeper ground: what
-# was there has run down, so the bed of a touchdown is tilted no farther.
-STEEPEST_DEG = 35.0
-
-
 def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: float) -> Row:
     """The acceleration of a touchdown as inputs of its bed, in whose frame the incoming velocity has an azimuth.
 
@@ -220,13 +221,6 @@ def on_ground(
 def friction_of(row: Mapping[str, float]) -> float:
     """Friction of grains on each other and on their floor."""
     return row["grain.friction"]
-
-
-Interval = tuple[float, float]
-# Sizes of grains out of their distribution, evenly by share, whose mean is that of all.
-SIZE_COUNT = 1000
-# Of a lander that is flown to the ground [m/s]: the smallest width is the same at every speed.
-ANY_SPEED = 1.0
 
 
 def place_region(study: Study) -> tuple[Interval, Interval] | None:

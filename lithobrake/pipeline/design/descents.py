@@ -41,6 +41,10 @@ if TYPE_CHECKING:
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
 # Of a direction from the centre next to the pole, about which north is any.
 POLAR = 1e-9
+Row = dict[str, float]
+# A start so far below the ground is on it, of a millionth of the radius and at most [m].
+SLACK_PART, MOST_SLACK = 1e-6, 1e-3
+WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
 
 
 def released_states(release: ReleaseSection, uniforms: Array, first: int, pole: Array) -> DeliveredStates:
@@ -95,11 +99,6 @@ def _root(covariance: Array) -> Array:
     # Rounding takes an eigenvalue of 0 below it.
     root: Array = scale[:, None] * (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     return root
-
-
-Row = dict[str, float]
-# A start so far below the ground is on it, of a millionth of the radius and at most [m].
-SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,9 +267,6 @@ def _refuse_fast(study: Study, speed: np.ndarray) -> None:
     for one in (fastest, *map(fastest.on_soil, study.soil)):
         if wrong := list(contact_problems(one)):
             raise StudyError(wrong)
-
-
-WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
 
 
 def descents_in_words(descents: Descents) -> str:

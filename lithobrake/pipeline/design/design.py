@@ -27,6 +27,13 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
 Row = dict[str, float]
+GRAIN = "grain."
+# Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
+# an azimuth that is given leaves the others as they were.
+DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
+PAIR_COUNT, TWIN_COUNT = 20, 12
+# Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
+SIDE_DESIGNS = ("soil_pairs", "twins")
 
 
 def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
@@ -41,15 +48,6 @@ def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
     return [
         row | {dotted: float(found[key][number]) for key, dotted in keys.items()} for number, row in enumerate(rows)
     ]
-
-
-GRAIN = "grain."
-# Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
-# an azimuth that is given leaves the others as they were.
-DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
-PAIR_COUNT, TWIN_COUNT = 20, 12
-# Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
-SIDE_DESIGNS = ("soil_pairs", "twins")
 
 
 # Compared by identity: a study has dicts, which cannot be hashed, and cached properties belong to one object.

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.smallbody import Body, Shape
 
+Row = dict[str, float]
+# Parts of a facet along each edge, and how many parts there are at most, by which the areas of regions are summed.
+EDGE_PARTS, MOST_PARTS = 8, 200_000
+
 
 def felt(
     body: "Body", points: np.ndarray, time: np.ndarray, mass: np.ndarray, spin_period: np.ndarray
@@ -45,11 +49,6 @@ def felt(
     strength = body.partner.body.gravitational_parameter
     near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))
     return own + strength * (near - mean)
-
-
-Row = dict[str, float]
-# Parts of a facet along each edge, and how many parts there are at most, by which the areas of regions are summed.
-EDGE_PARTS, MOST_PARTS = 8, 200_000
 
 
 @dataclass(frozen=True, eq=False)

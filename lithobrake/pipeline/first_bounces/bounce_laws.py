@@ -23,6 +23,19 @@ if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
     from lithobrake.smallbody import Bounce, Impacts, Rebounds, RestitutionTable
 
+RESTITUTION_FILE = "restitution.csv"
+CLEAR_RUN, CAPTURED_RUN, *_ = TouchdownOutcome
+# Cells along each side, and landers that leave which a cell has in the mean; fewer make fewer cells.
+MOST_CELLS, CELL_COUNT = 4, 50
+# A cell with fewer that leave has the quantiles of all.
+FEWEST = 10
+# Effective friction over friction of the contacts: a line through pushes as slow as captured landers.
+INTERCEPT, SLOPE = 0.49, 0.32
+# Frictions, and smallest edges of the lander in grains, between which it was measured.
+FRICTIONS, EDGES = (0.2, 0.8), (0.55, 1.7)
+# Grains whose mean size stands for all.
+GRAINS = 1000
+
 
 def why_no_soil(study: Study) -> str | None:
     """Why the soil cannot be asked about the impacts after the first; None where it can."""
@@ -111,14 +124,6 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
     return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, ranges, bound)
 
 
-RESTITUTION_FILE = "restitution.csv"
-CLEAR_RUN, CAPTURED_RUN, *_ = TouchdownOutcome
-# Cells along each side, and landers that leave which a cell has in the mean; fewer make fewer cells.
-MOST_CELLS, CELL_COUNT = 4, 50
-# A cell with fewer that leave has the quantiles of all.
-FEWEST = 10
-
-
 def restitution_table(study: Study, samples: Samples, runs: DesignRuns) -> "RestitutionTable":
     """The table of draws of the emulator, and how many runs and samples each cell has.
 
@@ -182,14 +187,6 @@ def _score_correlation(one: np.ndarray, other: np.ndarray) -> float:
         return 0.0
     scores = [special.ndtri((stats.rankdata(values) - 0.5) / len(values)) for values in (one, other)]
     return float(np.corrcoef(*scores)[0, 1])
-
-
-# Effective friction over friction of the contacts: a line through pushes as slow as captured landers.
-INTERCEPT, SLOPE = 0.49, 0.32
-# Frictions, and smallest edges of the lander in grains, between which it was measured.
-FRICTIONS, EDGES = (0.2, 0.8), (0.55, 1.7)
-# Grains whose mean size stands for all.
-GRAINS = 1000
 
 
 def has_measured_size(design: DrawnDesign) -> bool:

@@ -33,6 +33,18 @@ if TYPE_CHECKING:
     # Spin after the first impact [rad/s], [sample_count, 3], and the bounce of what follows.
     Soil = tuple[np.ndarray, Bounce]
 
+# docs/flights.md says what each is.
+COLUMNS = (
+    "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
+    "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
+)  # fmt: skip
+FILES = (REST_FILE, ARCS_FILE, REST_NOTES_FILE)
+# Statuses of landers that lie on, or have just touched, the ground of the body.
+DOWN = (
+    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
+    JourneyStatus.BOUNCING,
+)
+
 
 def arc_rows(arcs: "Arcs", samples: np.ndarray) -> list[list[Any]]:
     """A row of arcs.csv for each arc, in the columns of outputs.ARC.
@@ -46,19 +58,6 @@ def arc_rows(arcs: "Arcs", samples: np.ndarray) -> list[list[Any]]:
         *(*arcs.position.T, *arcs.velocity.T, arcs.mass, arcs.spin_period),
     )
     return [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
-
-
-# docs/flights.md says what each is.
-COLUMNS = (
-    "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
-    "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
-)  # fmt: skip
-FILES = (REST_FILE, ARCS_FILE, REST_NOTES_FILE)
-# Statuses of landers that lie on, or have just touched, the ground of the body.
-DOWN = (
-    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
-    JourneyStatus.BOUNCING,
-)
 
 
 def rest_files(study: Study) -> list[str]:

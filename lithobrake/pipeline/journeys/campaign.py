@@ -22,6 +22,10 @@ from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
 from lithobrake.vocabulary.study_files import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 
+JOURNEY_FILES: tuple[str, ...] = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
+# Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.
+INTERVAL_ERRORS = 1.645
+
 
 def begun_aloft(model: JourneyModel, descents: Descents) -> list[Journey]:
     """The journeys before their first touchdowns; those that never touch down have ended with their flight."""
@@ -51,9 +55,6 @@ def _descent(descents: Descents, number: int, touches_down: bool) -> dict[str, A
     )  # fmt: skip
 
 
-JOURNEY_FILES: tuple[str, ...] = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
-
-
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
     touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
@@ -79,10 +80,6 @@ def journey_row(journey: Journey) -> list[Any]:
     counts = [journey.contacts, len(journey.touchdowns), journey.path_length]
     bed = int(journey.row["bed"])
     return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, *attitude, journey.reason]
-
-
-# Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.
-INTERVAL_ERRORS = 1.645
 
 
 def make_journeys(job: Job) -> None:

@@ -44,6 +44,16 @@ from lithobrake.vocabulary.quantities import (
 )
 from lithobrake.vocabulary.study_files import AIM_FILE, TOUCHDOWN_EXPLORER_FILE
 
+EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
+# Landers that the study has not followed, and those of its journeys.
+FRESH, OWN = "fresh", "own"
+# How often the emulator follows each lander of the journeys, each time by another refit.
+COPIES = 20
+# Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
+MOST_LANDINGS = 0.1
+LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
+SITE = "site."
+
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
     runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
@@ -72,16 +82,6 @@ def write_reason(job: Job, why: str) -> None:
 
     with atomic_path(job.folder / TOUCHDOWN_EXPLORER_FILE) as draft, h5py.File(draft, "w") as file:
         file.attrs["why"] = why
-
-
-EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
-# Landers that the study has not followed, and those of its journeys.
-FRESH, OWN = "fresh", "own"
-# How often the emulator follows each lander of the journeys, each time by another refit.
-COPIES = 20
-# Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
-MOST_LANDINGS = 0.1
-LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
 
 
 def emulated_dependencies(study: Study) -> Any:
@@ -146,9 +146,6 @@ def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, mos
         landers.time,
     )
     return [[name, *row] for row in zip(*(one.tolist() for one in columns), strict=True)]
-
-
-SITE = "site."
 
 
 def option_files(study: Study) -> list[str]:

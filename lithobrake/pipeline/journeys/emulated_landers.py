@@ -42,6 +42,11 @@ from lithobrake.vocabulary.quantities import (
 
 # Of these landings alone: what the study says of its runs is of those of its journeys.
 LEDGER = "emulated.sqlite"
+AFTER = {
+    TouchdownOutcome.CAPTURED.value: JourneyEnd.AT_REST.value,
+    TouchdownOutcome.TIME_LIMIT.value: JourneyEnd.UNDER_WAY.value,
+    TouchdownOutcome.LEFT_SIDEWAYS.value: JourneyEnd.FAILED.value,
+}
 
 
 @dataclass(frozen=True)
@@ -125,13 +130,6 @@ def _take_in(found: Answers, place: int, record: Record) -> None:
     if record.outcome == TouchdownOutcome.CLEAR:
         found.velocity[place] = [outputs[name] for name in VELOCITY_OUT]
         found.spin[place] = [outputs.get(name, 0.0) for name in SPIN_OUT]
-
-
-AFTER = {
-    TouchdownOutcome.CAPTURED.value: JourneyEnd.AT_REST.value,
-    TouchdownOutcome.TIME_LIMIT.value: JourneyEnd.UNDER_WAY.value,
-    TouchdownOutcome.LEFT_SIDEWAYS.value: JourneyEnd.FAILED.value,
-}
 
 
 @dataclass

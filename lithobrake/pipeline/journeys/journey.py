@@ -36,6 +36,15 @@ if TYPE_CHECKING:
 
 # Steps toward the nearest ground: each leaves at most the sine of the angle between two facets of the way.
 PROJECTIONS = 8
+Row = dict[str, float]
+# Of one journey; more would be a lander that moves along for ever.
+MOST_TOUCHDOWNS = 1000
+# What ends a journey with its flight.
+ENDS = {
+    FlightStatus.ESCAPED: JourneyEnd.ESCAPED,
+    FlightStatus.PARTNER: JourneyEnd.PARTNER,
+    FlightStatus.FLYING: JourneyEnd.UNDER_WAY,
+}
 
 
 # Compared by identity, as the design.
@@ -118,18 +127,6 @@ def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
         return place
     # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
     return shape.surface_point(*shape.latitude_longitude(point))
-
-
-Row = dict[str, float]
-# Of one journey; more would be a lander that moves along for ever.
-MOST_TOUCHDOWNS = 1000
-
-# What ends a journey with its flight.
-ENDS = {
-    FlightStatus.ESCAPED: JourneyEnd.ESCAPED,
-    FlightStatus.PARTNER: JourneyEnd.PARTNER,
-    FlightStatus.FLYING: JourneyEnd.UNDER_WAY,
-}
 
 
 @dataclass

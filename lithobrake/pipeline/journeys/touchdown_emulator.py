@@ -37,6 +37,22 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
+# Another file than that of single landings, whose inputs are those of the study alone.
+GRAVITY, SLOPE, _ = GROUND
+ALONG, ASIDE, DURATION, _ = TO_REST
+# What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
+OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
+# Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
+ARRIVAL_TABLES = ("impact.", "surface.")
+ONE_SOIL = (
+    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
+    "their own."
+)
+# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
+FACTOR, DEGREES = 1.1, 5.0
+LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
+Row = dict[str, float]
+
 
 @dataclass(frozen=True)
 class Answers:
@@ -66,22 +82,6 @@ class Answers:
     def fill(self, which: np.ndarray, others: "Answers") -> None:
         for one in fields(self):
             getattr(self, one.name)[which] = getattr(others, one.name)
-
-
-# Another file than that of single landings, whose inputs are those of the study alone.
-GRAVITY, SLOPE, _ = GROUND
-ALONG, ASIDE, DURATION, _ = TO_REST
-# What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
-OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
-# Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
-ARRIVAL_TABLES = ("impact.", "surface.")
-ONE_SOIL = (
-    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
-    "their own."
-)
-# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
-FACTOR, DEGREES = 1.1, 5.0
-LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
 
 
 @dataclass(frozen=True)
@@ -250,9 +250,6 @@ def why_no_emulator(content: Mapping[str, Any]) -> str | None:
     """The reason that a file of an emulator holds in its place; None where there is an emulator."""
     why = content.get("why")
     return None if why is None else str(why)
-
-
-Row = dict[str, float]
 
 
 @dataclass(frozen=True)

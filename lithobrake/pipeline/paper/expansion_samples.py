@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 # An angle scatters as much after a slow impact as after a fast one.
 ANGLES = ("elevation_out",)
+# Points at which the expansion is evaluated at once; between two blocks progress is shown.
+_BLOCK = 1 << 20
+# Points to a term at which a quadratic is read off: more than enough, as it has no scatter.
+POINTS_PER_TERM = 3
 
 
 @dataclass(frozen=True)
@@ -56,10 +60,6 @@ class Scatter:
         rows = self.rows[random.integers(len(self.rows), size=len(speed))]
         drawn: np.ndarray = rows * np.where(self.grows, (speed / self.speed)[:, None], 1.0)
         return drawn
-
-
-# Points at which the expansion is evaluated at once; between two blocks progress is shown.
-_BLOCK = 1 << 20
 
 
 def draw_samples(job: Job) -> None:
@@ -105,10 +105,6 @@ def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:
         outputs[start : start + _BLOCK] = surrogate(x[start : start + _BLOCK])
         job.progress(min(start + _BLOCK, len(x)), len(x), "samples")
     return outputs
-
-
-# Points to a term at which a quadratic is read off: more than enough, as it has no scatter.
-POINTS_PER_TERM = 3
 
 
 def sample_expansion(job: Job) -> None:

@@ -23,6 +23,25 @@ if TYPE_CHECKING:
 
 # Designs with more runs are not gone through run by run: that would take longer than a second or two.
 MOST_NAMED = 10_000
+# Grains that are made to learn the shape of all.
+GRAIN_COUNT = 12
+# Landings that are looked at to learn how long all take in the mean.
+LANDING_COUNT = 40
+RAIN_FRACTION = 0.31  # of the rain is bounding spheres
+SOLID_FRACTION = 0.6  # of a settled bed
+FALLS = 1.4  # until poured grains lie, in the time that the highest falls
+# Steps that a bed settles for, over the fewest that its criteria of rest ask for: and what each layer of grains adds.
+SETTLING, SETTLING_OF_LAYERS = 3.9, 0.84
+# Until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact: the first, and
+# what the square of the depth over the lander's size adds, up to DEEP, since a floor gives back what grains do not.
+CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
+OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
+HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
+# Simulated time of a journey's touchdowns together, in time constants of toppling, sqrt(smallest edge / gravity): hops
+# over the bed and rocking (24 journeys of a CubeSat on Dimorphos: mean 18, 5 to 32).
+TOPPLINGS = 18.0
+# Fewest steps in which a period of a grain is settled through (settling.run_quietly).
+STEPS_PER_PERIOD = 40.0
 
 
 @dataclass(frozen=True)
@@ -138,27 +157,6 @@ def _point_count(drawn: DrawnDesign, design: str, kept_count: int) -> int:
         return int(getattr(section, f"{design}_count"))
     input_count = kept_count if design == "refined" else len(drawn.inputs)
     return smolyak_count(input_count, getattr(section, f"{design}_level"))
-
-
-# Grains that are made to learn the shape of all.
-GRAIN_COUNT = 12
-# Landings that are looked at to learn how long all take in the mean.
-LANDING_COUNT = 40
-RAIN_FRACTION = 0.31  # of the rain is bounding spheres
-SOLID_FRACTION = 0.6  # of a settled bed
-FALLS = 1.4  # until poured grains lie, in the time that the highest falls
-# Steps that a bed settles for, over the fewest that its criteria of rest ask for: and what each layer of grains adds.
-SETTLING, SETTLING_OF_LAYERS = 3.9, 0.84
-# Until a lander is clear, in the time in which it crosses itself and a grain at the speed of impact: the first, and
-# what the square of the depth over the lander's size adds, up to DEEP, since a floor gives back what grains do not.
-CROSSINGS, CROSSINGS_OF_DEPTH, DEEP = 2.0, 2.2, 2.0
-OUTGOING = 0.5  # speed of a lander that leaves, over that of its impact
-HELD_CROSSINGS = 0.4  # likewise, where it comes too slowly to leave and is soon captured
-# Simulated time of a journey's touchdowns together, in time constants of toppling, sqrt(smallest edge / gravity): hops
-# over the bed and rocking (24 journeys of a CubeSat on Dimorphos: mean 18, 5 to 32).
-TOPPLINGS = 18.0
-# Fewest steps in which a period of a grain is settled through (settling.run_quietly).
-STEPS_PER_PERIOD = 40.0
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,31 @@ FLIGHT_ROW, JOURNEY_ROW = 270, 120
 SHAPE_FACET = 45
 TOUCHDOWNS = 4  # of a journey
 REPORT_BYTES = 7_500_000  # page and figures, with expansions, scores and summary
+# CPU time [s] of the piece of work where the times of expected_time.py were measured (benchmarks/plan_estimate.json).
+REFERENCE = 0.22
+EDGE, STEPS, TIME_STEP = 4, 10_000, 1e-4
+Span = tuple[float, float]
+# A common step of a landing: of the bed, of each grain [s]; and of each grain of a bed that settles, which is looked at
+# more often.
+LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
+SETTLING_GRAIN = 8.0e-7
+# Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
+# contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
+# is too near to be held, over the share.
+LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
+# Of that, where slow collisions take fewer steps.
+SLOW_PART = 0.42
+# A grain at rest in a journey's touchdown, each period [s].
+RESTING_GRAIN = 4.0e-5
+COMPILING = 60.0  # s
+# Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
+FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
+REPORT_SECONDS = 15.0  # s: fits, scores, samples, summary and page
+# An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
+SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 3.0
+# So many runs of a study tell how long the others take, to this factor at best.
+RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
+BUSY = 0.7  # of the cores: a load above this is other work
 
 
 def expected_bytes(design: DrawnDesign, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
@@ -70,11 +95,6 @@ def journey_count(study: Study) -> int:
     return count if why_no_soil(study) else 2 * count
 
 
-# CPU time [s] of the piece of work where the times of expected_time.py were measured (benchmarks/plan_estimate.json).
-REFERENCE = 0.22
-EDGE, STEPS, TIME_STEP = 4, 10_000, 1e-4
-
-
 @cache
 def machine_pace() -> float | None:
     """CPU time here over that of the reference machine; None where the engine has yet to be compiled."""
@@ -109,31 +129,6 @@ def probe() -> float:
     start = time.process_time()
     world.run(steps=STEPS)
     return time.process_time() - start
-
-
-Span = tuple[float, float]
-
-# A common step of a landing: of the bed, of each grain [s]; and of each grain of a bed that settles, which is looked at
-# more often.
-LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
-SETTLING_GRAIN = 8.0e-7
-# Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
-# contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
-# is too near to be held, over the share.
-LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
-# Of that, where slow collisions take fewer steps.
-SLOW_PART = 0.42
-# A grain at rest in a journey's touchdown, each period [s].
-RESTING_GRAIN = 4.0e-5
-COMPILING = 60.0  # s
-# Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
-FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
-REPORT_SECONDS = 15.0  # s: fits, scores, samples, summary and page
-# An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
-SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 3.0
-# So many runs of a study tell how long the others take, to this factor at best.
-RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
-BUSY = 0.7  # of the cores: a load above this is other work
 
 
 def expected_seconds(

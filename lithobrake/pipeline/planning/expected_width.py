@@ -33,6 +33,8 @@ TOLD_AT_REST, TOLD_OF_RETURNS = (1.0, 0.95, 0.8, 0.5), (1.0,)
 RETURN_FRACTION = 0.75
 # Fewer answers say nothing of how they scatter.
 FEWEST_ANSWERS = 20
+# Counts that cost less than this part more than the best are as good: what a bed costs is not known better.
+AS_GOOD = 0.1
 
 
 @dataclass(frozen=True)
@@ -185,10 +187,6 @@ def _runs(design: DrawnDesign, values: np.ndarray, bed: np.ndarray) -> tuple[tup
 
 def _points(share: float) -> str:
     return f"{100 * share:.2g}"
-
-
-# Counts that cost less than this part more than the best are as good: what a bed costs is not known better.
-AS_GOOD = 0.1
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,17 @@ from lithobrake.pipeline.planning.planned_ground import (
 )
 from lithobrake.vocabulary.number_words import thousands, unit_of_time
 
+# One, and more.
+NAMES = {
+    "beds": ("bed", "beds"),
+    "landings": ("preview landing", "preview landings"),
+    "touchdowns": ("touchdown", "touchdowns"),
+    "journeys to rest": ("journey to rest", "journeys to rest"),
+    "samples": ("sample", "samples"),
+    "flights": ("flight", "flights"),
+    "journeys": ("journey from bounce to bounce", "journeys from bounce to bounce"),
+}
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -83,18 +94,6 @@ class Plan:
         runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
         beds = [asdict(one) | {"new": one.new} for one in self.beds]
         return asdict(self) | {"beds": beds, "runs": runs, "time": self.time}
-
-
-# One, and more.
-NAMES = {
-    "beds": ("bed", "beds"),
-    "landings": ("preview landing", "preview landings"),
-    "touchdowns": ("touchdown", "touchdowns"),
-    "journeys to rest": ("journey to rest", "journeys to rest"),
-    "samples": ("sample", "samples"),
-    "flights": ("flight", "flights"),
-    "journeys": ("journey from bounce to bounce", "journeys from bounce to bounce"),
-}
 
 
 def plan_lines(plan: Plan) -> list[str]:

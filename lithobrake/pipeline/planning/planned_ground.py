@@ -21,6 +21,9 @@ from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_
 from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN, percent
 from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
+# Of grains that are larger than the diameter that is told.
+LARGE_FRACTION = 0.1
+
 
 @dataclass(frozen=True)
 class PlannedBeds:
@@ -69,10 +72,6 @@ def planned_tile(study: Study) -> PlannedTile | None:
     if not study.has_soil or study.bed.sides == "walls":
         return None
     return PlannedTile(study.bed.width, max(narrowest_period(study), smallest_width(study)))
-
-
-# Of grains that are larger than the diameter that is told.
-LARGE_FRACTION = 0.1
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe
 
 WHAT = "compiling kernels"
+# Which beds are being poured is looked at so often [s].
+_POLL_INTERVAL = 0.5
 
 
 def compile_kernels(tell: Callable[..., None], busy: int = 0) -> None:
@@ -102,10 +104,6 @@ def _quietly(function: Callable[..., None], *arguments: object) -> None:
         function(*arguments)
     finally:
         logging.disable(logging.NOTSET)
-
-
-# Which beds are being poured is looked at so often [s].
-_POLL_INTERVAL = 0.5
 
 
 def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None:

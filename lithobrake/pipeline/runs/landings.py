@@ -50,6 +50,9 @@ from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
 from lithobrake.vocabulary.study_files import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 
+SNAPSHOT_FRAMES = 120
+FIRST, TELLING = LANDING_FILE, TELLING_LANDING_FILE
+
 
 def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[str, float]]:
     """All inputs of the runs at these uncertain inputs, [run_count, input_count], with what each draws by chance.
@@ -177,10 +180,6 @@ def account(job: Job, design: str, runs: Runs, inputs: Sequence[str]) -> None:
     lost = missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
     if lost:
         job.say(f"{name}: {lost}")
-
-
-SNAPSHOT_FRAMES = 120
-FIRST, TELLING = LANDING_FILE, TELLING_LANDING_FILE
 
 
 def landing_files(study: Study) -> list[str]:

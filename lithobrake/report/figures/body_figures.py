@@ -34,6 +34,12 @@ BARE = np.array(to_rgb("#d9d5cc"))
 COLOURS = density_colours(FATE_COLOURS[FlightStatus.IMPACT])
 # Where the light comes from in every view: right, up, towards the viewer.
 LIGHT = np.array([-0.5, 0.6, 0.62])
+COLUMNS = 2
+# Points on each side of a site, which the projection bends.
+SIDE = 12
+GOOD, BAD, GROUND, SUNLIGHT = "viridis", "magma_r", "cividis", "cividis"
+# In inches: a map with its title, its colour bar, what stands between them, and the margins.
+WIDE, HIGH, GAP, FOOT = 4.55, 2.1, 0.12, 0.5
 
 
 def body_figure(vertices: Array, faces: Integers, facet: Integers, site: Array) -> Figure:
@@ -112,14 +118,6 @@ def _paint(axes: Axes, corners: Array, density: Array, norm: LogNorm, camera: Ca
     colours = colours * light[:, None]
     stack: Any = camera.project(corners[order])[0]
     axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3, rasterized=True))
-
-
-COLUMNS = 2
-# Points on each side of a site, which the projection bends.
-SIDE = 12
-GOOD, BAD, GROUND, SUNLIGHT = "viridis", "magma_r", "cividis", "cividis"
-# In inches: a map with its title, its colour bar, what stands between them, and the margins.
-WIDE, HIGH, GAP, FOOT = 4.55, 2.1, 0.12, 0.5
 
 
 @dataclass(frozen=True)

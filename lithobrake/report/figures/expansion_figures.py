@@ -29,6 +29,9 @@ MARKERS = (("o", 11.0), ("D", 6.0))
 # Of a name at a curve, in parts of the panel's height.
 LINE_HEIGHT = 0.043
 RING: dict[str, Any] = {"markerfacecolor": "none", "markeredgecolor": SITE, "markeredgewidth": 1.7}
+# Cells along each axis: a hundred samples to each in the mean would show all there is, within these bounds.
+FEWEST_CELLS, MOST_CELLS, TO_A_CELL = 12, 50, 20.0
+COLOURS = density_colours(TRAINING)
 
 
 @dataclass(frozen=True)
@@ -183,11 +186,6 @@ def _ring(axes: Axes, name: str, first: Array, colours: list[str], spread: float
     axes.text(0, -0.16, f"{shown.unit} spread", ha="center", va="center", fontsize=7.5, color=QUIET)
     # A pie sets limits of its own.
     axes.set(xlim=(-1.05, 1.05), ylim=(-1.05, 1.05))
-
-
-# Cells along each axis: a hundred samples to each in the mean would show all there is, within these bounds.
-FEWEST_CELLS, MOST_CELLS, TO_A_CELL = 12, 50, 20.0
-COLOURS = density_colours(TRAINING)
 
 
 def scatter_figure(samples: Mapping[str, Array], runs: Mapping[str, Array]) -> Figure:

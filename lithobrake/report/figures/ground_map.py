@@ -21,6 +21,31 @@ LINE_POINTS = 361
 STEPS_DEG = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)
 # A panel has about so many lines of each kind.
 LINES = 4.0
+# A panel has so much more than what it has to hold; one wider than a part of the half sphere is drawn as both halves.
+MARGIN, WIDEST = 1.12, 0.7
+# Below this cells would be mostly empty, and each place is a dot.
+MANY = 1000
+# Cells along the width of a map.
+CELLS = 60
+# Four strokes that point at the place and leave it open: a site is where impacts may be densest.
+CROSSHAIR = Path(
+    [(0.4, 0.0), (1.0, 0.0), (-0.4, 0.0), (-1.0, 0.0), (0.0, 0.4), (0.0, 1.0), (0.0, -0.4), (0.0, -1.0)],
+    [Path.MOVETO, Path.LINETO] * 4,
+)
+# The white rim keeps the thin strokes readable on dark and on bright places alike.
+SITE_STYLE: dict[str, Any] = {
+    "marker": CROSSHAIR,
+    "markersize": 17,
+    "fillstyle": "none",
+    "markeredgecolor": INK,
+    "markeredgewidth": 1.6,
+    "path_effects": [Stroke(linewidth=3.4, foreground="white"), Normal()],
+}
+# Of the edges of regions with a soil of their own.
+SOIL_STYLE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (1.0, 1.6))}
+Outlines = Sequence[Sequence[tuple[float, float]]]
+# Beyond this a region is dashed.
+LARGE_SHARE = 0.9
 
 
 @dataclass(frozen=True)
@@ -93,10 +118,6 @@ class MapPanel:
         return np.asarray((np.abs(east - self.east) <= self.half) & (np.abs(north - self.north) <= self.half))
 
 
-# A panel has so much more than what it has to hold; one wider than a part of the half sphere is drawn as both halves.
-MARGIN, WIDEST = 1.12, 0.7
-
-
 def panel_around(ground: GroundMap, lines: Sequence[tuple[Array, Array]]) -> MapPanel | None:
     """The panel that holds the middle and these latitudes and longitudes [deg]; None where they lie too far apart."""
     latitude, longitude = (np.concatenate([np.array([middle]), *parts]) for middle, parts in zip(
@@ -119,12 +140,6 @@ def round_length(most: float) -> float:
     """The largest of 1, 2 and 5 times a power of ten that is not more."""
     power = 10.0 ** np.floor(np.log10(most))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most * (1.0 + 1e-12)))
-
-
-# Below this cells would be mostly empty, and each place is a dot.
-MANY = 1000
-# Cells along the width of a map.
-CELLS = 60
 
 
 def density_colours(colour: str) -> LinearSegmentedColormap:
@@ -161,27 +176,6 @@ def cell_counts(
 def density_norm(counts: Sequence[Array]) -> LogNorm:
     """One scale for several maps."""
     return LogNorm(1.0, max([10.0, *(float(one.max()) for one in counts)]))
-
-
-# Four strokes that point at the place and leave it open: a site is where impacts may be densest.
-CROSSHAIR = Path(
-    [(0.4, 0.0), (1.0, 0.0), (-0.4, 0.0), (-1.0, 0.0), (0.0, 0.4), (0.0, 1.0), (0.0, -0.4), (0.0, -1.0)],
-    [Path.MOVETO, Path.LINETO] * 4,
-)
-# The white rim keeps the thin strokes readable on dark and on bright places alike.
-SITE_STYLE: dict[str, Any] = {
-    "marker": CROSSHAIR,
-    "markersize": 17,
-    "fillstyle": "none",
-    "markeredgecolor": INK,
-    "markeredgewidth": 1.6,
-    "path_effects": [Stroke(linewidth=3.4, foreground="white"), Normal()],
-}
-# Of the edges of regions with a soil of their own.
-SOIL_STYLE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (1.0, 1.6))}
-Outlines = Sequence[Sequence[tuple[float, float]]]
-# Beyond this a region is dashed.
-LARGE_SHARE = 0.9
 
 
 def mark_site(axes: Axes, x: float, y: float) -> None:

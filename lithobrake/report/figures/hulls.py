@@ -21,6 +21,8 @@ from lithobrake.vocabulary.arrays import Array, Integers
 SUN = np.array([-0.52, 0.18, 0.83])
 FILL = np.array([0.45, 0.82, 0.2])
 AMBIENT = 0.56
+# A body this many times larger than the middle one is cut up before it is painted.
+LARGE = 1.5
 
 
 def light_on_faces(
@@ -77,10 +79,6 @@ def sunlight(centres: Array, owners: NDArray[np.int64], position: Array, radius:
         cover = np.clip((1.15 - reach) / 0.5, 0.0, 1.0)
         np.minimum.at(light, faces, 1.0 - cover)
     return light
-
-
-# A body this many times larger than the middle one is cut up before it is painted.
-LARGE = 1.5
 
 
 @dataclass(frozen=True)

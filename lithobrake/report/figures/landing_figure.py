@@ -15,6 +15,11 @@ from lithobrake.results import JourneyMotion
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.plain_text import wrapped
 
+# Of each touchdown.
+PICTURES = 4
+# Characters on a line of a caption, and its height [inch].
+LINE, LINE_HEIGHT = 118, 0.2
+
 
 def instants(lander_height: Array, count: int = 6) -> list[int]:
     """Frames to show: half of them up to the deepest point, the rest after it, evenly spaced."""
@@ -186,12 +191,6 @@ def _history(upper: Axes, lower: Axes, history: dict[str, Array]) -> None:
     lower.set_ylabel("gravity [m/s$^2$]")
     lower.set_xlabel("simulated time [s]")
     lower.grid(visible=True, axis="y", color=QUIET, alpha=0.2)
-
-
-# Of each touchdown.
-PICTURES = 4
-# Characters on a line of a caption, and its height [inch].
-LINE, LINE_HEIGHT = 118, 0.2
 
 
 def journey_sheet(motion: JourneyMotion) -> bytes:

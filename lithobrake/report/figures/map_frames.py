@@ -29,6 +29,8 @@ LONGEST_BAR = 0.3
 RIM = [Stroke(linewidth=2.2, foreground="white"), Normal()]
 WORDS: dict[str, Any] = {"fontsize": 7, "color": QUIET, "path_effects": RIM, "zorder": 3}
 LINE: dict[str, Any] = {"color": RULE, "linewidth": 0.6, "zorder": 1}
+SIZE = (9.2, 5.2)
+TRACK_RIM = [Stroke(linewidth=2.6, foreground="white"), Normal()]
 
 
 def frame_local(axes: Axes, ground: GroundMap, panel: MapPanel) -> None:
@@ -148,10 +150,6 @@ def draw_bar(axes: Axes, width: float) -> None:
     axes.add_patch(Rectangle((0.025, 0.022), part + 0.03, 0.085, color="white", alpha=0.85, linewidth=0.0, **style))
     axes.plot([0.04, 0.04 + part], [0.04, 0.04], color=INK, linewidth=2.5, solid_capstyle="butt", **style)
     axes.text(0.04 + 0.5 * part, 0.052, f"{length:g} m", ha="center", va="bottom", fontsize=8, **style)
-
-
-SIZE = (9.2, 5.2)
-TRACK_RIM = [Stroke(linewidth=2.6, foreground="white"), Normal()]
 
 
 def track_map(track: JourneyTrack, shown: int | None = None) -> Figure:

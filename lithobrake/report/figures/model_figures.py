@@ -22,6 +22,17 @@ from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.percentages import percent
 
 LUCK = "#e3e7eb"
+BINS = 20
+WORDS = "grey: before; blue: after"
+# A law whose median lies below this part of the middle of its ends is drawn by its logarithm.
+SKEWED = 0.5
+# In inches, about the plots.
+LEFT, BELOW, BESIDE = 0.8, 0.55, 0.3
+_INPUT = {"unit": str, "prior": [float], "points": [float], "sd_ratio": float}
+_FORM = {"statement": str, "inputs": {str: _INPUT}}
+ErrorsByOutput = Mapping[str, OutputErrors]
+# Words and lines need more contrast with white than bars do.
+TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
 
 
 def calibration_figure(scores: Mapping[str, OutputScore]) -> Figure:
@@ -73,16 +84,6 @@ def _bands(axes: Axes, scores: Mapping[str, OutputScore]) -> None:
     axes.spines["left"].set_visible(False)
     axes.xaxis.set_major_formatter(lambda value, place: f"{100 * value:.0f}")
     axes.set_xlabel("runs held [%]")
-
-
-BINS = 20
-WORDS = "grey: before; blue: after"
-# A law whose median lies below this part of the middle of its ends is drawn by its logarithm.
-SKEWED = 0.5
-# In inches, about the plots.
-LEFT, BELOW, BESIDE = 0.8, 0.55, 0.3
-_INPUT = {"unit": str, "prior": [float], "points": [float], "sd_ratio": float}
-_FORM = {"statement": str, "inputs": {str: _INPUT}}
 
 
 def write_corner(posterior: Path, picture: Path) -> None:
@@ -165,12 +166,6 @@ def _label(axes: Axes, labels: list[str], row: int, column: int, *, is_last: boo
         axes.set_ylabel(labels[row], fontsize=7.5)
     elif column < row:
         axes.tick_params(axis="y", labelleft=False)
-
-
-ErrorsByOutput = Mapping[str, OutputErrors]
-
-# Words and lines need more contrast with white than bars do.
-TEXT = {TRAINING: TRAINING, TEST: "#a8690a", TEST_ALL: "#5f656d"}
 
 
 def error_figure(training: ErrorsByOutput, test_kept: ErrorsByOutput, test_all: ErrorsByOutput) -> Figure:

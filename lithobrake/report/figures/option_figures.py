@@ -20,6 +20,9 @@ from lithobrake.vocabulary.estimate import Estimate
 
 # One for all maps; colours darker than this part of their scale have white figures.
 COLOURS, DARK = "Blues", 0.55
+_NONE = Estimate(math.nan, None, None)
+# Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
+WHOLE = (0.0, 100.0)
 
 
 @dataclass(frozen=True)
@@ -47,9 +50,6 @@ def _within(found: Estimate | None, unit: float) -> Estimate:
     return _NONE if found is None else found.on_scale(lambda one: one / unit)
 
 
-_NONE = Estimate(math.nan, None, None)
-# Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
-WHOLE = (0.0, 100.0)
 ROWS = (
     AimRow("at rest on soil [%]", "soil", WHOLE, lambda aim: _percentages(aim.soil.settled)),
     AimRow("unknown outcome on soil [%]", "soil", WHOLE, lambda aim: Estimate(100 * aim.soil.missing, None, None)),

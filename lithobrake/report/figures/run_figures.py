@@ -23,6 +23,17 @@ from lithobrake.vocabulary.percentages import QUANTILE_WORDS, intervals, part
 BED_HEIGHT, MARGINS = 0.115, 1.07
 DOT: dict[str, Any] = {"s": 13.0, "color": TRAINING, "alpha": 0.75, "linewidths": 0, "zorder": 3}
 RING: dict[str, Any] = {"s": 34.0, "facecolors": "none", "edgecolors": SITE, "linewidths": 1.1, "zorder": 4}
+# The parts beside the soil, in the order of the bar: colour, hatching. No soil input has any of these.
+LOOKS = {
+    "arrival": (QUIET, ""),
+    "attitude": ("#e8d5e2", "\\\\\\\\"),
+    "bed": ("#f1e6d0", "////"),
+    "place": (INTERACTIONS, ""),
+    "chaos": (INK, ""),
+}
+# From here on a piece has room for its figure.
+ROOM = 0.055
+ROW_HEIGHT = 0.92
 
 
 @dataclass(frozen=True)
@@ -147,19 +158,6 @@ def _legend(figure: Figure, landings: LandingsOfRuns) -> None:
         Line2D([], [], color=INK, linewidth=0.9, linestyle="--", label="5 % and 95 % of the landings, and median")
     )
     figure.legend(handles=handles, loc="lower center", ncols=3, handletextpad=0.5, borderaxespad=0.1)
-
-
-# The parts beside the soil, in the order of the bar: colour, hatching. No soil input has any of these.
-LOOKS = {
-    "arrival": (QUIET, ""),
-    "attitude": ("#e8d5e2", "\\\\\\\\"),
-    "bed": ("#f1e6d0", "////"),
-    "place": (INTERACTIONS, ""),
-    "chaos": (INK, ""),
-}
-# From here on a piece has room for its figure.
-ROOM = 0.055
-ROW_HEIGHT = 0.92
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,11 @@ from lithobrake.vocabulary.percentages import at_level, percent, with_interval
 
 # Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
 LONGEST = 56
+# With a largest value of so many medians an axis is one of equal factors.
+LONG_TAIL = 30.0
+# More whole numbers than these are counted in classes.
+MOST_BARS = 20
+AT_REST = END_COLOURS[JourneyEnd.AT_REST]
 
 
 @dataclass(frozen=True)
@@ -64,13 +69,6 @@ def draw_shares(axes: Axes, bars: list[ShareBar], whole: str) -> None:
     axes.set_xlabel(fill(words, LONGEST))
     axes.spines["left"].set_visible(False)
     axes.tick_params(axis="y", length=0)
-
-
-# With a largest value of so many medians an axis is one of equal factors.
-LONG_TAIL = 30.0
-# More whole numbers than these are counted in classes.
-MOST_BARS = 20
-AT_REST = END_COLOURS[JourneyEnd.AT_REST]
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,18 @@ from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import GROUND, IMPACT_INCIDENCE, IMPACT_SPEED
 
 TYPES = ("float64", "float32", "int32", "int16", "uint8")
+# More flown starts would make the page heavier, and no cell of them noticeably smaller.
+MOST_STARTS = 20_000
+SCRIPTS = (
+    "live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js", "live/halves.js", "live/charts.js",
+    "live/explorer.js",
+)  # fmt: skip
+# The explorer's outputs, in the order in which it draws them: the first ones of its tables.
+SHOWN = ("speed_out", "elevation_out", "spin_out")
+LEVEL = ("velocity_out_x", "velocity_out_y")
+START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
+# What differs from touchdown to touchdown, in the order in which the page says it; the first one by its logarithm.
+OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *GROUND[:2])
 
 
 def packed(arrays: Mapping[str, np.ndarray]) -> dict[str, dict[str, Any]]:
@@ -52,18 +64,6 @@ def script_data(name: str, content: Mapping[str, Any]) -> str:
     """An element of the page that holds JSON and is read by its name."""
     text = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
     return f'<script type="application/json" id="{name}">{text}</script>\n'
-
-
-# More flown starts would make the page heavier, and no cell of them noticeably smaller.
-MOST_STARTS = 20_000
-SCRIPTS = (
-    "live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js", "live/halves.js", "live/charts.js",
-    "live/explorer.js",
-)  # fmt: skip
-# The explorer's outputs, in the order in which it draws them: the first ones of its tables.
-SHOWN = ("speed_out", "elevation_out", "spin_out")
-LEVEL = ("velocity_out_x", "velocity_out_y")
-START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
 
 
 def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
@@ -200,10 +200,6 @@ def _flown(flights: Table) -> dict[str, np.ndarray]:
         "status": np.array([statuses.index(str(word)) for word in first["status"]], dtype=np.uint8),
         "places": np.column_stack(places).astype(np.float32),
     }
-
-
-# What differs from touchdown to touchdown, in the order in which the page says it; the first one by its logarithm.
-OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *GROUND[:2])
 
 
 def touchdown_sections(data: JourneyPage) -> list[LiveSection]:

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 # Titles of figures of a drawn study that are of first touchdowns here.
 OF_FIRST = {"landing": "A first touchdown", "runs": "Rebounds of the first touchdowns"}
+MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
+HINT = "Drag to rotate; after a click on the picture the wheel zooms; two fingers do both."
 
 
 def journey_content(data: JourneyPage) -> Content:
@@ -190,10 +192,6 @@ def _of_rest(data: JourneyPage, name: str) -> np.ndarray:
     """A number of the landers at rest, shape [lander]."""
     values: np.ndarray = data.journeys[name][data.journeys["end"] == JourneyEnd.AT_REST]
     return values
-
-
-MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
-HINT = "Drag to rotate; after a click on the picture the wheel zooms; two fingers do both."
 
 
 def one_journey_page(motion: JourneyMotion) -> str:

@@ -15,6 +15,7 @@ from lithobrake.vocabulary.number_words import fixed, number
 from lithobrake.vocabulary.percentages import at_level, percent
 
 SOURCES = {"runs": "runs", "emulator": "emulator, since too few runs meet it"}
+RareResults = Mapping[str, RareLimitState]
 
 
 def limit_state_tables(data: DrawnPage) -> list[PageTable]:
@@ -76,9 +77,6 @@ def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:
 
 def _percentage(share: float) -> str:
     return number(100.0 * share)
-
-
-RareResults = Mapping[str, RareLimitState]
 
 
 def rare_tables(rare: RareResults) -> list[PageTable]:
