@@ -6,12 +6,9 @@ import pytest
 from lithobrake.chaos import LogUniform, Uniform, fit, joint_scatter, sobol_sequence
 
 INPUTS = {
-    "young_modulus": LogUniform(1e6, 1e8),
-    "poisson_ratio": Uniform(0.1, 0.4),
-    "grain_restitution": Uniform(0.3, 0.9),
-    "lander_restitution": Uniform(0.3, 0.9),
-    "friction": Uniform(0.2, 0.9),
-}
+    "young_modulus": LogUniform(1e6, 1e8), "poisson_ratio": Uniform(0.1, 0.4), "grain_restitution": Uniform(0.3, 0.9),
+    "lander_restitution": Uniform(0.3, 0.9), "friction": Uniform(0.2, 0.9),
+}  # fmt: skip
 # First-order shares of the explained variance, and chaotic shares of all of it, as 320 landings of a sphere on one bed
 # gave them with another engine:
 # E, nu, e of the grains, e of the lander, mu for V+, theta+, omega+.

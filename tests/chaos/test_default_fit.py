@@ -99,10 +99,8 @@ def test_selection_on_pure_noise_promises_nothing():
 
 def test_default_works_on_every_kind_of_input_and_on_a_grid():
     inputs = {
-        "a": Normal(0.0, 1.0),
-        "b": Empirical(np.random.default_rng(0).gamma(2.0, size=30)),
-        "c": Exponential(2.0),
-    }
+        "a": Normal(0.0, 1.0), "b": Empirical(np.random.default_rng(0).gamma(2.0, size=30)), "c": Exponential(2.0),
+    }  # fmt: skip
     x = sobol(inputs, 60, seed=3)
     y = np.column_stack([np.tanh(x[:, 0]) + x[:, 1], x[:, 2] ** 2, np.full(60, 3.0)])
     surrogate = fit(inputs, x, y, output_names=["p", "q", "constant"])

@@ -56,14 +56,10 @@ def moments(entry, power):
 
 def test_polynomial_in_mixed_families_has_exact_moments():
     inputs = {
-        "u": Uniform(-1.0, 3.0),
-        "n": Normal(0.5, 2.0),
-        "g": Gamma(2.0, 0.5),
-        "e": Exponential(2.0),
-        "b": Beta(2.0, 3.0, 0.0, 2.0),
-        "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
+        "u": Uniform(-1.0, 3.0), "n": Normal(0.5, 2.0), "g": Gamma(2.0, 0.5), "e": Exponential(2.0),
+        "b": Beta(2.0, 3.0, 0.0, 2.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
         "m": Empirical(np.random.default_rng(0).normal(size=60)),
-    }
+    }  # fmt: skip
     entries = list(inputs.values())
     x = latin_hypercube(inputs, 300, seed=1)
     y = 1.0 + np.prod(x[:, [0, 1]], axis=1) + x[:, 2] * x[:, 3] + x[:, 4] ** 2 - x[:, 5] ** 2 + x[:, 6] * x[:, 0]

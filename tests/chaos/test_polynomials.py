@@ -52,16 +52,7 @@ def test_classical_families_are_orthonormal_to_degree_20(name):
 
 
 @pytest.mark.parametrize(
-    "limits",
-    [
-        (-1.0, 2.0),
-        (-3.0, 3.0),
-        (0.5, 4.0),
-        (-np.inf, np.inf),
-        (-1.0, np.inf),
-        (8.0, np.inf),
-        (20.0, 21.0),
-    ],
+    "limits", [(-1.0, 2.0), (-3.0, 3.0), (0.5, 4.0), (-np.inf, np.inf), (-1.0, np.inf), (8.0, np.inf), (20.0, 21.0)]
 )
 def test_truncated_normal_is_orthonormal_to_degree_20(limits):
     entry = TruncatedNormal(10.0, 2.0, *(10.0 + 2.0 * np.array(limits)))

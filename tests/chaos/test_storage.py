@@ -7,15 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.chaos import (
-    Empirical,
-    Uniform,
-    fit,
-    fit_stochastic,
-    load,
-    load_stochastic,
-    sobol_sequence,
-)
+from lithobrake.chaos import Empirical, Uniform, fit, fit_stochastic, load, load_stochastic, sobol_sequence
 from lithobrake.chaos.storage import FORMAT_VERSION
 
 VERSION_1 = Path(__file__).with_name("expansion_version_1.json")
@@ -50,10 +42,7 @@ def test_what_version_1_lacks_is_no_reason_to_refuse_it(tmp_path):
 def test_another_format_version_is_refused_in_one_sentence(version, tmp_path):
     x = np.repeat(sobol_sequence(INPUTS, 12), 2, axis=0)
     y = x[:, 0] + np.random.default_rng(0).normal(size=24)
-    makers = {
-        load: fit(INPUTS, x, y, degree=1),
-        load_stochastic: fit_stochastic(INPUTS, x, y),
-    }
+    makers = {load: fit(INPUTS, x, y, degree=1), load_stochastic: fit_stochastic(INPUTS, x, y)}
     path = tmp_path / "model.json"
     for read, surrogate in makers.items():
         surrogate.save(path)

@@ -127,17 +127,15 @@ def test_too_large_a_step_names_the_largest_safe_one():
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), mass=-1.0), "mass"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=-np.eye(3)), "inertia"),
         (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.eye(3) + np.eye(3, k=1)), "inertia"),
-        (
-            lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.diag([0.001, 0.001, 0.01])),
-            "sum of the other two",
-        ),
+        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.diag([0.001, 0.001, 0.01])),
+         "sum of the other two"),
         (lambda w: w.add_plane((0, 0, 0), (0, 0, 0), ROCK), "normal"),
         (lambda w: w.run(duration=1.0), "no body"),
         (lambda w: w.run(), "either"),
         (lambda w: World(pair_rule="larger"), "pair_rule"),
         (lambda w: World(time_step=0.0), "time_step"),
     ],
-)
+)  # fmt: skip
 def test_wrong_calls_are_refused_in_a_sentence(call, word):
     with pytest.raises(ValueError, match=word):
         call(World())

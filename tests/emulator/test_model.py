@@ -192,10 +192,8 @@ def test_outputs_whose_squares_are_no_numbers_are_refused(factor: float, words: 
     ("change", "words"),
     [
         ({"x": np.ma.masked_array(runs()["x"], mask=runs()["x"] > 0.99)}, "x has .* masked values"),
-        (
-            {"groups": np.ma.masked_array(np.arange(COUNT), mask=np.arange(COUNT) < 2)},
-            "groups hold NaN or infinity, or",
-        ),
+        ({"groups": np.ma.masked_array(np.arange(COUNT), mask=np.arange(COUNT) < 2)},
+         "groups hold NaN or infinity, or"),
         ({"groups": np.zeros(COUNT)}, "groups hold one group"),
         ({"groups": np.full(COUNT, np.nan)}, "groups hold NaN or infinity"),
         ({"groups": np.zeros(3)}, "groups has shape"),
@@ -210,7 +208,7 @@ def test_outputs_whose_squares_are_no_numbers_are_refused(factor: float, words: 
         ({"output_names": ("speed", "spin")}, "output_names are"),
         ({"x": np.full((COUNT, 2), 2.0)}, "120 of 120 points outside"),
     ],
-)
+)  # fmt: skip
 def test_what_does_not_fit_together_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         emulator.fit(INPUTS, **{**runs(), **change})

@@ -15,10 +15,7 @@ COUNT = 120
 MATRIX = TERMS.matrix(sobol_sequence(INPUTS, COUNT, seed=3))
 NOISE = np.random.default_rng(2).standard_normal(COUNT)
 DESIGN = TermTable(TERMS.indices, MATRIX, np.ones(COUNT))
-LADDER = (
-    Rung((1.0, 0.0, 1.0), (0.4, 0.4, 0.4), 2, 0.1, 0.7),
-    Rung((0.0, 1.0, 0.0), (0.4, 0.4, 0.4), 1, 0.03, 0.2),
-)
+LADDER = (Rung((1.0, 0.0, 1.0), (0.4, 0.4, 0.4), 2, 0.1, 0.7), Rung((0.0, 1.0, 0.0), (0.4, 0.4, 0.4), 1, 0.03, 0.2))
 
 
 def test_linear_terms_come_first_in_the_order_of_the_inputs() -> None:

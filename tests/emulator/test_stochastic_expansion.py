@@ -82,10 +82,7 @@ def test_a_law_of_its_own_class_is_found(place: float) -> None:
 
 @pytest.mark.parametrize(
     ("inputs", "law", "places"),
-    [
-        (MARKET, price, [[0.05, 0.4], [0.05, 0.6], [0.05, 0.8]]),
-        (ONE_INPUT, branching, [[-0.8], [0.0], [0.8]]),
-    ],
+    [(MARKET, price, [[0.05, 0.4], [0.05, 0.6], [0.05, 0.8]]), (ONE_INPUT, branching, [[-0.8], [0.0], [0.8]])],
 )
 def test_it_is_nearer_than_a_normal_with_the_right_mean_and_spread(inputs: Any, law: Any, places: Any) -> None:
     levels = (np.arange(2000) + 0.5) / 2000

@@ -78,10 +78,7 @@ def test_what_is_wrong_is_said_in_one_sentence(results: StudyResults, tmp_path: 
     for path in (taken, film):
         path.write_text("mine")
     for words, said in (
-        (
-            ["export", str(results.folder), "--to", "kml"],
-            "allowed: oem, aem, spk, czml, plates, facets",
-        ),
+        (["export", str(results.folder), "--to", "kml"], "allowed: oem, aem, spk, czml, plates, facets"),
         (["export", str(tmp_path), "--to", "oem"], "holds no results of a study"),
         (
             ["export", str(results.folder), "--to", "oem", "--out", str(taken)],

@@ -43,8 +43,7 @@ def as_folder(path: Path, victim: Path) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
 @pytest.mark.parametrize(
-    "make",
-    [as_notes, as_json, as_long_file, as_link, as_hard_link, as_link_to_nothing, as_pipe, as_folder],
+    "make", [as_notes, as_json, as_long_file, as_link, as_hard_link, as_link_to_nothing, as_pipe, as_folder]
 )
 def test_what_is_no_lock_is_refused_and_left_as_it_is(tmp_path, make):
     victim, path = tmp_path / "victim.txt", tmp_path / ".lock"

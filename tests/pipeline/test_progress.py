@@ -70,7 +70,5 @@ def test_every_long_piece_of_work_is_told_of(stage: str, told: Told) -> None:
     assert list(told[stage]) == WORKS[stage]
 
 
-def test_a_fit_is_counted_from_none_to_all(
-    told: Told,
-) -> None:
+def test_a_fit_is_counted_from_none_to_all(told: Told) -> None:
     assert [done for done, _ in told["screening"]["screening fit, outputs"]] == [0, *range(7)]

@@ -209,9 +209,7 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         assert said[2:4] == ["7", f"{out}: not running; there is no report yet"]
         assert said[4] == "2 of 11 stages are current: screening runs, screening"
         assert said[5].startswith("not there: designs/refined.csv, refined.json, ")
-        assert said[6:7] == [
-            "7 runs: 7 done, 0 running, 0 failed",
-        ]
+        assert said[6:7] == ["7 runs: 7 done, 0 running, 0 failed"]
         assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
         out.chmod(0o755)
 

@@ -72,12 +72,10 @@ def covariance(**entries: float) -> list[list[float]]:
         (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
         (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
         (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
-        (
-            covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
-            "has the eigenvalue -0.8; allowed: none below 0",
-        ),
+        (covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
+         "has the eigenvalue -0.8; allowed: none below 0"),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_covariance_is_refused(matrix: Any, words: str) -> None:
     said = refused(FLOWN | {"release": RELEASE | {"covariance": matrix}})
     assert "delivery.release.covariance" in said
@@ -94,10 +92,8 @@ def test_covariances_without_full_rank_are_taken() -> None:
     ("delivery", "words"),
     [
         ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
-        (
-            {"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
-            "has covariance and position_std; keep one",
-        ),
+        ({"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
+         "has covariance and position_std; keep one"),
         ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
         ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
         ({"heading_deg": 10.0}, "site.heading_deg is given"),
@@ -110,7 +106,7 @@ def test_covariances_without_full_rank_are_taken() -> None:
         ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
         ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
     ],
-)
+)  # fmt: skip
 def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], words: str) -> None:
     given = {key: value for key, value in (FLOWN | delivery).items() if value is not None}
     assert words.replace("'", '"') in refused(given).replace("'", '"')
@@ -133,12 +129,10 @@ def test_a_delivery_by_states_needs_a_journey() -> None:
         ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
         ([["speed", "speed", 0.5]], "allowed: two different keys"),
         ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
-        (
-            [["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
-            "weaken the correlations that contradict each other",
-        ),
+        ([["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
+         "weaken the correlations that contradict each other"),
     ],
-)
+)  # fmt: skip
 def test_correlations_that_cannot_be_are_refused(pairs: Any, words: str) -> None:
     assert words.replace("'", '"') in refused(SURFACE | {"correlations": pairs}).replace("'", '"')
 

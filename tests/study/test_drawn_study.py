@@ -56,37 +56,27 @@ def test_beds_follow_from_the_runs_within_limits() -> None:
 
 
 REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
-    (
-        {"design": {"refined_level": 3, "fit": "ols"}},
-        ['design.fit, design.refined_level go with design.method = "paper", and it is "drawn"'],
-    ),
+    ({"design": {"refined_level": 3, "fit": "ols"}},
+     ['design.fit, design.refined_level go with design.method = "paper", and it is "drawn"']),
     ({"monte_carlo": {"scatter": True}}, ['monte_carlo.scatter is true and goes with design.method = "paper"']),
     ({"design": {"run_count": 20}, "bed": {"bed_count": 21}}, ["bed.bed_count is 21, and design.run_count 20"]),
     ({"design": {"half_width": 0.1, "half_width_of": "fast"}}, ['design.half_width_of is "fast"; allowed: a name of']),
-    (
-        {"design": {"half_width_of": "fast"}, "limit_states": {"fast": "returns"}},
-        ['design.half_width_of is "fast", and there is no design.half_width'],
-    ),
+    ({"design": {"half_width_of": "fast"}, "limit_states": {"fast": "returns"}},
+     ['design.half_width_of is "fast", and there is no design.half_width']),
     ({"design": {"half_width": 0.5}}, ["design.half_width is 0.5", "above 0 and below 0.5"]),
     ({"design": {"largest_run_count": 500}}, ["design.largest_run_count is 500, and nothing asks for more"]),
-    (
-        {"design": {"half_width": 0.02, "largest_run_count": 100}},
-        ["design.largest_run_count is 100; allowed: at least design.run_count, 240"],
-    ),
+    ({"design": {"half_width": 0.02, "largest_run_count": 100}},
+     ["design.largest_run_count is 100; allowed: at least design.run_count, 240"]),
     ({"design": {"half_width": 0.02}, "bed": {"bed_count": 1}}, ["design.half_width is 0.02, and runs on one bed"]),
-    (
-        {"design": {"method": "paper", "half_width": 0.02}},
-        ['design.half_width goes with design.method = "drawn", and it is "paper"'],
-    ),
+    ({"design": {"method": "paper", "half_width": 0.02}},
+     ['design.half_width goes with design.method = "drawn", and it is "paper"']),
     ({"design": {"run_count": "many"}}, ["design.run_count is", "whole number"]),
     ({"design": {"side_runs": "yes"}}, ["design.side_runs is", "true or false"]),
     ({"design": {"side_runs": True, "twin_shift": 0.0}}, ["design.twin_shift is 0", "above 0 [m]"]),
-    (
-        {"impact": {"orientation": "random", "pointing_error_deg": 5.0}},
-        ["impact.pointing_error_deg is 5", "points anywhere already"],
-    ),
+    ({"impact": {"orientation": "random", "pointing_error_deg": 5.0}},
+     ["impact.pointing_error_deg is 5", "points anywhere already"]),
     ({"impact": {"place": {"x": 0.0}, "region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]}}}, ["are both given"]),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=[words[0] for _, words in REFUSED])

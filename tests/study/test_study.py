@@ -138,11 +138,7 @@ REFUSED = [
     ("impact.orientation", [1, 0, 0], ["4 numbers"]),
     ("impact.place", {"x": 0.9}, ["impact.place.x reaches from 0.9 to 0.9 m", "-0.275 to 0.275"]),
     ("bed.grain_count", 12.5, ["whole number"]),
-    (
-        "lander.inertia",
-        [5e-324, 5e-324, 5e-324],
-        ["lander.inertia is [4.94066e-324,", "4.65e-08 to 4.65 kg m2"],
-    ),
+    ("lander.inertia", [5e-324, 5e-324, 5e-324], ["lander.inertia is [4.94066e-324,", "4.65e-08 to 4.65 kg m2"]),
     ("lander.inertia", [1e9, 1e9, 1e9], ["lander.inertia is [1e+09,", "mend it, or leave it out"]),
     ("lander.edges", [1e-9, 1e-9, 0.2], ["lander.edges is [1e-09, 1e-09, 0.2] m", "at least 0.001 of the longest"]),
     ("lander.edges", [1e-100, 1e-100, 1e-100], ["the lander reaches 8.66e-101 m from its centre; allowed: at least"]),
@@ -157,41 +153,30 @@ REFUSED = [
     (
         "bed.diameter",
         table("power_law", lower=0.05, upper=0.1, exponent=-2.5),
-        [
-            "bed.diameter.exponent is -2.5; allowed: at least 0, as the number of grains falls with D**-exponent",
-        ],
+        ["bed.diameter.exponent is -2.5; allowed: at least 0, as the number of grains falls with D**-exponent"],
     ),
     (
         "bed.diameter",
         table("power_law", lower=0.05, upper=0.1, cumulative_exponent=-2.5),
-        [
-            "bed.diameter.cumulative_exponent is -2.5; allowed: at least 0",
-        ],
+        ["bed.diameter.cumulative_exponent is -2.5; allowed: at least 0"],
     ),
     (
         "bed.diameter",
         table("power_law", lower=0.05, upper=0.1, exponent=3.5, cumulative_exponent=2.5),
-        [
-            "bed.diameter takes exponent or cumulative_exponent, and both are given",
-        ],
+        ["bed.diameter takes exponent or cumulative_exponent, and both are given"],
     ),
     ("bed.diameter", table("power_law", lower=0.05, upper=0.1), ["and neither is given; keep one"]),
     (
         "bed.diameter",
         table("normal", mean=1e300, std=0.01, lower=0.05, upper=0.1),
-        [
-            "bed.diameter is refused: TruncatedNormal.mean is 1e+300",
-        ],
+        ["bed.diameter is refused: TruncatedNormal.mean is 1e+300"],
     ),
     ("grain.young_modulus", table("gamma", shape=1e-5, scale=1e6), ["its samples (least, median, largest: 0, 0"]),
     ("grain.young_modulus", table("log_normal", mean=10.0, std=250.0), ["largest: 0, 2.2e+04, inf) leave that range"]),
     (
         "grain.friction",
         table("truncated_normal", mean=1e300, std=1.0, lower=0.1, upper=0.9),
-        [
-            "grain.friction is { distribution",
-            "TruncatedNormal.mean is 1e+300",
-        ],
+        ["grain.friction is { distribution", "TruncatedNormal.mean is 1e+300"],
     ),
     ("bed.diameter", table("constant", value=0.6), ["bed.diameter reaches to 0.6 m", "0.183 m"]),
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
@@ -302,10 +287,8 @@ SOBOL = {"design.points": "sobol_sequence", "design.screening_count": 100, "desi
 ACCEPTED = [
     {"grain.friction": table("exponential", rate=2.0), **SOBOL},
     {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.points": "fekete"},
-    {
-        "site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
-        "site.mass": table("gamma", shape=9.0, scale=6e10),
-    },
+    {"site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
+     "site.mass": table("gamma", shape=9.0, scale=6e10)},
     {"design.replicate_count": 3, "impact.orientation": "random"},
     {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
     {"grain.restitution": 1.0},
@@ -317,7 +300,7 @@ ACCEPTED = [
     {"impact.azimuth_deg": "random", "impact.orientation": "random"},
     {"impact.region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]}, "impact.azimuth_deg": table("uniform", lower=0, upper=90)},
     {"surface.gravity": table("uniform", lower=-1e-5, upper=5e-5), "bed.settle_gravity": 2e-5},
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("changes", ACCEPTED)
@@ -408,12 +391,9 @@ def test_a_broken_file_and_a_missing_file_are_one_sentence(tmp_path: Path) -> No
     (tmp_path / "long.toml").write_text(f"seed = {'1' * 5000}")
     (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
     said = {
-        "broken": "not TOML",
-        "missing": "cannot be read",
-        "deep": "nested too deeply",
-        "long": "thousands of digits",
+        "broken": "not TOML", "missing": "cannot be read", "deep": "nested too deeply", "long": "thousands of digits",
         "latin": "not text in UTF-8, byte 13 is 0xe9; save it in that encoding",
-    }
+    }  # fmt: skip
     for name, word in ((f"{stem}.toml", word) for stem, word in said.items()):
         with pytest.raises(StudyError, match=word) as caught:
             read_study(tmp_path / name)

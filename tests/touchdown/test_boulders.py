@@ -10,14 +10,7 @@ import pytest
 from lithobrake.dem import Box, ConvexHull
 from lithobrake.geometry.boulder_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, Boulders, GrainSizes, pour_bed, settling
-from lithobrake.touchdown.boulders import (
-    SOLID_FRACTION,
-    cut_below,
-    free_places,
-    lowered,
-    place_boulders,
-    surface_among,
-)
+from lithobrake.touchdown.boulders import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.surface import heights_at
 

@@ -18,7 +18,7 @@ def test_words_are_plain_text_and_each_has_its_sentence():
     assert [*SampleOutcome] == [*TouchdownOutcome, "outside"]
     assert [*FlightStatus] == ["flying", "impact", "escaped", "partner"]
     assert set(JourneyStatus) == {
-        *("settled", "lofted", "outside", "sliding", "bouncing", "flying", "escaped", "partner"),
+        *("settled", "lofted", "outside", "sliding", "bouncing", "flying", "escaped", "partner")
     }
     for status in (*TouchdownOutcome, *SampleOutcome, *FlightStatus, *JourneyStatus):
         assert status.sentence.startswith("The ")

@@ -26,11 +26,9 @@ SPREAD, MIDDLE = 0.3, 0.1
 RARE = 1e-3
 LIMIT = MIDDLE * math.exp(SPREAD * stats.norm.isf(RARE))
 CONDITIONS = {
-    "fast": f"speed_out > {LIMIT!r}",
-    "never": "speed_out > 10",
-    "gone": "not returns",
+    "fast": f"speed_out > {LIMIT!r}", "never": "speed_out > 10", "gone": "not returns",
     "hard": "peak_acceleration > 50",
-}
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -158,10 +158,8 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "empty summary": ("summary.json", lambda path: path.write_text("")),
     "a list as summary": ("summary.json", lambda path: path.write_text("[1, 2]")),
     "3000 brackets": ("summary.json", lambda path: path.write_text("[" * 3000)),
-    "400 digits": (
-        "flights.json",
-        lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '}),
-    ),
+    "400 digits": ("flights.json",
+                   lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '})),
     "empty flights": ("flights.csv", lambda path: path.write_text("")),
     "another table": ("flights.csv", lambda path: path.write_text("a,b\n1,2\n")),
     "empty rest": ("rest.json", lambda path: path.write_text("")),
@@ -170,18 +168,15 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "another expansion": ("screening.json", lambda path: path.write_text('{"format": "lithobrake expansion"}')),
     "truncated samples": ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:3000])),
     "samples without inputs": ("samples.h5", damage_hdf5),
-}
+}  # fmt: skip
 KEYS = {
-    "empty": "",
-    "a list": "[1]",
-    "a number": "3",
-    "no format": "{}",
+    "empty": "", "a list": "[1]", "a number": "3", "no format": "{}",
     "files are a list": '{"format_version": 2, "files": []}',
     "a file is a number": '{"format_version": 2, "files": {"summary.json": 3}}',
     "stages without names": '{"format_version": 2, "stages": {"a": {"title": "a", "key": "b", "files": []}}}',
     "400 digits": '{"format_version": 2, "wall_s": {"bed": ' + 400 * "9" + "}}",
     "3000 brackets": "[" * 3000 + "]" * 3000,
-}
+}  # fmt: skip
 LEDGERS: dict[str, Callable[[Path], object]] = {
     "empty": lambda path: path.write_bytes(b""),
     "no database": lambda path: path.write_text("this is not a database, and long enough to be seen as such" * 20),

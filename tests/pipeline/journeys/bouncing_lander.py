@@ -12,36 +12,22 @@ FAILS, STUCK, LEAVES = {5: 1}, {11: 1}, {17: 0, 29: 0, 41: 0}
 SLOWEST = 0.006
 LEAVING_SPEED = 0.3
 TABLES: dict[str, dict[str, Any]] = {
-    "bed": {
-        "grain_count": 96,
-        "width": [0.56, 0.56],
-        "diameter": {"distribution": "constant", "value": 0.09},
-        "pour_gravity": 0.5,
-    },
-    "grain": {
-        "density": 2500.0,
-        "young_modulus": {"distribution": "log_uniform", "lower": 5e5, "upper": 5e6},
-        "poisson_ratio": 0.25,
-        "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
-        "friction": {"distribution": "uniform", "lower": 0.5, "upper": 0.9},
-    },
+    "bed": {"grain_count": 96, "width": [0.56, 0.56], "diameter": {"distribution": "constant", "value": 0.09},
+            "pour_gravity": 0.5},
+    "grain": {"density": 2500.0, "young_modulus": {"distribution": "log_uniform", "lower": 5e5, "upper": 5e6},
+              "poisson_ratio": 0.25, "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
+              "friction": {"distribution": "uniform", "lower": 0.5, "upper": 0.9}},
     "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
-    "delivery": {
-        "latitude_deg": 10.0,
-        "longitude_deg": -60.0,
-        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
-        "speed": {"distribution": "uniform", "lower": 0.04, "upper": 0.08},
-        "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 40.0},
-    },
+    "delivery": {"latitude_deg": 10.0, "longitude_deg": -60.0,
+                 "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
+                 "speed": {"distribution": "uniform", "lower": 0.04, "upper": 0.08},
+                 "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 40.0}},
     "journey": {"count": 48, "duration": 172800.0, "emulated_count": 400},
     "site": {"body": "dimorphos"},
-    "sky": {
-        "sun_latitude_deg": {"distribution": "uniform", "lower": -10.0, "upper": 10.0},
-        "earth_latitude_deg": 0.0,
-        "mask_deg": 30.0,
-    },
+    "sky": {"sun_latitude_deg": {"distribution": "uniform", "lower": -10.0, "upper": 10.0}, "earth_latitude_deg": 0.0,
+            "mask_deg": 30.0},
     "campaign": {"retry_count": 0},
-}
+}  # fmt: skip
 
 
 def journey_tables(**changes: dict[str, Any]) -> dict[str, Any]:

@@ -52,10 +52,7 @@ def hard_ground(values: dict[str, float], seed: int) -> dict[str, Any]:
     x, y, z = left.velocity[0].tolist()
     speed = math.sqrt(x * x + y * y + z * z)
     names = ("speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z")
-    return {
-        "outcome": "clear",
-        "outputs": dict(zip(names, (speed, math.asin(z / speed), 0.1, x, y, z), strict=True)),
-    }
+    return {"outcome": "clear", "outputs": dict(zip(names, (speed, math.asin(z / speed), 0.1, x, y, z), strict=True))}
 
 
 def run(folder: Path, **changes: dict[str, Any]) -> Any:

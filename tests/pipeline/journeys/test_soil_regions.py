@@ -265,23 +265,17 @@ FRICTION = {"friction": 0.3}
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no bounds": ({"a": {"grain": FRICTION}}, r"soil\.a has no bounds; allowed: one at least of latitude_deg"),
     "no soil": ({"a": {"latitude_deg": [0.0, 1.0], "grain": {}}}, r"soil\.a\.grain is empty"),
-    "reversed": (
-        {"a": {"latitude_deg": [1.0, 0.0], "grain": FRICTION}},
-        r"latitude_deg is .*write the smaller one first",
-    ),
+    "reversed": ({"a": {"latitude_deg": [1.0, 0.0], "grain": FRICTION}},
+                 r"latitude_deg is .*write the smaller one first"),
     "no width": ({"a": {"longitude_deg": [10.0, 370.0], "grain": FRICTION}}, r"longitude_deg is \[10, 370\]; allowed"),
-    "a size": (
-        {"a": {"slope_deg": [0, 1], "grain": {"diameter": 0.1}}},
-        r"soil\.a gives sizes of grains; allowed: materials",
-    ),
+    "a size": ({"a": {"slope_deg": [0, 1], "grain": {"diameter": 0.1}}},
+               r"soil\.a gives sizes of grains; allowed: materials"),
     "a name": ({"elsewhere": {"slope_deg": [0, 1], "grain": FRICTION}}, r"soil\.elsewhere is no name"),
-    "a range": (
-        {"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
-        r"soil\.a\.grain\.restitution is 1\.5; allowed",
-    ),
+    "a range": ({"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
+                r"soil\.a\.grain\.restitution is 1\.5; allowed"),
     "soft": ({"a": {"slope_deg": [0, 1], "grain": {"young_modulus": 1e-3}}}, r"soil\.a: impact\.speed reaches"),
     "no file": ({"a": {"facets": "/nowhere.csv", "grain": FRICTION}}, r"soil\.a\.facets: /nowhere\.csv: No such file"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WRONG)

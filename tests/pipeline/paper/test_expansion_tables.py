@@ -33,15 +33,12 @@ TWO_STEPS = {
     "refined_degree": 2, "kept_share": 0.9, "kept_outputs": ["speed_out"], "test_count": 12,
 }  # fmt: skip
 UNCERTAIN: dict[str, dict[str, Any]] = {
-    "grain": {
-        "friction": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
-        "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
-        "young_modulus": {"distribution": "log_uniform", "lower": 1e6, "upper": 1e8},
-        "rolling_friction": 0.1,
-        "density": 2500.0,
-    },
+    "grain": {"friction": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
+              "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
+              "young_modulus": {"distribution": "log_uniform", "lower": 1e6, "upper": 1e8}, "rolling_friction": 0.1,
+              "density": 2500.0},
     "impact": {"speed": {"distribution": "uniform", "lower": 0.1, "upper": 0.2}, "region": None},
-}
+}  # fmt: skip
 
 
 def land(values: dict[str, float], seed: int) -> dict[str, Any]:

@@ -26,13 +26,7 @@ from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_disk import expected_bytes
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import (
-    SPREAD,
-    SPREAD_OF_TOUCHDOWNS,
-    landing_time,
-    pour_time,
-    run_time,
-)
+from lithobrake.pipeline.planning.expected_time import SPREAD, SPREAD_OF_TOUCHDOWNS, landing_time, pour_time, run_time
 from lithobrake.pipeline.planning.plan_in_words import brief_lines
 from lithobrake.pipeline.planning.planned_beds import planned_boulders, planned_grains, planned_tile
 from lithobrake.pipeline.planning.planned_ground import planned_ground

@@ -76,13 +76,11 @@ def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str =
         ([], None),
         ([landed(0.19, 0.0), landed(0.2, 0.0), landed(0.0, 6.3)], None),
         ([landed(50.0, 0.0, outcome="captured")], None),
-        (
-            [landed(0.19, 0.0), landed(50.0, 0.0)],
-            "1 of 2 landers that left have more energy than impact and gravity provide, at most 6.25e+04 times as",
-        ),
+        ([landed(0.19, 0.0), landed(50.0, 0.0)],
+         "1 of 2 landers that left have more energy than impact and gravity provide, at most 6.25e+04 times as"),
         ([landed(0.15, 6.0)], "1 of 1 landers that left have more energy"),
     ],
-)
+)  # fmt: skip
 def test_landers_that_gain_energy_are_told(records: list[Record], said: str | None) -> None:
     found = energy_warning(DrawnDesign(study(impact={"speed": 0.2})), records, NO_BED)
     assert found is None if said is None else found is not None and found.startswith(said)

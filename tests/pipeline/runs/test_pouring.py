@@ -126,10 +126,7 @@ def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence
     assert told.works == []
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
     Broken(monkeypatch, 1, 2)
-    with (
-        LocalExecutor(1) as executor,
-        pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"),
-    ):
+    with LocalExecutor(1) as executor, pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"):
         pour(tmp_path, NAMES[1:], executor)
     with pytest.raises(ValueError, match=r"^bed 2 of 3 cannot be poured"):
         pour(tmp_path, NAMES[1:2])
@@ -152,16 +149,8 @@ def test_beds_of_a_dask_cluster_have_the_same_bits(poured: tuple[Path, str, int]
 
 def start(folder: Path) -> "subprocess.Popen[str]":
     words = [
-        sys.executable,
-        "-m",
-        "lithobrake",
-        "bed",
-        folder / "study.toml",
-        "--out",
-        folder / "out",
-        "--workers",
-        "2",
-    ]
+        sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers", "2",
+    ]  # fmt: skip
     # What runs in the background of a shell ignores the signal, and so would what it starts.
     return subprocess.Popen(
         list(map(str, words)),
