@@ -43,7 +43,6 @@ def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path)
     assert runs.outcomes == ["clear", "failed", "clear", "clear"]
     ended = runs.records[1]
     assert ended.reason == "it ran longer than its limit of 0.5 s"
-    assert ended.wall_s is not None
     assert ended.wall_s > 0.5
     assert ended.host == runs.records[0].host
     assert time.monotonic() - began < 600
@@ -189,8 +188,6 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
 def test_a_model_that_no_worker_can_import_ends_the_campaign_and_fails_no_run(tmp_path: Path) -> None:
     (tmp_path / "passing.py").write_text("def model(inputs, seed):\n    return {}\n")
     spec = importlib.util.spec_from_file_location("passing", tmp_path / "passing.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = sys.modules["passing"] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     with pytest.raises(ConnectionError, match="ModuleNotFoundError: No module named 'passing'"):

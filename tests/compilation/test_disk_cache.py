@@ -135,7 +135,6 @@ def test_without_a_home_nothing_is_kept(home, monkeypatch, caplog):
 
 def test_room_is_made_of_what_the_library_keeps_alone(home):
     folder = DiskCache("beds").folder
-    assert folder is not None
     ours = [hashlib.sha256(bytes([number])).hexdigest() for number in range(3)]
     foreign = {"scan.raw": b"0" * 2000, ".notes": b"1" * 2000, f"{ours[0]}.h5": b"2" * 2000, f".{ours[0]}": b"3" * 2000}
     for name, content in foreign.items():

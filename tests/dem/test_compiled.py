@@ -113,7 +113,6 @@ def refuse_owner(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def refuse_mode(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = compiled.disk_cache("dem").folder
-    assert folder is not None
     folder.chmod(0o777)
 
 
@@ -221,10 +220,8 @@ def test_processes_that_start_together_compile_once(tmp_path):
 
     together = [process() for _ in range(3)]
     for one in together:
-        assert one.stdout is not None
         assert one.stdout.readline() == "ready\n"
     for one in together:
-        assert one.stdin is not None
         one.stdin.write("go\n")
         one.stdin.flush()
     told = [one.communicate() for one in together]

@@ -35,7 +35,6 @@ def heap() -> World:
 def held(world: World) -> np.ndarray:
     """Which bodies are held."""
     local = world._state.local
-    assert local is not None
     return local.flight.held
 
 
@@ -157,7 +156,6 @@ def test_common_steps_let_all_go() -> None:
     world.run_locally(0.1, 15.0, held_speed=0.005)
     assert held(world).any()
     flight = world._state.local.flight if world._state.local is not None else None
-    assert flight is not None
     going, before = flight.held_velocity[1:, 2].copy(), world.energy()["total"]
     world.time_step = world.shortest_contact(0.1) / 500.0
     world.run(steps=1)

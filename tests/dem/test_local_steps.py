@@ -122,7 +122,6 @@ def test_the_same_bits_each_time_and_with_slots_that_do_not_suffice(monkeypatch:
         world = cluster(rock(0.6, 0.5))
         world.run_locally(2.0, 15.0)
         local = world._state.local
-        assert local is not None
         return world.position.tobytes(), len(local.pairs.first)
 
     first, again = ends(), ends()
@@ -145,7 +144,6 @@ def test_all_that_touch_are_listed_and_few_besides() -> None:
     for _ in range(25):
         world.run_locally(0.05, 15.0)
         local = world._state.local
-        assert local is not None
         pairs = {(int(a), int(b)) for a, b in zip(local.pairs.first, local.pairs.second, strict=True) if a >= 0}
         fresh = World()
         for shape, place, turn in zip(shapes, world.position, world.orientation, strict=True):

@@ -64,7 +64,6 @@ SHORT = short_study(known_body("Dimorphos"), known_lander("2U"), (10.0, -60.0))
 def test_the_short_study_is_one_of_journeys(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SHORT)
     study = read_study(tmp_path / "study.toml")
-    assert study.journey is not None
     assert study.journey.count == study.design.run_count == 48
     assert study.bed_count == 12
     assert {"impact.speed", "grain.friction"} <= uncertain(study.touchdown_values()).keys()
@@ -275,7 +274,6 @@ def test_the_boulders_of_a_study_are_those_of_its_beds() -> None:
     tables["bed"] |= {"boulders": {"diameter": constant(0.2), "coverage": 0.1, "cover": [0.0, 0.05]}}
     study = check_tables(tables, Path())
     found = boulders(study)
-    assert found is not None
     assert (found.coverage, found.cover, found.sizes.upper) == (0.1, (0.0, 0.05), 0.2)
     assert bed_recipe(study, 0).boulders == found
     # A study without any keeps its name for what it depends on.

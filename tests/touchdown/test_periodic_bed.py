@@ -127,7 +127,6 @@ def test_a_flat_throw_stays_on_the_ground_and_says_how_far_it_came(ground: Bed, 
     captured = [one for one in thrown if one.status == "captured"]
     outcome = max(captured, key=lambda one: one.outputs["periods_travelled"])
     assert set(outcome.outputs) == {*OUTPUTS, "periods_travelled"}
-    assert outcome.frames is not None
     path = np.linalg.norm(np.diff(outcome.frames["position"][:, -1, :2], axis=0), axis=1).sum()
     # The path until the last touch is a part of the whole one.
     assert 1.0 < outcome.outputs["periods_travelled"] < 1.05 * path / min(WIDTH)

@@ -41,7 +41,6 @@ def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
     assert outputs["contacts"] >= 1.0
     assert math.hypot(*(outputs[name] for name in ORIENTATION_OUT)) == pytest.approx(1.0)
     # The frame is that of the incoming velocity: the lander came 0.3 rad from x, and went on that way.
-    assert outcome.frames is not None
     way = outcome.frames["position"][-1, -1] - outcome.frames["position"][0, -1]
     turned = complex(*way[:2]) * complex(math.cos(0.3), -math.sin(0.3))
     assert outputs["displacement_x"] == pytest.approx(turned.real, abs=2e-3)

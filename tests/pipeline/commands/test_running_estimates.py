@@ -29,7 +29,6 @@ def record(run: int, bed_count: int = 6, outcome: str | None = None) -> Record:
 
 def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     found = running_estimates([record(run) for run in range(60)], {})
-    assert found is not None
     bed, captured = np.arange(60) % 6, np.array([how == "captured" for how in OUTCOMES])
     assert found.captured == share_estimate(captured.astype(float), bed)
     assert found.speed_out == mean_estimate(np.where(captured, np.nan, SPEEDS), bed)
@@ -43,7 +42,6 @@ def test_estimates_are_those_of_the_runs_with_beds_as_units() -> None:
     assert (content["returns"], content["speed_out"]["level"]) == (None, 0.9)
     shares = np.where(captured, 1.0, 0.25)
     flown = running_estimates([record(run) for run in range(60)], {f"run {run:02d}": shares[run] for run in range(60)})
-    assert flown is not None
     assert flown.returns == share_estimate(shares, bed)
     assert flown.lines()[-1].startswith("  return fraction: 40 % (90 % interval ")
 
@@ -57,13 +55,10 @@ def test_the_order_in_which_runs_end_changes_no_digit() -> None:
 def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     runs = [record(run) for run in range(59)] + [record(59, outcome="left_sideways")]
     found = running_estimates(runs, {})
-    assert found is not None
-    assert found.captured is not None
     assert found.captured.if_missing == pytest.approx((12 / 60, 13 / 60))
     assert found.captured.lower < 12 / 60 < 13 / 60 < found.captured.upper
     assert "59 of 60 landings" in found.lines()[0]
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
-    assert one_bed is not None
     assert one_bed.speed_out is None
     assert "20 %, without an interval: all runs landed on one bed" in one_bed.lines()[1]
 
@@ -71,7 +66,6 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
 def test_too_few_runs_say_nothing() -> None:
     assert running_estimates([record(0)], {}) is None
     lost = running_estimates([record(run, outcome="time_limit") for run in range(3)], {})
-    assert lost is not None
     assert (lost.captured, lost.lines()) == (None, [])
 
 
@@ -99,7 +93,6 @@ def test_status_says_them_while_runs_come_in(under_way: Path) -> None:
     said = CliRunner().invoke(app, ["status", str(under_way)])
     assert said.exit_code == 0, said.output
     expected = running_estimates([record(run) for run in range(40)], {})
-    assert expected is not None
     assert "\n".join(expected.lines()) in said.stdout
     assert "61 runs: 41 done, 0 running, 0 failed" in said.stdout
     assert "1 more runs in the ledger are of earlier settings of the study" in said.stdout
@@ -117,7 +110,6 @@ def test_status_gives_all_of_it_as_json(under_way: Path) -> None:
     assert runs["outcomes"] == {"captured": 9, "clear": 32}
     assert runs["spreads"]["speed_out"]["count"] == 32
     expected = running_estimates([record(run) for run in range(40)], {})
-    assert expected is not None
     assert runs["estimates"] == json.loads(json.dumps(expected.to_json()))
 
 

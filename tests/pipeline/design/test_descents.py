@@ -75,7 +75,6 @@ def some_states(count: int = 8) -> np.ndarray:
 
 def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
     found = DrawnDesign(study(delivery=released(covariance=[[0.0] * 6] * 6))).descents
-    assert found is not None
     site = Site(study(delivery=released()))
     alone = fly(site.body, POSITION, VELOCITY, 40000.0)
     assert (found.flights.status == "impact").all()

@@ -116,7 +116,6 @@ def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     assert f"of {COUNT} landers reach the ground" in line
     # Distances along the ground, by the angles that the first touchdowns make with the aim point.
     descents, aim = DrawnDesign(study).descents, Site(study).frames(Site(study).columns(1))[0][0]
-    assert descents is not None
     places = descents.flights.position[descents.touches_down]
     cosines = places @ aim / (np.linalg.norm(places, axis=1) * np.linalg.norm(aim))
     median = np.median(np.linalg.norm(aim) * np.arccos(cosines))

@@ -42,8 +42,6 @@ def test_a_distance_that_follows_the_delivery_is_the_deliverys(journeys: StudyRe
     found = parts_of_journeys(job, runs, all_rest)
     assert found["at_rest"] is None
     parts = found["distance_m"]
-    assert parts is not None
-    assert parts.arrival is not None
     assert parts.arrival.share > 0.85
     assert parts.soil.share < 0.1
     assert parts.of == f"{len(speed)} of {len(speed)} journeys that ended at rest"

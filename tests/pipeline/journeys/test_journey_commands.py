@@ -21,8 +21,6 @@ TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")
 
 def test_status_counts_the_ends_of_the_journeys(journeys: StudyResults) -> None:
     found = study_status(journeys.folder)
-    assert found.runs is not None
-    assert found.runs.journeys is not None
     touchdowns = journeys.touchdowns.row_count
     assert found.runs.journeys.lines() == [
         f"journeys: 48 of 48 ended: 43 at rest, 3 escaped, 1 under way, 1 failed; {touchdowns} touchdowns"
@@ -42,8 +40,6 @@ def test_status_counts_what_the_ledger_tells_while_journeys_are_followed(
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found is not None
-    assert found.journeys is not None
     # A lander that left is under way until its flight has an end.
     known = 48 - len(LEAVES)
     at_rest = known - len(FAILS) - len(STUCK)
@@ -62,8 +58,6 @@ def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResult
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found is not None
-    assert found.journeys is not None
     assert found.journeys.touchdowns == made
     assert found.others == journeys.touchdowns.row_count
 

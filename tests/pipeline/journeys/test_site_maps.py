@@ -99,21 +99,15 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     fitted = Refits(bed_count=12, run_count=100, why=None)
     first, second, third, last = site_cells(cells, landers, ground, fitted, np.array([0, 3, 0, 1]))
     assert (first.ends, first.beyond, first.unknown) == (None, "gravity, impact speed", 0.11)
-    assert second.ends is not None
     assert (second.ends.at_rest.share, second.beyond, second.journeys) == (1.0, "slope", 3)
-    assert second.ends.at_rest.lower is not None
     assert second.ends.at_rest.lower < 0.9 < (second.ends.at_rest.upper or 0.0)
-    assert third.ends is not None
     assert third.ends.at_rest.share == third.ends.escaped.share == 0.5
     assert not third.not_worse
     assert last.not_worse
-    assert last.ends is not None
-    assert last.ends.time_s is not None
     assert last.ends.time_s.value == pytest.approx(60.0 * 0.5 * (LANDERS - 1))
     assert last.slope_deg.mean == pytest.approx(12.0)
     assert (last.slope_deg.low, last.slope_deg.high) == pytest.approx((1.2, 22.8))
     whole = all_at_rest(landers, fitted)
-    assert whole is not None
     assert whole.share == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
 
 
@@ -132,15 +126,11 @@ def test_an_answered_cell_has_what_the_journeys_of_the_study_have_there(
 ) -> None:
     own = int(EqualAreaCells.of(CELLS).cell_of([10.0], [-60.0])[0])
     ends, rests = site_map.cells[own].ends, journeys.journeys["end"] == "at_rest"
-    assert ends is not None
-    assert ends.at_rest.lower is not None
     assert ends.at_rest.upper is not None
     assert ends.at_rest.lower <= rests.mean() <= ends.at_rest.upper
     total = ends.at_rest.share + ends.partner.share + ends.escaped.share + ends.under_way.share
     assert total == pytest.approx(1.0, abs=0.02)
-    assert ends.time_s is not None
     assert ends.time_s.value == pytest.approx(np.median(journeys.journeys["time_s"][rests]), rel=0.4)
-    assert ends.distance_m is not None
     assert ends.distance_m.value == pytest.approx(np.median(journeys.journeys["distance"][rests]), rel=0.5)
 
 
@@ -170,7 +160,6 @@ def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     assert plain.share == 0.5
     assert lacking.share == pytest.approx(2.0 / 3.0)
     assert lacking.lower == plain.lower
-    assert lacking.upper is not None
     assert lacking.upper > 0.75
 
 

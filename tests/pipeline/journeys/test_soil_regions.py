@@ -224,14 +224,11 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
 def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
     results = made.results
     assert isinstance(results, DrawnResults)
-    assert results.ends is not None
     found, table = results.soils, made.touchdowns
     assert list(found) == ["sink", "strip", ELSEWHERE]
     assert sum(one.touchdowns for one in found.values()) == table.row_count
     assert sum(one.at_rest.share for one in found.values()) == pytest.approx(results.ends["at_rest"].share)
     sink, rest = found["sink"], found[ELSEWHERE]
-    assert sink.rests is not None
-    assert rest.rests is not None
     assert sink.rests.share == 1.0
     assert sink.rests.count == sink.touchdowns == (table["soil"] == "sink").sum()
     assert sink.area_share == pytest.approx(0.5, abs=2e-3)
@@ -255,7 +252,6 @@ def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
 
 def test_the_plan_states_the_regions(body_file: Path, tmp_path: Path) -> None:
     found = planned_soils(Site(read(body_file, {"sink": SINK})))
-    assert found is not None
     assert found.aim == "sink"
     assert found.line().startswith("Soils: sink 50.0 %, elsewhere 50.0 % of the surface; the aim point is in sink.")
     assert planned_soils(Site(read(body_file, {}))) is None
@@ -328,17 +324,13 @@ def test_status_counts_touchdowns_on_every_soil(made: StudyResults, tmp_path: Pa
     for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found is not None
     assert found.others == 0
-    assert found.journeys is not None
     assert found.journeys.touchdowns == made.touchdowns.row_count
 
 
 def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:
     results = made.results
     assert isinstance(results, DrawnResults)
-    assert results.emulated is not None
-    assert results.emulated.why is not None
     assert "[soil] gives regions their own" in results.emulated.why
 
 
@@ -352,7 +344,6 @@ def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) ->
     friction, more = Soils(job.site).drawn(range(64))["soil.strip.grain.friction"], np.sin(7.0 * np.arange(64))
     decided = 10.0 * friction + 0.05 * more
     found = parts_of_variance(job, runs, decided, "all runs")
-    assert found is not None
     assert set(found.soil_by_input) == {"grain.friction", "soil.strip.grain.friction"}
     assert found.soil_by_input["soil.strip.grain.friction"].share > 0.8
     assert found.soil_by_input["grain.friction"].share < 0.2

@@ -57,7 +57,6 @@ def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: 
     # A prism: its axis, upright, leaning and along the travel.
     terms = tuple(f"attitude.{term}_z" for term in ("upright", "lean", "along"))
     assert explorer.input_names[-7:] == (*OF_TOUCHDOWN, *terms)
-    assert explorer.attitude is not None
     assert explorer.attitude.input_names == explorer.input_names[-3:]
     assert [len(downs) for downs in explorer.attitude.sides.values()] == [4, 2]
     assert explorer.group_count == len(set(model.bed))

@@ -108,7 +108,6 @@ def test_the_plan_says_how_many_and_how_large_the_grains_of_a_size_law_are() -> 
         sizes = {"distribution": "power_law", key: exponent, "lower": 0.05, "upper": 0.1}
         found.append(planned_grains(soft(bed={"diameter": sizes, "grain_count": 200, "width": [0.8, 1.0]})))
     assert found[0] == found[1]
-    assert found[0] is not None
     assert found[0].mean == pytest.approx(2.0 / 30.0, rel=1e-6)
     assert (found[0].smallest, found[0].largest, found[0].count_per_m2) == (0.05, 0.1, 250.0)
     # N(>D) = (D^-2 - 100) / (400 - 100) is 0.1 at D^-2 = 130.
@@ -123,7 +122,6 @@ def test_the_plan_says_how_many_boulders_a_bed_has() -> None:
     """Discs of 0.2 m on a tenth of 1 m2 are 3.18."""
     rocks = {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1}
     found = planned_boulders(soft(bed={"boulders": rocks, "width": [1.0, 1.0]}))
-    assert found is not None
     assert found.line() == (
         "Boulders: 3.18 in a bed in the mean, 0.2 m in diameter, on 10 % of the ground; the largest of all beds is "
         "likely 0.2 m."
@@ -136,7 +134,6 @@ def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
     sizes = {"distribution": "power_law", "cumulative_exponent": 2.0, "lower": 0.2, "upper": 2.0}
     study = soft(bed={"boulders": {"diameter": sizes, "coverage": 0.1}, "width": [10.0, 10.0], "bed_count": 7})
     found = planned_boulders(study)
-    assert found is not None
     beyond = 1.0 - 0.5 ** (1.0 / (7.0 * found.count))
     square = 1.0 / (beyond * (0.2**-2 - 2.0**-2) + 2.0**-2)
     assert found.likely_largest == pytest.approx(square**0.5, rel=1e-9)
@@ -146,8 +143,6 @@ def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
 def test_the_plan_says_how_the_ground_of_the_first_touchdowns_lies() -> None:
     """Smooth ground slopes as the partner pulls; rough ground by what was asked for, as far as soil holds it."""
     smooth, rough = (planned_ground(DrawnDesign(with_site_gravity(journeys(angle)))) for angle in (0.0, 30.0))
-    assert smooth is not None
-    assert rough is not None
     assert max(smooth.slope_deg) < 12.0
     assert smooth.steeper == 0.0
     # The median of a Rayleigh law whose rms is tan(30 deg).
@@ -323,7 +318,6 @@ def test_the_smallest_tile_of_ground_that_repeats_is_said(tmp_path: Path) -> Non
     # The diagonal of the lander, 0.267 m, and 3.2 grains of 0.09 m; no study is accepted on a narrower tile.
     least = math.sqrt(0.1**2 + 0.1**2 + 0.227**2) + 3.2 * 0.09
     plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
-    assert plan.tile is not None
     assert (plan.tile.width, plan.tile.smallest) == ((0.56, 0.56), pytest.approx(least))
     assert "the smallest tile for this lander and these grains is 0.556 m." in " ".join(plan_lines(plan))
     drawn(bed={"width": [least + 1e-9, least + 1e-9], "grain_count": 95})
@@ -377,7 +371,6 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     folder = StudyFolder.only_read(tmp_path / "out")
     plan = plan_for(drawn(bed={"bed_count": 12}), folder, 2)
     found = plan.half_width
-    assert found is not None
     # t(11) at 0.95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd 0.04, rho 0.2 and sd 0.21.
     least, most = 1.796 * 0.04 * (1 / 144) ** 0.5, 1.796 * 0.21 * (0.2 / 12 + 0.8 / 144) ** 0.5
     assert least < found.lower < found.median < found.upper < most
@@ -395,8 +388,6 @@ def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: 
     study = with_site_gravity(read_study(SCENARIOS / "quick.toml"))
     plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
     found, beds = plan.half_width, plan.runs_a_bed
-    assert found is not None
-    assert beds is not None
     assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
     # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at 0.95 is 1.714.
     assert found.by_fraction["100 %"] == pytest.approx(0.5 * (1.0 - 0.1 ** (1 / 24)))
@@ -413,8 +404,6 @@ def test_landings_that_leave_the_bed_widen_what_is_promised(tmp_path: Path) -> N
         plan_for(drawn(bed={"width": [0.7, 0.7], "sides": sides}, impact={"incidence_deg": flat}), folder, 2).half_width
         for sides in ("walls", "periodic")
     )
-    assert walls is not None
-    assert tile is not None
     # Nobody knows what became of them: half of them is added on either side.
     assert walls.missing == pytest.approx(0.22, abs=0.04)
     assert walls.lower > tile.lower + 0.3 * walls.missing
@@ -426,8 +415,6 @@ def test_a_plan_says_how_many_runs_a_bed_are_best(tmp_path: Path) -> None:
     default, many = (
         plan_for(drawn(design={"run_count": 600}, bed=bed), folder, 2).runs_a_bed for bed in ({}, {"bed_count": 300})
     )
-    assert default is not None
-    assert many is not None
     assert (default.count, many.count) == (20.0, 2.0)
     best = math.sqrt(many.bed_cost * 0.98 / 0.02)
     assert default.best == many.best == pytest.approx(best)
@@ -553,7 +540,6 @@ def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
     monkeypatch.setattr(expected_time, "_load", lambda: 3.0 * cores)
     busy = plan_for(soft(), folder, 1)
     for what, span in idle.seconds.items():
-        assert span is not None
         assert busy.seconds[what] == pytest.approx((span[0], 4.0 * span[1]))
     assert "everything takes up to 4.0 times as long" in busy.basis
     assert "Other work" not in idle.basis

@@ -87,10 +87,7 @@ def test_the_best_keeps_the_limits_and_says_how_sure_it_is(found: dict[str, Any]
 def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(results: StudyResults) -> None:
     assert isinstance(results.results, DrawnResults)
     found = results.results.aim
-    assert found is not None
     best, allowed = found.best_on_soil, sum(aim.soil.allowed for aim in found.aims)
-    assert best is not None
-    assert best.own is not None
     assert f": {100 * best.own.share:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
     told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))

@@ -48,7 +48,6 @@ def test_gyration_and_attitude_are_those_of_all_parts(tmp_path: Path) -> None:
     # A heavier ball with the same boom turns more easily for its mass.
     assert largest[1] < largest[0]
     terms = attitude_terms(study)
-    assert terms is not None
     assert terms.has_sides
     # The easiest axis is that along the boom.
     assert abs(terms.axes[0, 0]) > 0.9
