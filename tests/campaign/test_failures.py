@@ -1,4 +1,4 @@
-"""Runs that fail: recorded with their reason, tried again as configured, counted, and looked at for holes."""
+"""Runs that fail: recorded, tried again, counted, looked at for holes; and scripts with and without a guard."""
 
 import importlib.util
 import os
@@ -25,6 +25,7 @@ from lithobrake.campaign import (
     run,
     run_key,
 )
+from lithobrake.campaign.main_module import MainModuleError, refuse_unreachable
 from lithobrake.campaign.worker import Call, Worker
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
@@ -251,3 +252,69 @@ def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(
     runs = campaign(tmp_path, models.parabola, workers=1)
     assert len(KilledFirst.started) == 2
     assert [(one.outcome, one.attempts) for one in runs.records] == [("clear", 1)] * 4
+
+
+# The model stands in a file of its own; what the script prints would come twice if a process imported it.
+SCRIPT = """
+print("started")
+import numpy as np
+import sums
+from lithobrake import campaign
+
+with campaign.Ledger("runs.sqlite") as ledger, campaign.LocalExecutor(2) as executor:
+    runs = campaign.run(sums.model, np.ones((3, 2)), names=["a", "b"], ledger=ledger, executor=executor)
+print(runs.outputs(["sum"]).ravel())
+"""
+OWN_MODEL = """
+import numpy as np
+from lithobrake import campaign
+
+def model(inputs, seed):
+    return {"sum": inputs["a"] + inputs["b"]}
+
+def main():
+    with campaign.Ledger("runs.sqlite") as ledger, campaign.LocalExecutor(1) as executor:
+        runs = campaign.run(model, np.ones((3, 2)), names=["a", "b"], ledger=ledger, executor=executor)
+    print(runs.outputs(["sum"]).ravel())
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+def python(folder: Path, *words: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
+    """What Python says in a folder."""
+    return subprocess.run(
+        [sys.executable, *words], cwd=folder, input=given, capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.parametrize("piped", [False, True])
+def test_a_script_without_a_guard_starts_a_campaign_and_is_not_started_again(piped: bool, tmp_path: Path) -> None:
+    (tmp_path / "sums.py").write_text("def model(inputs, seed):\n    return {'sum': inputs['a'] + inputs['b']}\n")
+    (tmp_path / "script.py").write_text(SCRIPT)
+    said = python(tmp_path, "-", given=SCRIPT) if piped else python(tmp_path, "script.py")
+    assert (said.stderr, said.stdout) == ("", "started\n[2. 2. 2.]\n")
+
+
+def test_a_model_of_a_guarded_script_is_found(tmp_path: Path) -> None:
+    (tmp_path / "script.py").write_text(OWN_MODEL)
+    assert python(tmp_path, "script.py").stdout == "[2. 2. 2.]\n"
+    (tmp_path / "runs.sqlite").unlink()
+    assert python(tmp_path, "-m", "script").stdout == "[2. 2. 2.]\n"
+
+
+def test_a_model_of_a_piped_script_is_refused_in_one_sentence(tmp_path: Path) -> None:
+    said = python(tmp_path, "-", given=OWN_MODEL)
+    assert said.returncode == 1
+    assert "MainModuleError: the model is defined in a notebook, an interactive session or a piped" in said.stderr
+    assert said.stderr.count("Traceback") == 1
+
+
+def test_words_like_those_of_a_script_are_no_part_of_it() -> None:
+    import pickle
+
+    # Nothing of these tests is a script that a process could import.
+    refuse_unreachable(pickle.dumps("call it __main__"))
+    with pytest.raises(MainModuleError, match="write it to a file, say"):
+        refuse_unreachable(b"c__main__\nmodel\n.".replace(b"c__main__\nmodel\n", b"\x8c\x08__main__\x8c\x05model\x93"))

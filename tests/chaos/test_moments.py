@@ -1,4 +1,4 @@
-"""Skewness and kurtosis against closed forms, and what happens where the exact way is out of reach."""
+"""Moments, effects, slopes and marginals against closed forms, and expansions against other programs."""
 
 import numpy as np
 import pytest
@@ -14,10 +14,18 @@ from lithobrake.chaos import (
     Normal,
     TruncatedNormal,
     Uniform,
+    density,
     fit,
+    gradient,
     latin_hypercube,
+    main_effect,
+    marginal,
     multi_index_set,
+    output_correlation,
+    quantiles,
     shape_moments,
+    smolyak,
+    smolyak_count,
     sobol_sequence,
 )
 from lithobrake.chaos.moments import _by_grid as moments_by_grid
@@ -107,3 +115,118 @@ def test_sampling_takes_over_where_neither_is_affordable(monkeypatch):
     assert not shape["exact"]
     assert shape["skewness"] == pytest.approx(np.sqrt(2.0), abs=0.02)
     assert shape["kurtosis"] == pytest.approx(6.0, abs=0.2)
+
+
+INPUTS = {"a": Uniform(-1.0, 1.0), "b": LogUniform(1.0, 10.0), "c": Normal(2.0, 0.5)}
+
+
+def truth(x):
+    return x[:, 0] ** 2 * x[:, 2] + np.log(x[:, 1]) * x[:, 2]
+
+
+@pytest.fixture(scope="module")
+def surrogate():
+    x = sobol_sequence(INPUTS, 100)
+    return fit(INPUTS, x, np.column_stack([truth(x), x[:, 2]]), degree=3, output_names=["t", "c"])
+
+
+def test_main_effect_is_the_conditional_mean(surrogate):
+    values, effect = main_effect(surrogate, "a", [-0.5, 0.0, 1.0])
+    assert np.allclose(effect[:, 0], 2.0 * values**2 + np.log(10.0), rtol=1e-12)
+    values, effect = main_effect(surrogate, "b", 7)
+    assert len(values) == 7
+    assert np.allclose(effect[:, 0], 2.0 / 3.0 + 2.0 * np.log(values), rtol=1e-12)
+    with pytest.raises(ValueError, match="no input is named"):
+        main_effect(surrogate, "z")
+
+
+def test_marginal_keeps_mean_and_group_share(surrogate):
+    reduced = marginal(surrogate, ["c", "a"])
+    assert reduced.input_names == ["c", "a"]
+    assert np.allclose(reduced.mean, surrogate.mean)
+    assert np.allclose(reduced.variance, surrogate.variance * surrogate.sobol_group(["a", "c"]))
+    assert np.allclose(reduced([[2.5, 0.3]])[0, 0], 2.5 * (0.09 + 0.5 * np.log(10.0)))
+
+
+def test_gradient(surrogate):
+    x = sobol_sequence(INPUTS, 20, seed=3)
+    exact = np.column_stack([2.0 * x[:, 0] * x[:, 2], x[:, 2] / x[:, 1], x[:, 0] ** 2 + np.log(x[:, 1])])
+    assert np.allclose(gradient(surrogate, x)[:, 0], exact, rtol=1e-10, atol=1e-10)
+    assert np.allclose(gradient(surrogate, x)[:, 1], [0.0, 0.0, 1.0], atol=1e-10)
+
+
+def test_distribution_of_the_outputs(surrogate):
+    assert np.allclose(quantiles(surrogate, [0.5, 0.975])[:, 1], [2.0, 2.0 + 0.5 * 1.96], atol=0.02)
+    values, heights = density(surrogate, "c")
+    exact = np.exp(-0.5 * ((values - 2.0) / 0.5) ** 2) / (0.5 * np.sqrt(2.0 * np.pi))
+    assert np.abs(heights - exact).max() < 0.03
+    shape = shape_moments(surrogate)
+    assert shape["skewness"][1] == pytest.approx(0.0, abs=0.02)
+    assert shape["kurtosis"][1] == pytest.approx(3.0, abs=0.05)
+    covariance = 0.25 * (1.0 / 3.0 + 0.5 * np.log(10.0))
+    correlation = covariance / np.sqrt(0.25 * surrogate.variance[0])
+    assert output_correlation(surrogate)[0, 1] == pytest.approx(correlation, rel=1e-10)
+    with pytest.raises(ValueError, match="output"):
+        density(surrogate, "z")
+
+
+ORACLE_INPUTS = {"a": Uniform(-1.0, 3.0), "b": Normal(1.0, 0.5), "c": Uniform(0.0, 2.0)}
+
+
+def model(x):
+    return np.exp(0.3 * x[:, 0]) * np.sin(x[:, 1]) + x[:, 2] ** 3
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    x = sobol_sequence(ORACLE_INPUTS, 120)
+    return x, model(x), fit(ORACLE_INPUTS, x, model(x), degree=4, method="ols")
+
+
+def test_chaospy_gives_the_same_expansion(fitted):
+    chaospy = pytest.importorskip("chaospy", reason="chaospy is not installed")
+    x, y, surrogate = fitted
+    joint = chaospy.J(chaospy.Uniform(-1.0, 3.0), chaospy.Normal(1.0, 0.5), chaospy.Uniform(0.0, 2.0))
+    basis = chaospy.generate_expansion(4, joint, normed=True)
+    theirs, coefficients = chaospy.fit_regression(basis, x.T, y, retall=1)
+    assert len(basis) == surrogate.term_count
+    # Terms are ordered differently; orthonormal coefficients are equal up to their order and sign.
+    assert np.allclose(np.sort(np.abs(coefficients)), np.sort(np.abs(surrogate.coefficients)), atol=1e-10)
+    assert surrogate.mean == pytest.approx(float(chaospy.E(theirs, joint)), rel=1e-10)
+    assert surrogate.variance == pytest.approx(float(chaospy.Var(theirs, joint)), rel=1e-10)
+    assert np.allclose(surrogate.sobol_first, chaospy.Sens_m(theirs, joint), atol=1e-10)
+    assert np.allclose(surrogate.sobol_total, chaospy.Sens_t(theirs, joint), atol=1e-10)
+
+
+def test_chaospy_gives_the_same_sparse_grid():
+    chaospy = pytest.importorskip("chaospy", reason="chaospy is not installed")
+    joint = chaospy.J(chaospy.Uniform(-1.0, 1.0), chaospy.Uniform(-1.0, 1.0), chaospy.Uniform(-1.0, 1.0))
+    nodes, _ = chaospy.generate_quadrature(3, joint, rule="clenshaw_curtis", sparse=True, growth=True)
+    ours = smolyak({name: Uniform(-1.0, 1.0) for name in "abc"}, 3)
+    theirs = np.unique(np.round(nodes.T, 12), axis=0)
+    assert len(theirs) == smolyak_count(3, 3)
+    assert np.allclose(theirs, np.unique(np.round(ours, 12), axis=0), atol=1e-10)
+
+
+def test_openturns_gives_the_same_coefficients(fitted):
+    openturns = pytest.importorskip("openturns", reason="openturns is not installed")
+    x, y, surrogate = fitted
+    joint = openturns.JointDistribution(
+        [openturns.Uniform(-1.0, 3.0), openturns.Normal(1.0, 0.5), openturns.Uniform(0.0, 2.0)]
+    )
+    enumeration = openturns.LinearEnumerateFunction(3)
+    families = [openturns.StandardDistributionPolynomialFactory(joint.getMarginal(k)) for k in range(3)]
+    basis = openturns.OrthogonalProductPolynomialFactory(families, enumeration)
+    algorithm = openturns.FunctionalChaosAlgorithm(
+        openturns.Sample(x.tolist()),
+        openturns.Sample(y[:, None].tolist()),
+        joint,
+        openturns.FixedStrategy(basis, len(multi_index_set(3, 4))),
+        openturns.LeastSquaresStrategy(),
+    )
+    algorithm.run()
+    result = algorithm.getResult()
+    theirs = {tuple(enumeration(index)): result.getCoefficients()[k, 0] for k, index in enumerate(result.getIndices())}
+    assert len(theirs) == surrogate.term_count
+    for index, value in zip(surrogate.multi_indices.tolist(), surrogate.coefficients, strict=True):
+        assert value == pytest.approx(theirs[tuple(index)], abs=1e-10)

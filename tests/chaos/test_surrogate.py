@@ -1,13 +1,17 @@
-"""Evaluation, scores, and keeping in a file."""
+"""Evaluation, scores and files of a surrogate; the face of the part, and its threads."""
 
 import json
+import os
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info
 
+from lithobrake import chaos
 from lithobrake.chaos import Empirical, LogUniform, Normal, TruncatedNormal, Uniform, fit, load, sobol_sequence
+from lithobrake.chaos.threads import one_thread
 
 INPUTS = {"speed": Uniform(0.1, 0.9), "modulus": LogUniform(1e6, 1e8)}
 
@@ -142,3 +146,58 @@ def test_index_sets_can_be_limited():
         fit(INPUTS, x, x[:, 0], degree=2, max_degrees=[1])
     with pytest.raises(ValueError, match="max_degrees"):
         fit(INPUTS, x, x[:, 0], method="omp", max_degrees=[1, 1])
+
+
+COUNT_WITHOUT_ARRAYS = """
+import sys
+from lithobrake.chaos import smolyak_count, term_count
+assert (term_count(3, 2), smolyak_count(2, 1)) == (10, 5)
+print({"numpy", "scipy", "sklearn", "numba"} & set(sys.modules))
+"""
+
+
+def test_counting_imports_no_arrays() -> None:
+    finished = subprocess.run([sys.executable, "-c", COUNT_WITHOUT_ARRAYS], capture_output=True, text=True)
+    assert (finished.stdout, finished.stderr) == ("set()\n", "")
+
+
+def test_a_name_that_is_not_there_is_missed_by_name() -> None:
+    with pytest.raises(AttributeError, match=r"^module 'lithobrake\.chaos' has no attribute 'smolyack'$"):
+        chaos.smolyack  # noqa: B018
+    with pytest.raises(ImportError, match=r"^cannot import name 'smolyack' from 'lithobrake\.chaos'"):
+        from lithobrake.chaos import smolyack  # noqa: F401
+
+
+SCRIPT = """
+import hashlib, sys
+import numpy as np
+from lithobrake.chaos import Uniform, d_optimal, fit, gradient, sobol_sequence
+inputs = {name: Uniform(0.0, 1.0) for name in "abcde"}
+x = sobol_sequence(inputs, 300)
+y = np.column_stack([np.minimum(x[:, 0], x[:, 1]) + x[:, 2] * x[:, 3], np.sin(x @ np.arange(5.0))])
+digest = hashlib.sha256()
+one = fit(inputs, x, y[:, 0], method="gaussian_process")
+for surrogate in (one, fit(inputs, x, y, degree=4), fit(inputs, x[:120], y[:120], method="omp", degree=4)):
+    digest.update(surrogate.coefficients.tobytes() + surrogate(x).tobytes() + gradient(surrogate, x).tobytes())
+digest.update(d_optimal(inputs, 60, degree=3).tobytes())
+print(digest.hexdigest())
+"""
+
+
+def test_same_bits_on_one_thread_and_on_four() -> None:
+    names = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+    def bits(count: str) -> str:
+        environment = {**os.environ, **dict.fromkeys(names, count)}
+        command = [sys.executable, "-c", SCRIPT]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+
+    assert bits("1") == bits("4")
+
+
+def test_the_number_of_threads_comes_back() -> None:
+    before = [(entry["filepath"], entry["num_threads"]) for entry in threadpool_info()]
+    with one_thread():
+        assert all(entry["num_threads"] == 1 for entry in threadpool_info())
+    known = dict(before)
+    assert all(entry["num_threads"] == known.get(entry["filepath"], 1) for entry in threadpool_info())

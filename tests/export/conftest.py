@@ -12,7 +12,7 @@ import export_models
 import lithobrake
 from lithobrake.results import StudyResults
 
-from ..pipeline.journeys.without_emulator import run_without_emulator
+from ..pipeline.journeys.bouncing_lander import run_without_emulator
 from ..quick_studies import quick_studies
 from .delivered import delivered_tables
 

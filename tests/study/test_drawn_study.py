@@ -1,21 +1,25 @@
-"""Keys of a drawn study: its defaults, and what is refused."""
+"""Keys and limit states of a drawn study, and tables that a program made: defaults, and what is refused."""
 
 import tomllib
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from lithobrake.study import Study, StudyError, check_tables
+from lithobrake.study import Study, StudyError, StudySource, check_tables
 from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
 from lithobrake.study.template import template
 
-TABLES: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
+TABLES: dict[str, Any] = tomllib.loads(template())
+DRAWN_TABLES = TABLES | {"design": {"method": "drawn"}}
 
 
 def study(changes: dict[str, dict[str, Any]]) -> Study:
     """The template by the drawn method, with other keys in its tables."""
-    tables = TABLES | {name: {**TABLES.get(name, {}), **keys} for name, keys in changes.items()}
+    tables = DRAWN_TABLES | {name: {**DRAWN_TABLES.get(name, {}), **keys} for name, keys in changes.items()}
     return check_tables(tables, Path())
 
 
@@ -43,7 +47,7 @@ def test_an_error_of_pointing_is_about_the_attitude_as_given_even_if_that_is_lef
 
 
 def test_the_papers_method_has_its_defaults_still() -> None:
-    found = check_tables(TABLES | {"design": {"method": "paper"}}, Path())
+    found = check_tables(DRAWN_TABLES | {"design": {"method": "paper"}}, Path())
     assert (found.impact.azimuth_deg, found.impact.orientation) == (0.0, (1.0, 0.0, 0.0, 0.0))
     assert found.bed_count == 1
 
@@ -55,7 +59,7 @@ def test_beds_follow_from_the_runs_within_limits() -> None:
     assert {runs: default_bed_count(runs, JOURNEYS_A_BED) for runs in journeys} == journeys
 
 
-REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
+REFUSED_KEYS: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     ({"design": {"refined_level": 3, "fit": "ols"}},
      ['design.fit, design.refined_level go with design.method = "paper", and it is "drawn"']),
     ({"monte_carlo": {"scatter": True}}, ['monte_carlo.scatter is true and goes with design.method = "paper"']),
@@ -79,7 +83,7 @@ REFUSED: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("changes", "words"), REFUSED, ids=[words[0] for _, words in REFUSED])
+@pytest.mark.parametrize(("changes", "words"), REFUSED_KEYS, ids=[words[0] for _, words in REFUSED_KEYS])
 def test_what_does_not_go_with_the_drawn_method_is_refused_in_one_sentence(
     changes: dict[str, dict[str, Any]], words: list[str]
 ) -> None:
@@ -93,4 +97,112 @@ def test_what_does_not_go_with_the_drawn_method_is_refused_in_one_sentence(
 def test_tables_that_are_none_are_refused_as_ever() -> None:
     for name in ("bed", "impact", "design"):
         with pytest.raises(StudyError, match=f"{name} is 3"):
-            check_tables(TABLES | {name: 3}, Path())
+            check_tables(DRAWN_TABLES | {name: 3}, Path())
+
+
+REFUSED_CONDITIONS: list[tuple[str, str]] = [
+    ("speed > 1", "speed is no output; did you mean speed_out?"),
+    ("speed_out", "speed_out is a number: compare it"),
+    ("returns > 1", "returns is true or false, and no number"),
+    ("retuns", "retuns is no name here; did you mean returns?"),
+    ("speed_out == 0.1", "outputs are compared by <, <=, >, >="),
+    ("1 < 2", "compares numbers alone"),
+    ("speed_out > 1e999", "neither an output nor a finite number"),
+    ("speed_out > 1j", "neither an output nor a finite number"),
+    ("speed_out + 1 > 2", "neither an output nor a finite number"),
+    ("speed_out > true", "true is no output"),
+    ("__import__('os').remove('x')", "is no condition"),
+    ("(speed_out > 1", "it cannot be read"),
+    ("returns\0", "it cannot be read"),
+    ("speed_out > 0.1 # and not returns", "it has a comment (#) or a line break: write a condition on one line"),
+    ("# returns", "it has a comment (#)"),
+    ("(speed_out > 0.1\nand returns)", "it has a comment (#) or a line break"),
+    ("(speed_out > 0.1\u2028and returns)", "or a line break"),
+    ("-" * 400 + "1 > speed_out", f"{'-' * 400}1 is neither an output nor a finite number"),
+    ("-" * 400 + "speed_out", "-speed_out is no condition"),
+    ("~" * 400 + "returns and returns", "~returns is no condition"),
+    (" and ".join(["returns"] * 100), "it has 1195 characters"),
+]
+
+
+def refusal(limit_states: object, **tables: dict[str, Any]) -> str:
+    """What a study file with this table is refused with."""
+    with pytest.raises(StudyError) as error:
+        check_tables(TABLES | tables | {"limit_states": limit_states}, Path())
+    return str(error.value)
+
+
+@pytest.mark.parametrize(("text", "words"), REFUSED_CONDITIONS)
+def test_what_is_no_condition_is_refused_in_one_sentence(text: str, words: str) -> None:
+    said = refusal({"fast": text})
+    assert said.startswith("study.toml: limit_states.fast is ")
+    assert words in said
+    assert "\n" not in said
+
+
+def test_other_things_than_texts_under_names_are_refused() -> None:
+    assert "limit_states.fast is 3; allowed: outputs (SI) compared" in refusal({"fast": 3})
+    assert "limit_states is 3; allowed: a table" in refusal(3)
+    assert "limit_states.too fast is no name" in refusal({"too fast": "returns"})
+
+
+def test_a_method_without_drawn_runs_is_refused() -> None:
+    said = refusal({"fast": "returns"}, design={"method": "paper"})
+    assert 'limit_states.fast goes with design.method = "drawn", and it is "paper"' in said
+
+
+def test_a_study_keeps_its_conditions_by_name() -> None:
+    conditions = {"fast": "speed_out > 0.1", "gone": "not returns"}
+    study = check_tables(TABLES | {"limit_states": conditions}, Path())
+    assert study.limit_states.conditions() == conditions
+    assert check_tables(TABLES, Path()).limit_states.conditions() == {}
+
+
+def tables(section: str, **keys: Any) -> dict[str, Any]:
+    return TABLES | {section: TABLES[section] | keys}
+
+
+def test_scalars_and_arrays_of_numpy_are_numbers() -> None:
+    given = tables("lander", mass=np.float32(2.5), edges=np.array([0.1, 0.1, 0.25]), restitution=np.longdouble(0.5))
+    given |= {"seed": np.int64(7), "bed": TABLES["bed"] | {"width": (np.float64(0.6), 1)}}
+    source = StudySource.of_tables(given)
+    lander = source.study.lander
+    assert (lander.mass, lander.edges, lander.restitution, source.study.seed) == (2.5, (0.1, 0.1, 0.25), 0.5, 7)
+    # What the folder keeps is a study file that says the same.
+    assert StudySource.of_tables(tomllib.loads(source.content.decode())).study == source.study
+    assert isinstance(StudySource.of_tables(tables("site", partner=np.bool_(True))).study.site.partner, bool)
+
+
+def test_a_path_is_text(tmp_path: Path) -> None:
+    given = tables("lander", shape="hull", file=tmp_path / "absent.obj")
+    del given["lander"]["edges"]
+    with pytest.raises(ValueError, match=r"lander\.file is .*absent\.obj.; no such file"):
+        StudySource.of_tables(given)
+
+
+LOOP: dict[str, Any] = {}
+LOOP["loop"] = LOOP
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (tables("lander", mass=Decimal(1)), "lander.mass is 1, of the type Decimal; allowed: numbers, text"),
+        (tables("lander", mass=Fraction(1, 2)), "lander.mass is 1/2, of the type Fraction"),
+        (tables("lander", mass=1j), "lander.mass is 1j, of the type complex"),
+        (tables("lander", mass=None), "lander.mass is None, of the type NoneType"),
+        (tables("lander", edges=[0.1, 0.1, b"x"]), "lander.edges.2 is b'x', of the type bytes"),
+        (tables("lander", mass=np.ma.masked), "lander.mass is"),
+        (TABLES | {"title": b"x"}, "title is b'x', of the type bytes"),
+        (TABLES | {"title": "a\ud800"}, 'title is "a\\ud800", which UTF-8 cannot hold'),
+        (TABLES | {3: {}}, "the study has the key 3; allowed: names in text"),
+        (TABLES | {"limit_states": {"a\ud800": "stays"}}, 'a key of limit_states is "a\\ud800"'),
+        (TABLES | {"lander": {3: 1}}, "lander has the key 3"),
+        (TABLES | {"lander": LOOP}, "is nested too deeply"),
+    ],
+)
+def test_a_value_of_another_type_is_refused_by_its_key_and_type(given: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=r"^study\.toml: [^\n]*$") as refused:
+        StudySource.of_tables(given)
+    assert words in str(refused.value)
+    str(refused.value).encode()

@@ -17,9 +17,8 @@ from lithobrake.results.json_values import from_json
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 
-from ..journeys.bouncing_lander import journey_tables
+from ..journeys.bouncing_lander import journey_tables, run_without_emulator
 from ..journeys.test_delivered_journeys import tables, write_states
-from ..journeys.without_emulator import run_without_emulator
 
 FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 

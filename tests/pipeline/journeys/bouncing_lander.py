@@ -1,10 +1,16 @@
-"""Touchdowns of journeys by a function, within a second for a study, and the study that they are made for."""
+"""Touchdowns of journeys by a function, the study they are made for, and studies without an emulator of them."""
 
 import math
 from copy import deepcopy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
+
+import lithobrake
+from lithobrake.emulator import training
+from lithobrake.results import StudyResults
 
 # Journeys that end otherwise than at rest, by what their touchdown of this number does.
 FAILS, STUCK, LEAVES = {5: 1}, {11: 1}, {17: 0, 29: 0, 41: 0}
@@ -80,3 +86,14 @@ def _rebound(along: float, up: float, spin: float) -> dict[str, float]:
         "spin_out": spin, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,
         "spin_out_x": 0.0, "spin_out_y": spin, "spin_out_z": 0.0,
     }  # fmt: skip
+
+
+def run_without_emulator(
+    tables: dict[str, Any], folder: Path, model: Any = bounce, report: bool = False
+) -> StudyResults:
+    """Run a study to its summary, or its page, as if too few landers had left the ground for an emulator, which would
+    take most of its time.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(training, "FEWEST", 1_000_000)
+        return lithobrake.run(tables, folder, workers=1, model=model, report=report)

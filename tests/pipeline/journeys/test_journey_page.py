@@ -1,26 +1,38 @@
-"""The page of a study of journeys: the end first, and what is of the first touchdown alone says so."""
+"""The page of a study of journeys, its figures one by one, and its explorer of one touchdown."""
 
 import dataclasses
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
+from lithobrake.emulator import law_tables
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulated.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
+from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.runs.energy_bound import energy_bound
 from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
-from lithobrake.report.figures.ground_map import round_length
+from lithobrake.report.figures.ground_map import GroundMap, round_length
 from lithobrake.report.live.body_view import end_views
 from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.words import journey_captions as words
-from lithobrake.results import StudyResults
+from lithobrake.results import ExplorerTables, StudyResults
 from lithobrake.results.journey_results import EndShare
+from lithobrake.study import check_tables
 from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
 from ...report.browser import browser_page, needs_browser
+from ...report.page_scripts import answer_of, explorer_data, needs_node
+from ...report.page_text import visible_text
+from .bouncing_lander import journey_tables
 
 
 @pytest.fixture
@@ -111,3 +123,171 @@ def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp
         page.open(path, 1280)
         assert 2 <= page.sheets() <= 3
         assert page.complaints == []
+
+
+NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, journeys: StudyResults) -> None:
+    axes = Figure().subplots()
+    assert getattr(journeys.plot, name)(ax=axes) is axes
+    assert axes.has_data()
+    # The half of a body has a title in place of axes.
+    assert axes.get_xlabel() or (name == "map" and axes.get_title())
+    assert f"{name}()" in repr(journeys.plot)
+
+
+def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.ends(Figure().subplots())
+    found = journeys.results.ends
+    bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
+    for end, share in found.items():
+        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share)
+
+
+def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
+    axes = journeys.plot.map(Figure().subplots())
+    at_rest = journeys.journeys.where(journeys.journeys["end"] == "at_rest")
+    drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
+    site = journeys.results.site
+    ground = GroundMap(site.latitude_deg, site.longitude_deg, float(np.linalg.norm(site.place_m)))
+    for east, north in zip(*ground.places(at_rest["latitude_deg"], at_rest["longitude_deg"]), strict=True):
+        assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: StudyResults) -> None:
+    axes = journeys.plot.distances(Figure().subplots())
+    marks = [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "o"]
+    rest = journeys.results.rest.distance_m
+    assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]
+
+
+def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.sides(Figure().subplots())
+    widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
+    assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
+        {name: 100 * one.share for name, one in journeys.results.rest.faces.items()}
+    )
+
+
+SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
+BEGIN = "const { facts } = given, law = new Law(unpack(given.law), facts);"
+REST = "const shares = (found) => [found.returns, found.known].map((list) => list.reduce((all, one) => all + one, 0));"
+SHARE = "document.querySelector('#explorer .share').textContent"
+PHONE = 390
+
+
+@pytest.fixture
+def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
+    # A function has no beds.
+    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
+
+
+@pytest.fixture
+def explorer(journeys: StudyResults) -> ExplorerTables:
+    found = journeys.touchdown_explorer
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def page(journeys_folder: Path) -> Path:
+    return write_report(journeys_folder)
+
+
+@pytest.fixture
+def explored(page: Path) -> dict[str, Any]:
+    return explorer_data(page.read_text(encoding="utf-8"))
+
+
+def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: ExplorerTables) -> None:
+    assert explorer.input_names == model.inputs
+    # A prism: its axis, upright, leaning and along the travel.
+    terms = tuple(f"attitude.{term}_z" for term in ("upright", "lean", "along"))
+    assert explorer.input_names[-7:] == (*OF_TOUCHDOWN, *terms)
+    assert explorer.attitude.input_names == explorer.input_names[-3:]
+    assert [len(downs) for downs in explorer.attitude.sides.values()] == [4, 2]
+    assert explorer.group_count == len(set(model.bed))
+    for name, table in law_tables(model.refits).items():
+        assert np.array_equal(explorer.tables[name], table), name
+
+
+@needs_node
+def test_the_energy_bound_is_that_of_the_longest_way_and_the_median_spin(
+    model: TouchdownEmulator, explored: dict[str, Any], journeys: StudyResults
+) -> None:
+    spin = np.median(np.linalg.norm([journeys.touchdowns[f"impact.spin_{axis}"] for axis in "xyz"], axis=0))
+    assert spin > 0.0
+    moved = dict(zip(OF_TOUCHDOWN, (0.05, 20.0, 4e-5, 9.0), strict=True))
+    values = moved | {"impact.spin_x": 0.0, "impact.spin_y": spin, "impact.spin_z": 0.0}
+    at = {name: np.array([value]) for name, value in values.items()}
+    bound = energy_bound(model.design, model.bed_height, at, 1, model.across)
+    given = explored | {"values": [*(0.0 for _ in model.inputs[:-7]), *moved.values(), 0.0, 0.0, 0.0]}
+    found = answer_of(SCRIPTS, f"{BEGIN} return law.energyBoundAt(given.values);", given)
+    assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=1e-12)
+
+
+@needs_node
+def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulator, explored: dict[str, Any]) -> None:
+    place = model.inputs.index(OF_TOUCHDOWN[0])
+    program = f"""{BEGIN} {REST}
+      const explorer = new Explorer(law, null, facts), ranges = facts.inputs.map(() => [0, 1]);
+      return [[0, 1], [0, 0.3], [0.9, 1]].map((range) => {{
+        ranges[given.place] = range;
+        return shares(explorer.at(ranges));
+      }});"""
+    found = answer_of(SCRIPTS, program, explored | {"place": place})
+    captured = model.refits[0].outcome_names.index("captured")
+    laws = model.refits[0].runs.inputs.values()
+    shares = []
+    for (low, high), (rest, known) in zip([(0.0, 1.0), (0.0, 0.3), (0.9, 1.0)], found, strict=True):
+        assert known == len(model.refits) * 500
+        u = np.random.default_rng(4).random((4000, len(model.inputs)))
+        u[:, place] = low + (high - low) * u[:, place]
+        x = np.column_stack([law.ppf(column) for law, column in zip(laws, u.T, strict=True)])
+        # Attitudes are uniform over rotations.
+        x[:, -3:] = np.column_stack(list(model.attitude_of(Rotation.random(4000, rng=5)).values()))
+        shares.append(float(np.mean([one.outcome_probability(x)[:, captured].mean() for one in model.refits])))
+        # All refits share the 500 points of the inputs, and the 4000 are a plain sample.
+        error = np.sqrt(shares[-1] * (1.0 - shares[-1]) * (1.0 / 500 + 1.0 / 4000))
+        assert abs(rest / known - shares[-1]) < 3.0 * error
+    assert shares[1] > shares[0] > shares[2]
+
+
+def test_the_page_says_that_it_is_one_touchdown_and_of_how_many(
+    page: Path, explored: dict[str, Any], journeys: StudyResults
+) -> None:
+    lines = visible_text(page.read_text(encoding="utf-8")).splitlines()
+    words = next(line for line in lines if line.startswith("Any touchdown of a journey"))
+    fitted = int(np.sum(journeys.touchdowns["outcome"] != "failed"))
+    assert fitted < journeys.touchdowns.row_count
+    assert f"fitted to {fitted} touchdowns on 12 beds" in words
+    slope = journeys.touchdowns["surface.slope_deg"]
+    assert f"slope from {slope.min():.2g} to {slope.max():.2g} deg" in words
+    assert explored["flown"] is None
+    assert {one["words"] for one in explored["facts"]["inputs"]} >= {"impact speed", "incidence at impact", "gravity"}
+    assert [one["unit"] for one in explored["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s²", "deg", "", "", ""]
+
+
+@needs_browser
+def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmulator, tmp_path: Path) -> None:
+    number = 2 * model.inputs.index(OF_TOUCHDOWN[0]) + 1
+    with browser_page(tmp_path) as browser:
+        browser.open(page, PHONE)
+        assert browser.value("document.documentElement.scrollWidth") == PHONE
+        assert browser.value("document.querySelectorAll('#explorer figure').length") == 3
+        before = browser.value(SHARE)
+        browser.value(
+            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = 0.3;"
+            "end.dispatchEvent(new Event('input')); })()"
+        )
+        after = browser.value(
+            "new Promise((done) => { const look = () => "
+            f"{SHARE} !== {before!r} ? done({SHARE}) : setTimeout(look, 50); look(); }})"
+        )
+        assert browser.complaints == []
+    for said in (before, after):
+        assert " % come to rest at this touchdown (90 % interval of the emulator: " in said
+    assert float(after.split(" ")[0]) > float(before.split(" ")[0])
