@@ -1,14 +1,17 @@
 """Grains, pouring, settling, and the file of a bed."""
 
+from dataclasses import replace
 from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
 
-from lithobrake.dem import Material, Sphere, StepTooLargeError, World
+from lithobrake.dem import Sphere, StepTooLargeError, World
 from lithobrake.touchdown import Bed, GrainSizes, pour_bed, pouring, settling
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.surface import height_map
+
+from .landings import ROCK
 
 
 def test_sizes_follow_their_distribution():
@@ -122,12 +125,8 @@ def test_floor_and_contacts_carry_the_weight(bed, recipe):
 
 def test_rest_period_is_that_of_the_linearised_contact():
     """VALIDATION: 0.13 s at E = 1e8 and 0.6 s at 1e6, for 0.1 m grains at 5e-5 m/s2."""
-    from lithobrake.dem import Material
-
-    stiff = Material(young_modulus=1e8, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
-    soft = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
-    assert settling.rest_period(stiff, 0.1, 5e-5) == pytest.approx(0.13, abs=0.01)
-    assert settling.rest_period(soft, 0.1, 5e-5) == pytest.approx(0.6, abs=0.02)
+    assert settling.rest_period(replace(ROCK, young_modulus=1e8), 0.1, 5e-5) == pytest.approx(0.13, abs=0.01)
+    assert settling.rest_period(ROCK, 0.1, 5e-5) == pytest.approx(0.6, abs=0.02)
 
 
 def test_bed_survives_its_file(bed, tmp_path):
@@ -207,11 +206,10 @@ def test_impossible_recipes_are_refused(recipe, name, value):
 
 
 def test_a_grain_that_meets_another_hard_makes_the_steps_smaller_and_is_not_refused():
-    rock = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
     worlds = World(), World(), World()
     for world in worlds:
-        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)
-        world.add_body(Sphere(0.05), rock, (0.0, 0.0, 0.0501), (0.0, 0.0, -0.05))
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROCK)
+        world.add_body(Sphere(0.05), ROCK, (0.0, 0.0, 0.0501), (0.0, 0.0, -0.05))
     world, other, last = worlds
     chunk = 0.8 * world.shortest_contact(0.05)
     world.time_step = chunk / 4.0

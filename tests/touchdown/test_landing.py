@@ -3,26 +3,24 @@
 import dataclasses
 import math
 
+import h5py
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material, Sphere
-from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, Landing, land, read_hull, simulation
+from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, land, read_hull, simulation
 from lithobrake.touchdown.outcome import outgoing
 from lithobrake.touchdown.simulation import CALM_SPEED, released_speed
+
+from .landings import landing as on_rock
 
 BOUNCY = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.9, friction=0.3, density=2500.0)
 DEAD = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.05, friction=0.9, density=2500.0)
 
 
 def landing(**changes):
-    values = {
-        "grain": BOUNCY, "speed": 0.3, "incidence": 0.2, "azimuth": 0.3, "place": (0.0, 0.0),
-        "orientation": (0.9, 0.3, 0.2, 0.1), "spin": (0.0, 0.0, 0.0), "gravity": (0.0, 0.0, -5e-4), "time_limit": 20.0,
-        "contact": ContactModel(steps_per_contact=25.0),
-    }  # fmt: skip
-    return Landing(**{**values, **changes})
+    return on_rock(**{"grain": BOUNCY, **changes})
 
 
 def ball(material=BOUNCY, mass=0.3):
@@ -129,8 +127,6 @@ def test_a_frictionless_ball_leaves_with_the_spin_that_it_came_with_and_turned_b
 
 
 def test_recorded_landing_is_written(bed, tmp_path):
-    import h5py
-
     outcome = land(bed, ball(), landing(), frame_count=4)
     outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     with h5py.File(tmp_path / "landing.h5") as file:
@@ -151,8 +147,6 @@ def test_the_pictures_change_nothing_of_a_landing(bed):
 
 
 def test_every_data_set_of_a_bed_and_of_a_landing_says_what_it_holds(bed, tmp_path):
-    import h5py
-
     outcome = land(bed, ball(), landing(), frame_count=1)
     outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     bed.save(tmp_path / "bed.h5")

@@ -11,32 +11,16 @@ import pytest
 
 from lithobrake.dem import Box, Material, World, folded, period_of
 from lithobrake.geometry.longest_grain import longest_reach
-from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
+from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, land, pour_bed, settling
 from lithobrake.touchdown.bed import boxed_world
 from lithobrake.touchdown.grains import make_grain, make_grain_within
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.surface import height_map
 
+from .landings import LANDER, ROCK, landing
+
 WIDTH = (0.52, 0.56)
-ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 SLOPE = math.radians(20.0)
-
-
-@pytest.fixture(scope="module")
-def ground(recipe: Any) -> Bed:
-    return pour_bed(recipe(sides="periodic", width=WIDTH, grain_count=48))
-
-
-def landing(**changes: Any) -> Landing:
-    values: dict[str, Any] = {
-        "grain": ROCK, "speed": 0.3, "incidence": 0.2, "azimuth": 0.3, "place": (0.0, 0.0),
-        "orientation": (0.9, 0.3, 0.2, 0.1), "spin": (0.0, 0.0, 0.0), "gravity": (0.0, 0.0, -5e-4), "time_limit": 20.0,
-        "contact": ContactModel(steps_per_contact=25.0),
-    }  # fmt: skip
-    return Landing(**{**values, **changes})
-
-
-LANDER = Lander(shape=Box((0.08, 0.06, 0.05)), mass=0.6, material=ROCK)
 
 
 def floor_force(world: World) -> np.ndarray:
