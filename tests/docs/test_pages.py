@@ -1,10 +1,18 @@
-"""The pages of the documentation: complete, in the navigation, and readable in an editor."""
+"""The pages of the documentation, what scripts write on them, and what the site adds to them."""
 
+import csv
+import json
 import re
+import runpy
+from collections import Counter
 from importlib import import_module
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from blocks import PAGES, ROOT
+
+from lithobrake.study import known_keys
 
 DOCS = ROOT / "docs"
 # What only the other parts use has no public names.
@@ -38,3 +46,144 @@ def test_lines_are_short_outside_tables_and_code() -> None:
             if breakable and len(line) > LONGEST:
                 long.append(f"{page.relative_to(ROOT)}:{number}")
     assert long == []
+
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+ROWS = re.findall(r"^\| \[[^\]]+\]\((docs/validation/\w+\.md)\)(.*)\|$", README, flags=re.MULTILINE)
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+def test_six_rows_stand_there_two_of_which_disagree() -> None:
+    verdicts = [cells.split("|")[-1].strip() for _, cells in ROWS]
+    assert len(verdicts) == 6
+    assert verdicts.count("no") == 2
+
+
+@pytest.mark.parametrize(("page", "cells"), ROWS)
+def test_numbers_of_a_row_stand_on_its_page(page: str, cells: str) -> None:
+    here = cells.split("|")[-2]
+    known = set(NUMBER.findall((ROOT / page).read_text(encoding="utf-8")))
+    assert set(NUMBER.findall(here)) <= known
+
+
+def test_the_count_of_agreements_is_that_of_the_page() -> None:
+    page = (ROOT / "docs" / "validation" / "experiments.md").read_text(encoding="utf-8")
+    count = re.search(r"\d+ of \d+ quantities agree", page)
+    assert count.group().removesuffix(" agree") in README
+    assert count.group() in (ROOT / "docs" / "how_it_works.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("study", ["paper", "drawn_170", "drawn_700", "first_bounce", "mission"])
+def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
+    folder = ROOT / "showcase" / study
+    results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
+    designs = results.get("designs") or {"drawn": results["runs"]}
+    for name, design in designs.items():
+        with (folder / "runs" / f"{name}.csv").open(newline="", encoding="utf-8") as file:
+            outcomes = Counter(row["outcome"] for row in csv.DictReader(file))
+        assert outcomes == design["outcomes"], name
+
+
+@pytest.fixture(scope="module")
+def hooks() -> dict[str, Any]:
+    """What docs/site_hooks.py defines."""
+    pytest.importorskip("latex2mathml", reason="equations need latex2mathml: pip install -e .[docs]")
+    pytest.importorskip("pymdownx", reason="equations need pymdown-extensions: pip install -e .[docs]")
+    return runpy.run_path(str(ROOT / "docs" / "site_hooks.py"))
+
+
+def test_equations_become_mathml_with_the_stop_behind_them(hooks: dict[str, Any]) -> None:
+    line = hooks["on_page_content"]('<p>of <span class="arithmatex">\\(a &lt; b\\)</span>, and</p>')
+    assert line.startswith('<p>of <span class="equation"><math ')
+    assert line.endswith("</math>,</span> and</p>")
+    assert 'display="inline"' in line
+    block = hooks["on_page_content"]('<div class="arithmatex">\n\\[\n\\frac{1}{2}\n\\]\n</div>')
+    assert "<mfrac>" in block
+    assert 'display="block"' in block
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if "```math" in page.read_text("utf-8")], ids=lambda page: page.name
+)
+def test_equations_of_a_page_have_no_command_that_is_left_as_it_is(page: Any, hooks: dict[str, Any]) -> None:
+    equations = page.read_text("utf-8").split("```math\n")[1:]
+    for equation in equations:
+        latex = equation.split("```")[0]
+        found = hooks["on_page_content"](f'<div class="arithmatex">\\[{latex}\\]</div>')
+        assert "\\" not in found, latex
+        # An environment that is not known leaves its marks of alignment in the text.
+        assert "<mi>&</mi>" not in found, latex
+
+
+def test_a_figure_leads_to_its_file_and_a_picture_in_a_line_does_not(hooks: dict[str, Any]) -> None:
+    picture = '<img alt="a map" src="../map.png" />'
+    figure = hooks["on_page_content"](f"<p>{picture}</p>")
+    assert figure == f'<p class="figure"><a href="../map.png">{picture}</a></p>'
+    assert hooks["on_page_content"](f"<p>see {picture}</p>") == f"<p>see {picture}</p>"
+
+
+def test_pictures_of_the_showcase_are_part_of_the_site(hooks: dict[str, Any]) -> None:
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="gallery.md"))
+    linked = hooks["on_page_markdown"]("![map](../showcase/mission/figures/figure_1_ends.png)", page=page)
+    assert linked == "![map](showcase/mission/figures/figure_1_ends.png)"
+    assert (ROOT / "showcase/mission/figures/figure_1_ends.png").is_file()
+
+
+@pytest.mark.parametrize(("name", "is_left_out"), [("decisions/dem.md", True), ("method.md", False)])
+def test_decisions_are_not_searched(name: str, is_left_out: bool, hooks: dict[str, Any]) -> None:
+    page = SimpleNamespace(file=SimpleNamespace(src_uri=name), meta={})
+    assert hooks["on_page_markdown"]("text", page=page) == "text"
+    assert page.meta == ({"search": {"exclude": True}} if is_left_out else {})
+
+
+STUDY_FILE_PAGE = ROOT / "docs" / "study_file.md"
+
+
+@pytest.fixture(scope="module")
+def script() -> dict[str, Any]:
+    """What docs/make_study_file_page.py defines."""
+    return runpy.run_path(str(ROOT / "docs" / "make_study_file_page.py"))
+
+
+def rows(section: str) -> dict[str, str]:
+    """The row of each key of a section."""
+    # A section whose tables have names of the user's own is headed by one of these.
+    heading = rf"## `\[{section}(?:\.NAME)?\]`\n"
+    text = re.split(heading, STUDY_FILE_PAGE.read_text(encoding="utf-8"))[1].partition("\n## ")[0]
+    return {line.split("`")[1]: line for line in text.splitlines() if line.startswith("| `")}
+
+
+def test_the_page_is_what_its_script_makes(script: dict[str, Any]) -> None:
+    assert STUDY_FILE_PAGE.read_text(encoding="utf-8") == script["page"](), (
+        "make it again with: python docs/make_study_file_page.py"
+    )
+
+
+def test_every_section_has_a_row_for_each_of_its_keys() -> None:
+    sections = {name: keys for name, keys in known_keys().items() if name and "." not in name}
+    assert len(sections) > 15
+    for name, keys in sections.items():
+        assert set(keys) <= rows(name).keys(), name
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "cells"),
+    [
+        ("grain", "poisson_ratio", "|  | [0, 0.5) ± | needed |"),
+        ("grain", "young_modulus", "| Pa | > 0 ± | needed |"),
+        ("bed", "sides", '| `"walls"`, `"periodic"` | `"walls"` |'),
+        ("bed", "boulders.coverage", "|  | (0, 0.3] | needed |"),
+        ("flight", "duration", "| s | > 0 | `43200.0` |"),
+        ("campaign", "memory_limit", "| bytes | > 0 |  |"),
+    ],
+)
+def test_a_row_has_unit_range_and_default(section: str, key: str, cells: str) -> None:
+    assert rows(section)[key].endswith(cells)
+
+
+def test_what_is_typed_is_code_and_no_letter_is_lost(script: dict[str, Any]) -> None:
+    words = script["as_markdown"]
+    assert words('as impact.speed, or [site] with "paper"; docs/chaos.md') == (
+        'as `impact.speed`, or `[site]` with `"paper"`; [chaos.md](chaos.md)'
+    )
+    assert words("a | b, R* and R* fall with D**-exponent") == r"a \| b, R\* and R\* fall with `D**-exponent`"

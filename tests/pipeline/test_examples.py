@@ -1,4 +1,4 @@
-"""The examples of a solver of one's own, as a user starts them, and what a study does with its answers."""
+"""Solvers of one's own, as a user starts them from examples and scripts, and what a study does with their answers."""
 
 import csv
 import io
@@ -19,6 +19,7 @@ from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 
 from ..command_line import lithobrake
+from .ball_studies import FEW_RUNS, write_ball
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -165,3 +166,55 @@ def test_inputs_without_a_command_are_refused(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(text)
     with pytest.raises(StudyError, match=r"solver\.command is missing"):
         read_study(tmp_path / "study.toml")
+
+
+SCRIPT = """
+print("started")
+from pathlib import Path
+import lithobrake
+
+results = lithobrake.run("ball.toml", out="out", workers=2, report=False)
+print(results.runs.row_count, sorted(set(results.runs["outcome"].tolist())))
+"""
+OWN_MODEL = """
+import tomllib
+from pathlib import Path
+import lithobrake
+
+def model(inputs, seed):
+    return {"outcome": "captured", "outputs": {}}
+
+tables = tomllib.loads(Path("ball.toml").read_text())
+del tables["solver"]
+lithobrake.run(tables, out="out", model=model, workers=1, report=False)
+"""
+
+
+def said_by_python(folder: Path, script: str, piped: bool) -> subprocess.CompletedProcess[str]:
+    (folder / "script.py").write_text(script)
+    words = [sys.executable, "-" if piped else "script.py"]
+    given = script if piped else None
+    return subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, check=False)
+
+
+def test_a_study_starts_from_a_piped_script_without_a_guard(tmp_path: Path) -> None:
+    few = FEW_RUNS | {"sample_count = 10_000": "sample_count = 100", "flight_count = 50": "flight_count = 1"}
+    write_ball(tmp_path / "ball.toml", few | {"count = 200 ": "count = 0 "})
+    said = said_by_python(tmp_path, SCRIPT, piped=True)
+    assert (said.returncode, said.stdout) == (0, "started\n13 ['clear']\n"), said.stderr
+
+
+@pytest.mark.parametrize(
+    ("piped", "words"),
+    [
+        (False, 'what starts it belongs under: if __name__ == "__main__":'),
+        (True, "write it to a file, say model.py, and import it from there"),
+    ],
+)
+def test_a_model_that_workers_cannot_import_is_one_sentence(piped: bool, words: str, tmp_path: Path) -> None:
+    write_ball(tmp_path / "ball.toml", FEW_RUNS)
+    said = said_by_python(tmp_path, OWN_MODEL, piped)
+    assert said.returncode == 1
+    last = said.stderr.strip().splitlines()[-1]
+    assert last.startswith("lithobrake.campaign.main_module.MainModuleError: ")
+    assert words in last

@@ -155,3 +155,17 @@ def test_runs_of_a_design_are_forgotten_when_its_stage_changes(tmp_path: Path) -
         study, study.read_bytes(), STAGES | {"test_runs": STAGES["test_runs"] | {"key": "2"}}, lambda sentence: None
     )
     assert set(json.loads((folder / "keys.json").read_text())["designs"]) == {"screening", "refined"}
+
+
+def test_a_file_that_is_named_as_a_probe_would_be_stays(tmp_path):
+    (tmp_path / ".writable").write_text("a note of mine")
+    StudyFolder(tmp_path)
+    assert (tmp_path / ".writable").read_text() == "a note of mine"
+    assert [path.name for path in tmp_path.iterdir()] == [".writable"]
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="here every folder can be written")
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(ValueError, match=r"cannot be written .*; choose another folder with --out"):
+        StudyFolder(tmp_path)

@@ -1,4 +1,4 @@
-"""Aims of a study, from its file to its page."""
+"""Aims of a study, from its file to its page; and hard ground with the restitution that a soft surface implies."""
 
 import dataclasses
 from dataclasses import replace
@@ -13,10 +13,11 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.aim_results import aim_statement
 from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
 from lithobrake.pipeline.rest.aiming import _distances
+from lithobrake.pipeline.rest.hard_equivalents import implied
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json
 from lithobrake.results.summary import DrawnResults
-from lithobrake.smallbody import didymos
+from lithobrake.smallbody import HardSurface, Impacts, didymos
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
@@ -141,3 +142,26 @@ def test_aims_need_the_impacts_after_the_first_among_the_inputs() -> None:
     given = synthetic_tables(aim={"grid": {"site.latitude_deg": [0.0, 50.0]}})
     with pytest.raises(StudyError, match=r"impact\.speed and impact\.incidence_deg are no uncertain input"):
         check_tables(given, Path())
+
+
+def test_hard_ground_implies_itself() -> None:
+    """The rebounds of a hard surface give back the numbers that it was made of."""
+    random = np.random.default_rng(1)
+    speed, incidence = random.uniform(0.01, 0.4, 200), random.uniform(0.1, 1.2, 200)
+    nothing, lander = np.zeros((200, 3)), np.arange(200)
+    for friction in (np.inf, 0.1):
+        impacts = Impacts(speed, incidence, nothing, np.full(200, -1e-4), lander)
+        left = HardSurface(0.6, 0.8, friction)(impacts, random).velocity
+        found = implied(speed, incidence, left)
+        assert found["normal_restitution"] == pytest.approx(0.6)
+        slides = found["tangential_restitution"] > 0.8 + 1e-9
+        assert found["tangential_restitution"][~slides] == pytest.approx(0.8)
+        assert found["friction"][slides] == pytest.approx(friction)
+        assert slides.any() == np.isfinite(friction)
+
+
+def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
+    tables = synthetic_tables(design={"run_count": 30}, monte_carlo={"sample_count": 100}, rest={"count": 20})
+    out = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
+    assert not (out.folder / "restitution.csv").exists()
+    assert out.summary["results"]["rest"]["equivalent"] is None
