@@ -241,17 +241,14 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
     assert found.if_missing == (1.0, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("bed", "impact", "where"),
-    [
-        ({}, {}, "On this bed, at this impact point"),
-        ({"bed_count": 6}, {}, "At this impact point"),
-        ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
-        ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
-        ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
-         "On these 6 beds, at random impact points and attitudes"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("bed", "impact", "where"), [
+    ({}, {}, "On this bed, at this impact point"),
+    ({"bed_count": 6}, {}, "At this impact point"),
+    ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
+    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
+    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
+     "On these 6 beds, at random impact points and attitudes"),
+])  # fmt: skip
 def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:
     found = scope(changed(bed=bed, impact=impact))
     assert found.where == where
@@ -320,16 +317,13 @@ def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
     assert abs(body.shape.height(origin[0])) < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("raised", "said"),
-    [
-        (ValueError("World time_step is 1e-3 s; allowed is at most 5e-4 s: make it smaller"),
-         "at most 5e-4 s: raise contact.steps_per_contact"),
-        (ValueError("Landing.speed is 0.0; allowed is a finite value above 0 m/s: change it"), "impact.speed is 0.0"),
-        (ValueError("BedRecipe.pour_gravity is 1e-6; allowed is at least"), "bed.pour_gravity is 1e-6"),
-        (FloatingPointError("the motion diverged: positions are no longer finite numbers"), "steps_per_contact"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("raised", "said"), [
+    (ValueError("World time_step is 1e-3 s; allowed is at most 5e-4 s: make it smaller"),
+     "at most 5e-4 s: raise contact.steps_per_contact"),
+    (ValueError("Landing.speed is 0.0; allowed is a finite value above 0 m/s: change it"), "impact.speed is 0.0"),
+    (ValueError("BedRecipe.pour_gravity is 1e-6; allowed is at least"), "bed.pour_gravity is 1e-6"),
+    (FloatingPointError("the motion diverged: positions are no longer finite numbers"), "steps_per_contact"),
+])  # fmt: skip
 def test_what_the_engine_refuses_is_said_by_the_keys_of_the_study(raised: Exception, said: str) -> None:
     with pytest.raises(type(raised), match=re.escape(said)) as caught, in_words_of_the_study():
         raise raised

@@ -239,19 +239,16 @@ def test_plain_numbers_need_no_outcome(tmp_path: Path) -> None:
     assert read_answer(tmp_path / "a.csv") == {"outputs": {"b": 2.0}}
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "words"),
-    [
-        ("a.csv", "b\nfast\n", "a.csv is no CSV of numbers"),
-        ("a.csv", "b,c\n1\n", "a.csv is no CSV of numbers"),
-        ("a.csv", "b\n", "a.csv is no CSV of numbers"),
-        ("a.csv", "b\nnan\n", "a.csv has nan for b"),
-        ("a.yaml", "b: [1\n", "a.yaml is not YAML"),
-        ("a.yaml", "b: .inf\n", "a.yaml has inf for b"),
-        ("a.yaml", "- 1\n", "a.yaml is no JSON object"),
-        ("a.h5", "text", "a.h5 is not HDF5"),
-    ],
-)
+@pytest.mark.parametrize(("name", "text", "words"), [
+    ("a.csv", "b\nfast\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b,c\n1\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b\nnan\n", "a.csv has nan for b"),
+    ("a.yaml", "b: [1\n", "a.yaml is not YAML"),
+    ("a.yaml", "b: .inf\n", "a.yaml has inf for b"),
+    ("a.yaml", "- 1\n", "a.yaml is no JSON object"),
+    ("a.h5", "text", "a.h5 is not HDF5"),
+])  # fmt: skip
 def test_what_is_no_answer_says_so(tmp_path: Path, name: str, text: str, words: str) -> None:
     (tmp_path / name).write_text(text)
     with pytest.raises(ValueError, match=words):

@@ -89,14 +89,11 @@ def test_what_was_queued_and_never_ended_is_forgotten_by_the_next_campaign(tmp_p
     assert {entry.inputs["a"] for entry in read_records(path)} == {1.0, 2.0, 3.0}
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        "outputs = json_set(outputs, '$.height', 9.0)", "inputs = json_set(inputs, '$.a', 9.0)", "outcome = 'captured'",
-        "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
-        "wall_s = 9.0",
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize("change", [
+    "outputs = json_set(outputs, '$.height', 9.0)", "inputs = json_set(inputs, '$.a', 9.0)", "outcome = 'captured'",
+    "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
+    "wall_s = 9.0",
+])  # fmt: skip
 def test_an_edited_row_is_named_left_out_and_made_again(
     tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str
 ) -> None:

@@ -37,17 +37,13 @@ def runs(count, seed, scatter=0.2):
     return x, x[:, 0] + 0.5 * x[:, 1] + x[:, 0] * x[:, 2] + noise
 
 
-@pytest.mark.parametrize(
-    ("keywords", "trials"),
-    [
-        ({"degree": 2}, 80),
-        ({"method": "omp", "degree": 3}, 60),
-        ({"method": "lars", "degree": 3}, 60),
-        ({"method": "gaussian_process"}, 40),
-        ({}, 20),
-    ],
-    ids=["least squares", "pursuit", "least angles", "process", "default"],
-)
+@pytest.mark.parametrize(("keywords", "trials"), [
+    ({"degree": 2}, 80),
+    ({"method": "omp", "degree": 3}, 60),
+    ({"method": "lars", "degree": 3}, 60),
+    ({"method": "gaussian_process"}, 40),
+    ({}, 20),
+], ids=["least squares", "pursuit", "least angles", "process", "default"])  # fmt: skip
 def test_sobol_intervals_cover_the_truth_under_noise(keywords, trials):
     covered, width = np.zeros((2, 3)), np.zeros((2, 3))
     for seed in range(trials):

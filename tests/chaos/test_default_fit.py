@@ -219,17 +219,13 @@ def wing_weight(x):
 
 
 # Errors measured over seeds 1 to 3 stay below half of these limits.
-@pytest.mark.parametrize(
-    ("inputs", "model", "count", "limit"),
-    [
-        (BOREHOLE, borehole, 100, 0.02),
-        (OTL, otl, 80, 0.01),
-        (PISTON, piston, 100, 0.15),
-        (WING, wing_weight, 100, 0.02),
-        (FRIEDMAN, friedman, 150, 0.05),
-    ],
-    ids=["borehole", "otl", "piston", "wing weight", "friedman"],
-)
+@pytest.mark.parametrize(("inputs", "model", "count", "limit"), [
+    (BOREHOLE, borehole, 100, 0.02),
+    (OTL, otl, 80, 0.01),
+    (PISTON, piston, 100, 0.15),
+    (WING, wing_weight, 100, 0.02),
+    (FRIEDMAN, friedman, 150, 0.05),
+], ids=["borehole", "otl", "piston", "wing weight", "friedman"])  # fmt: skip
 def test_default_on_few_runs(inputs, model, count, limit):
     x, test = sobol_sequence(inputs, count, seed=1), sobol_sequence(inputs, 1000, seed=9)
     surrogate = fit(inputs, x, model(x))

@@ -196,15 +196,12 @@ def test_moments_under_dependent_inputs_are_those_of_values_at_dependent_points(
     assert product(copula.sobol_sequence(2**15, seed=1)).mean() == pytest.approx(0.3, abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    "matrix",
-    [
-        np.eye(2),
-        [[1, 0.5, 0], [0.4, 1, 0], [0, 0, 1]],
-        2.0 * np.eye(3),
-        [[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]],
-    ],
-)
+@pytest.mark.parametrize("matrix", [
+    np.eye(2),
+    [[1, 0.5, 0], [0.4, 1, 0], [0, 0, 1]],
+    2.0 * np.eye(3),
+    [[1, 0.9, -0.9], [0.9, 1, 0.9], [-0.9, 0.9, 1]],
+])  # fmt: skip
 def test_impossible_correlations_are_refused(matrix):
     with pytest.raises(ValueError, match="rank_correlation"):
         GaussianCopula(INPUTS, matrix)

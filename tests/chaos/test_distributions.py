@@ -82,21 +82,18 @@ def test_empirical_quantiles_are_its_samples():
     assert entry.ppf(np.array([0.0, 0.1, 0.5, 0.9, 1.0])).tolist() == [1.0, 1.0, 3.0, 5.0, 5.0]
 
 
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: Uniform(1.0, 1.0), lambda: Uniform(2.0, 1.0), lambda: Uniform(float("nan"), 1.0),
-        lambda: Uniform("low", 1.0), lambda: Uniform(0.0, float("inf")), lambda: LogUniform(0.0, 1.0),
-        lambda: Normal(0.0, 0.0), lambda: Normal(0.0, -1.0), lambda: LogNormal(0.0, 0.0),
-        lambda: TruncatedNormal(0.0, 1.0, 2.0, 1.0), lambda: TruncatedNormal(0.0, -1.0, 0.0, 1.0),
-        lambda: TruncatedNormal(1e300, 1.0, 0.1, 0.9), lambda: TruncatedNormal(50.0, 0.01, 0.1, 0.9),
-        lambda: TruncatedNormal(0.5, 5e-324, 0.1, 0.9), lambda: TruncatedNormal(0.5, 1e300, 0.1, 0.9),
-        lambda: TruncatedNormal(0.5, 0.1, -1e308, 1e308), lambda: Beta(0.0, 1.0, 0.0, 1.0), lambda: Gamma(-1.0, 1.0),
-        lambda: Gamma(1.0, 0.0), lambda: Exponential(0.0), lambda: Empirical([]), lambda: Empirical([1.0, 1.0]),
-        lambda: Empirical([1.0, float("nan")]), lambda: distribution("triangular", lower=0.0),
-        lambda: distribution("uniform", lower=0.0), lambda: distribution("uniform", lower=0.0, upper=1.0, mode=0.5),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize("make", [
+    lambda: Uniform(1.0, 1.0), lambda: Uniform(2.0, 1.0), lambda: Uniform(float("nan"), 1.0),
+    lambda: Uniform("low", 1.0), lambda: Uniform(0.0, float("inf")), lambda: LogUniform(0.0, 1.0),
+    lambda: Normal(0.0, 0.0), lambda: Normal(0.0, -1.0), lambda: LogNormal(0.0, 0.0),
+    lambda: TruncatedNormal(0.0, 1.0, 2.0, 1.0), lambda: TruncatedNormal(0.0, -1.0, 0.0, 1.0),
+    lambda: TruncatedNormal(1e300, 1.0, 0.1, 0.9), lambda: TruncatedNormal(50.0, 0.01, 0.1, 0.9),
+    lambda: TruncatedNormal(0.5, 5e-324, 0.1, 0.9), lambda: TruncatedNormal(0.5, 1e300, 0.1, 0.9),
+    lambda: TruncatedNormal(0.5, 0.1, -1e308, 1e308), lambda: Beta(0.0, 1.0, 0.0, 1.0), lambda: Gamma(-1.0, 1.0),
+    lambda: Gamma(1.0, 0.0), lambda: Exponential(0.0), lambda: Empirical([]), lambda: Empirical([1.0, 1.0]),
+    lambda: Empirical([1.0, float("nan")]), lambda: distribution("triangular", lower=0.0),
+    lambda: distribution("uniform", lower=0.0), lambda: distribution("uniform", lower=0.0, upper=1.0, mode=0.5),
+])  # fmt: skip
 def test_wrong_parameters_are_refused_in_one_sentence(make):
     with pytest.raises(ValueError, match=r"^[^\n]+$"):
         make()
@@ -123,16 +120,12 @@ def test_what_has_no_logarithm_is_outside_however_wide_the_support(entry):
     assert outside_count({"a": entry}, np.array([[-1e-5], [0.0], [1.0]]))[0] == 2
 
 
-@pytest.mark.parametrize(
-    "entry",
-    [
-        Uniform(1.0, 2.0), LogUniform(1.0, 100.0), Normal(1.0, 2.0), LogNormal(0.0, 1.0),
-        TruncatedNormal(0.0, 1.0, -1.0, 3.0), TruncatedNormal(0.0, 1.0, 6.0, 9.0),
-        TruncatedNormal(0.0, 1.0, -np.inf, 1.0), TruncatedNormal(0.0, 1.0, -1.0, np.inf),
-        TruncatedNormal(0.0, 1.0, -9.0, -7.0), Beta(2.0, 3.0, -1.0, 1.0), Gamma(2.0, 3.0), Exponential(2.0),
-    ],
-    ids=lambda entry: f"{entry.kind} {entry.support}",
-)  # fmt: skip
+@pytest.mark.parametrize("entry", [
+    Uniform(1.0, 2.0), LogUniform(1.0, 100.0), Normal(1.0, 2.0), LogNormal(0.0, 1.0),
+    TruncatedNormal(0.0, 1.0, -1.0, 3.0), TruncatedNormal(0.0, 1.0, 6.0, 9.0), TruncatedNormal(0.0, 1.0, -np.inf, 1.0),
+    TruncatedNormal(0.0, 1.0, -1.0, np.inf), TruncatedNormal(0.0, 1.0, -9.0, -7.0), Beta(2.0, 3.0, -1.0, 1.0),
+    Gamma(2.0, 3.0), Exponential(2.0),
+], ids=lambda entry: f"{entry.kind} {entry.support}")  # fmt: skip
 def test_probability_of_a_quantile_is_the_probability(entry):
     u = np.array([0.001, 0.2, 0.5, 0.9, 0.999])
     assert np.allclose(entry.cdf(entry.ppf(u)), u, rtol=1e-9)

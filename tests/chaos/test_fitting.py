@@ -169,18 +169,15 @@ def test_outputs_whose_squares_are_no_numbers_are_refused(factor, words):
         fit(ISHIGAMI, x, x[:, 0] * factor, degree=2)
 
 
-@pytest.mark.parametrize(
-    ("keywords", "match"),
-    [
-        ({"degree": 5}, "points cannot determine"),
-        ({"degree": 4}, "terms"),
-        ({"degree": -1}, "degree"),
-        ({"degree": 2, "method": "magic"}, "method"),
-        ({"degree": 2, "q_norm": 0.0}, "q_norm"),
-        ({"degree": 2, "weights": [1.0]}, "weights"),
-        ({"degree": 2, "output_names": ["a", "b"]}, "output_names"),
-    ],
-)
+@pytest.mark.parametrize(("keywords", "match"), [
+    ({"degree": 5}, "points cannot determine"),
+    ({"degree": 4}, "terms"),
+    ({"degree": -1}, "degree"),
+    ({"degree": 2, "method": "magic"}, "method"),
+    ({"degree": 2, "q_norm": 0.0}, "q_norm"),
+    ({"degree": 2, "weights": [1.0]}, "weights"),
+    ({"degree": 2, "output_names": ["a", "b"]}, "output_names"),
+])  # fmt: skip
 def test_refusals(keywords, match):
     x = smolyak({f"x{k}": Uniform(-1.0, 1.0) for k in range(5)}, 3)
     with pytest.raises(ValueError, match=match):
@@ -249,14 +246,11 @@ def test_scores_of_wrong_shapes_are_refused():
             surrogate.score(points, y)
 
 
-@pytest.mark.parametrize(
-    ("degree", "said"),
-    [
-        (10**9, "whole number from 0 to 20000000"),
-        (20_000_000, "too many terms to look at"),
-        (100_000, "50 points cannot"),
-    ],
-)
+@pytest.mark.parametrize(("degree", "said"), [
+    (10**9, "whole number from 0 to 20000000"),
+    (20_000_000, "too many terms to look at"),
+    (100_000, "50 points cannot"),
+])  # fmt: skip
 def test_a_degree_beyond_all_memory_is_refused_before_anything_is_made(degree, said):
     x = sobol_sequence({"a": Uniform(0.0, 1.0)}, 50)
     with pytest.raises(ValueError, match=said):

@@ -77,31 +77,28 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
     assert not Path("hit").exists()
 
 
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [
-        ("coefficients", [[1.0]]),
-        ("coefficients", "many"),
-        ("multi_indices", [[-1, 0, 0, 0]]),
-        ("inputs", []),
-        ("inputs", [{"name": "a"}]),
-        ("output_names", None),
-        ("residuals", [[1.0]]),
-        ("residuals", [[1.0, float("nan")]]),
-        ("residuals", [[1.0, 2.0, 3.0, 4.0]]),
-        ("report", 3),
-        ("multi_indices", [[0, 0, 0]]),
-        ("multi_indices", [[0, 0, 0, 0.5]]),
-        ("multi_indices", [[0, 0, 0, True]]),
-        ("multi_indices", [[0, 0, 0, 10**30]]),
-        ("multi_indices", [[0, 0, 0, 0]] * 2),
-        ("multi_indices", []),
-        ("output_names", "vw"),
-        ("output_names", ["v", "v"]),
-        ("one_dimensional", "no"),
-        ("one_dimensional", True),
-    ],
-)
+@pytest.mark.parametrize(("key", "value"), [
+    ("coefficients", [[1.0]]),
+    ("coefficients", "many"),
+    ("multi_indices", [[-1, 0, 0, 0]]),
+    ("inputs", []),
+    ("inputs", [{"name": "a"}]),
+    ("output_names", None),
+    ("residuals", [[1.0]]),
+    ("residuals", [[1.0, float("nan")]]),
+    ("residuals", [[1.0, 2.0, 3.0, 4.0]]),
+    ("report", 3),
+    ("multi_indices", [[0, 0, 0]]),
+    ("multi_indices", [[0, 0, 0, 0.5]]),
+    ("multi_indices", [[0, 0, 0, True]]),
+    ("multi_indices", [[0, 0, 0, 10**30]]),
+    ("multi_indices", [[0, 0, 0, 0]] * 2),
+    ("multi_indices", []),
+    ("output_names", "vw"),
+    ("output_names", ["v", "v"]),
+    ("one_dimensional", "no"),
+    ("one_dimensional", True),
+])  # fmt: skip
 def test_damaged_content_is_refused_with_the_name_of_the_file(key, value, tmp_path):
     content = {**json.loads(VERSION_1.read_text()), key: value}
     path = tmp_path / "model.json"

@@ -70,13 +70,10 @@ def test_what_is_no_terminal_gets_no_escape_sequence(code: str) -> None:
     assert b"\x1b" not in shown.stdout + shown.stderr
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        "from lithobrake.cli.terminal import tell; tell(['  a study of ' + 'words ' * 30])",
-        "from lithobrake.cli import app; app(['status', 'a study of ' + 'words ' * 30])",
-    ],
-)
+@pytest.mark.parametrize("code", [
+    "from lithobrake.cli.terminal import tell; tell(['  a study of ' + 'words ' * 30])",
+    "from lithobrake.cli import app; app(['status', 'a study of ' + 'words ' * 30])",
+])  # fmt: skip
 def test_a_terminal_gets_whole_words(code: str) -> None:
     lines = on_a_terminal(code, COLUMNS="43").decode().splitlines()
     assert max(map(len, lines)) <= 43

@@ -104,14 +104,11 @@ def spoil_by_pipe(path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such modes")
-@pytest.mark.parametrize(
-    ("spoil", "word"),
-    [
-        (lambda path: path.chmod(0o640), "can be read by others; delete it"),
-        (lambda path: path.write_bytes(b"short"), "has 5 bytes for 32; delete it"),
-        (spoil_by_pipe, "is no regular file"),
-    ],
-)
+@pytest.mark.parametrize(("spoil", "word"), [
+    (lambda path: path.chmod(0o640), "can be read by others; delete it"),
+    (lambda path: path.write_bytes(b"short"), "has 5 bytes for 32; delete it"),
+    (spoil_by_pipe, "is no regular file"),
+])  # fmt: skip
 def test_a_key_that_is_none_keeps_nothing_and_says_so(home, caplog, spoil, word):
     user_key()
     spoil(home / PLACE)

@@ -134,16 +134,13 @@ def test_size_scales_to_the_last_bit():
     assert np.array_equal(8.0**5 * small.inertia_per_density, large.inertia_per_density)
 
 
-@pytest.mark.parametrize(
-    ("points", "word"),
-    [
-        (np.zeros((5, 3)), "no volume"),
-        (np.eye(3), "at least 4"),
-        (np.random.default_rng(0).normal(size=(10, 3)) * [1, 1, 0], "no volume"),
-        (np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, np.nan]]), "finite"),
-        (np.zeros((4, 2)), "3 coordinates"),
-    ],
-)
+@pytest.mark.parametrize(("points", "word"), [
+    (np.zeros((5, 3)), "no volume"),
+    (np.eye(3), "at least 4"),
+    (np.random.default_rng(0).normal(size=(10, 3)) * [1, 1, 0], "no volume"),
+    (np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, np.nan]]), "finite"),
+    (np.zeros((4, 2)), "3 coordinates"),
+])  # fmt: skip
 def test_degenerate_clouds_are_refused(points, word):
     with pytest.raises(ValueError, match=word):
         ConvexHull(points)

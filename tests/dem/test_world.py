@@ -13,18 +13,15 @@ from lithobrake.dem.law.material_pair import PAIR_RULES, pair_law
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("young_modulus", 0.0),
-        ("poisson_ratio", 0.5),
-        ("poisson_ratio", -0.1),
-        ("restitution", 0.0),
-        ("restitution", 1.1),
-        ("friction", -0.1),
-        ("density", math.nan),
-    ],
-)
+@pytest.mark.parametrize(("name", "value"), [
+    ("young_modulus", 0.0),
+    ("poisson_ratio", 0.5),
+    ("poisson_ratio", -0.1),
+    ("restitution", 0.0),
+    ("restitution", 1.1),
+    ("friction", -0.1),
+    ("density", math.nan),
+])  # fmt: skip
 def test_materials_outside_their_ranges_are_refused(name, value):
     values = {"young_modulus": 1e7, "poisson_ratio": 0.25, "restitution": 0.5, "friction": 0.5, "density": 2500.0}
     with pytest.raises(ValueError, match=f"Material.{name}"):
@@ -119,23 +116,19 @@ def test_too_large_a_step_names_the_largest_safe_one():
     safe.run(steps=10)
 
 
-@pytest.mark.parametrize(
-    ("call", "word"),
-    [
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0)), "position"),
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), orientation=(0, 0, 0, 0)), "orientation"),
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), mass=-1.0), "mass"),
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=-np.eye(3)), "inertia"),
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.eye(3) + np.eye(3, k=1)), "inertia"),
-        (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.diag([0.001, 0.001, 0.01])),
-         "sum of the other two"),
-        (lambda w: w.add_plane((0, 0, 0), (0, 0, 0), ROCK), "normal"),
-        (lambda w: w.run(duration=1.0), "no body"),
-        (lambda w: w.run(), "either"),
-        (lambda w: World(pair_rule="larger"), "pair_rule"),
-        (lambda w: World(time_step=0.0), "time_step"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("call", "word"), [
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0)), "position"),
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), orientation=(0, 0, 0, 0)), "orientation"),
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), mass=-1.0), "mass"),
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=-np.eye(3)), "inertia"),
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.eye(3) + np.eye(3, k=1)), "inertia"),
+    (lambda w: w.add_body(Sphere(1.0), ROCK, (0, 0, 0), inertia=np.diag([0.001, 0.001, 0.01])), "sum of the other two"),
+    (lambda w: w.add_plane((0, 0, 0), (0, 0, 0), ROCK), "normal"),
+    (lambda w: w.run(duration=1.0), "no body"),
+    (lambda w: w.run(), "either"),
+    (lambda w: World(pair_rule="larger"), "pair_rule"),
+    (lambda w: World(time_step=0.0), "time_step"),
+])  # fmt: skip
 def test_wrong_calls_are_refused_in_a_sentence(call, word):
     with pytest.raises(ValueError, match=word):
         call(World())

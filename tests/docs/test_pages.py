@@ -166,17 +166,14 @@ def test_every_section_has_a_row_for_each_of_its_keys() -> None:
         assert set(keys) <= rows(name).keys(), name
 
 
-@pytest.mark.parametrize(
-    ("section", "key", "cells"),
-    [
-        ("grain", "poisson_ratio", "|  | [0, 0.5) ± | needed |"),
-        ("grain", "young_modulus", "| Pa | > 0 ± | needed |"),
-        ("bed", "sides", '| `"walls"`, `"periodic"` | `"walls"` |'),
-        ("bed", "boulders.coverage", "|  | (0, 0.3] | needed |"),
-        ("flight", "duration", "| s | > 0 | `43200.0` |"),
-        ("campaign", "memory_limit", "| bytes | > 0 |  |"),
-    ],
-)
+@pytest.mark.parametrize(("section", "key", "cells"), [
+    ("grain", "poisson_ratio", "|  | [0, 0.5) ± | needed |"),
+    ("grain", "young_modulus", "| Pa | > 0 ± | needed |"),
+    ("bed", "sides", '| `"walls"`, `"periodic"` | `"walls"` |'),
+    ("bed", "boulders.coverage", "|  | (0, 0.3] | needed |"),
+    ("flight", "duration", "| s | > 0 | `43200.0` |"),
+    ("campaign", "memory_limit", "| bytes | > 0 |  |"),
+])  # fmt: skip
 def test_a_row_has_unit_range_and_default(section: str, key: str, cells: str) -> None:
     assert rows(section)[key].endswith(cells)
 

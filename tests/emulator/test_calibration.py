@@ -171,19 +171,16 @@ def test_an_outcome_alone_has_its_chance_and_what_lies_beyond_a_bound_none(model
     assert model.log_density({"share": 1.2}, SOIL)[0] == -np.inf
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"observed": {"place": 0.5}}, "place is observed as 0.5; allowed: finite numbers of share, height"),
-        ({"observed": {"share": np.nan}}, "observed share is nan"),
-        ({"observed": {"share": 0.5}, "errors": {"height": 0.1}}, "the error of height is 0.1"),
-        ({"observed": {"share": 0.5}, "errors": {"share": -0.1}}, "the error of share is -0.1"),
-        ({"observed": {"share": 0.5}, "errors": {"share": 1e300}},
-         r"is 1e\+300, but must be a finite number of at least 0 and of at most 1e\+100"),
-        ({"observed": {"share": 0.5}, "outcome": "captured"}, "outcome is 'captured', which has no outputs"),
-        ({"observed": {}, "outcome": "lost"}, "outcome is 'lost'; allowed: captured, clear"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("arguments", "words"), [
+    ({"observed": {"place": 0.5}}, "place is observed as 0.5; allowed: finite numbers of share, height"),
+    ({"observed": {"share": np.nan}}, "observed share is nan"),
+    ({"observed": {"share": 0.5}, "errors": {"height": 0.1}}, "the error of height is 0.1"),
+    ({"observed": {"share": 0.5}, "errors": {"share": -0.1}}, "the error of share is -0.1"),
+    ({"observed": {"share": 0.5}, "errors": {"share": 1e300}},
+     r"is 1e\+300, but must be a finite number of at least 0 and of at most 1e\+100"),
+    ({"observed": {"share": 0.5}, "outcome": "captured"}, "outcome is 'captured', which has no outputs"),
+    ({"observed": {}, "outcome": "lost"}, "outcome is 'lost'; allowed: captured, clear"),
+])  # fmt: skip
 def test_names_and_values_that_cannot_be_are_refused(model: Emulator, arguments: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         model.log_density(x=SOIL, **arguments)

@@ -147,18 +147,15 @@ def test_an_output_that_is_always_the_same_stays_so() -> None:
     np.testing.assert_allclose(model.sample(X, 5), 7.0, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("weights", "words"),
-    [
-        (-np.ones(COUNT), "at least 0"),
-        (np.full(COUNT, np.nan), "finite"),
-        (np.ones(3), r"weights have shape \(3,\), but must be \[120\]"),
-        (np.zeros(COUNT), "weights count 0 runs"),
-        (np.full(COUNT, 1.0 / COUNT), "how often each run counts"),
-        (np.ma.masked_array(np.ones(COUNT), mask=np.arange(COUNT) < 3), "3 masked values"),
-        (["a"] * COUNT, "array of real numbers"),
-    ],
-)
+@pytest.mark.parametrize(("weights", "words"), [
+    (-np.ones(COUNT), "at least 0"),
+    (np.full(COUNT, np.nan), "finite"),
+    (np.ones(3), r"weights have shape \(3,\), but must be \[120\]"),
+    (np.zeros(COUNT), "weights count 0 runs"),
+    (np.full(COUNT, 1.0 / COUNT), "how often each run counts"),
+    (np.ma.masked_array(np.ones(COUNT), mask=np.arange(COUNT) < 3), "3 masked values"),
+    (["a"] * COUNT, "array of real numbers"),
+])  # fmt: skip
 def test_weights_that_count_no_runs_are_refused(weights: Any, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         fitted().reweighted(weights)
@@ -190,27 +187,23 @@ def test_outputs_whose_squares_are_no_numbers_are_refused(factor: float, words: 
         emulator.fit(INPUTS, runs()["x"], np.linspace(0.0, factor, COUNT))
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"x": np.ma.masked_array(runs()["x"], mask=runs()["x"] > 0.99)}, "x has .* masked values"),
-        ({"groups": np.ma.masked_array(np.arange(COUNT), mask=np.arange(COUNT) < 2)},
-         "groups hold NaN or infinity, or"),
-        ({"groups": np.zeros(COUNT)}, "groups hold one group"),
-        ({"groups": np.full(COUNT, np.nan)}, "groups hold NaN or infinity"),
-        ({"groups": np.zeros(3)}, "groups has shape"),
-        ({"y": np.zeros((3, 3))}, "y has shape"),
-        ({"outcome": np.full(COUNT, "left")}, "one outcome must have outputs in all its runs"),
-        ({"outcomes": ("left", "lost")}, "outcome holds 'stopped'"),
-        ({"upper": [0.5, np.inf, np.inf]}, "speed is"),
-        ({"upper": np.ones((2, 2))}, "upper has shape"),
-        ({"lower": 5.0, "upper": 1.0}, "lower must be less than upper"),
-        ({"riders": ["mass"]}, "riders hold 'mass'"),
-        ({"riders": [0, 1, 2]}, "all outputs are riders"),
-        ({"output_names": ("speed", "spin")}, "output_names are"),
-        ({"x": np.full((COUNT, 2), 2.0)}, "120 of 120 points outside"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("change", "words"), [
+    ({"x": np.ma.masked_array(runs()["x"], mask=runs()["x"] > 0.99)}, "x has .* masked values"),
+    ({"groups": np.ma.masked_array(np.arange(COUNT), mask=np.arange(COUNT) < 2)}, "groups hold NaN or infinity, or"),
+    ({"groups": np.zeros(COUNT)}, "groups hold one group"),
+    ({"groups": np.full(COUNT, np.nan)}, "groups hold NaN or infinity"),
+    ({"groups": np.zeros(3)}, "groups has shape"),
+    ({"y": np.zeros((3, 3))}, "y has shape"),
+    ({"outcome": np.full(COUNT, "left")}, "one outcome must have outputs in all its runs"),
+    ({"outcomes": ("left", "lost")}, "outcome holds 'stopped'"),
+    ({"upper": [0.5, np.inf, np.inf]}, "speed is"),
+    ({"upper": np.ones((2, 2))}, "upper has shape"),
+    ({"lower": 5.0, "upper": 1.0}, "lower must be less than upper"),
+    ({"riders": ["mass"]}, "riders hold 'mass'"),
+    ({"riders": [0, 1, 2]}, "all outputs are riders"),
+    ({"output_names": ("speed", "spin")}, "output_names are"),
+    ({"x": np.full((COUNT, 2), 2.0)}, "120 of 120 points outside"),
+])  # fmt: skip
 def test_what_does_not_fit_together_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         emulator.fit(INPUTS, **{**runs(), **change})

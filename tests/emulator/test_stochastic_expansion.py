@@ -219,20 +219,17 @@ def test_a_damaged_file_is_refused(tmp_path: Path, key: str, value: object) -> N
         emulator.load_stochastic_expansion(path)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"y": np.zeros((RUNS, 2))}, r"y has shape \(300, 2\), but must be \[run_count\]"),
-        ({"y": np.full(RUNS, 7.0)}, "y does not scatter"),
-        ({"y": np.zeros(3)}, "y has shape"),
-        ({"lower": 1.0}, "y is"),
-        ({"degree": 6}, "degree is 6, but must be a whole number from 0 to 5"),
-        ({"degree": 1.5}, "degree is 1.5"),
-        ({"latent": "gamma"}, "latent is 'gamma', but must be one of normal, uniform"),
-        ({"groups": np.zeros(RUNS)}, "groups hold one group"),
-        ({"x": np.full((RUNS, 1), 2.0)}, "300 of 300 points outside"),
-    ],
-)
+@pytest.mark.parametrize(("change", "words"), [
+    ({"y": np.zeros((RUNS, 2))}, r"y has shape \(300, 2\), but must be \[run_count\]"),
+    ({"y": np.full(RUNS, 7.0)}, "y does not scatter"),
+    ({"y": np.zeros(3)}, "y has shape"),
+    ({"lower": 1.0}, "y is"),
+    ({"degree": 6}, "degree is 6, but must be a whole number from 0 to 5"),
+    ({"degree": 1.5}, "degree is 1.5"),
+    ({"latent": "gamma"}, "latent is 'gamma', but must be one of normal, uniform"),
+    ({"groups": np.zeros(RUNS)}, "groups hold one group"),
+    ({"x": np.full((RUNS, 1), 2.0)}, "300 of 300 points outside"),
+])  # fmt: skip
 def test_what_does_not_fit_together_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
     x, y = runs_of(ONE_INPUT, line)
     with pytest.raises(ValueError, match=words):

@@ -115,17 +115,14 @@ def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) 
     assert "axes that DIMORPHOS_FIXED has at REF_FRAME_EPOCH" in comments.replace(" COMMENT", "")
 
 
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"samples": [10**6]}, "sample 1000000 has no flight"),
-        ({"frame": "J2000"}, "allowed: inertial, fixed, icrf"),
-        ({"epoch": "noon"}, "such as 2026-11-22T12:00:00"),
-        ({"epoch": "9999-12-31T23:59:59"}, "of the years 1900 to 2999"),
-        ({"epoch": "0001-01-01T00:00:00+05:00"}, "of the years 1900 to 2999"),
-        ({"step": 0.0}, "the longest flight"),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"samples": [10**6]}, "sample 1000000 has no flight"),
+    ({"frame": "J2000"}, "allowed: inertial, fixed, icrf"),
+    ({"epoch": "noon"}, "such as 2026-11-22T12:00:00"),
+    ({"epoch": "9999-12-31T23:59:59"}, "of the years 1900 to 2999"),
+    ({"epoch": "0001-01-01T00:00:00+05:00"}, "of the years 1900 to 2999"),
+    ({"step": 0.0}, "the longest flight"),
+])  # fmt: skip
 def test_what_cannot_be_written_is_refused(
     results: StudyResults, tmp_path: Path, wrong: dict[str, object], words: str
 ) -> None:

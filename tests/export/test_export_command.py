@@ -53,18 +53,15 @@ def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(result
     assert (results.folder / "export/body.plates.txt").is_file()
 
 
-@pytest.mark.parametrize(
-    ("kind", "name"),
-    [
-        ("oem", "flight_mean.oem"),
-        ("plates", "body.plates.txt"),
-        ("facets", "facets.fits"),
-        ("geotiff", "impacts.tif"),
-        ("geojson", "rest.geojson"),
-        ("vtkhdf", "bed_0.vtkhdf"),
-        ("sheet", "landing.png"),
-    ],
-)
+@pytest.mark.parametrize(("kind", "name"), [
+    ("oem", "flight_mean.oem"),
+    ("plates", "body.plates.txt"),
+    ("facets", "facets.fits"),
+    ("geotiff", "impacts.tif"),
+    ("geojson", "rest.geojson"),
+    ("vtkhdf", "bed_0.vtkhdf"),
+    ("sheet", "landing.png"),
+])  # fmt: skip
 def test_a_file_of_the_user_is_replaced_only_when_told_to(
     results: StudyResults, tmp_path: Path, kind: str, name: str
 ) -> None:

@@ -167,13 +167,10 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
             assert (left.inv() * Rotation.from_quat(parts[number + 1][1][0])).magnitude() < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"frame": "icrf", "epoch": EPOCH}, "leave epoch out"),
-        ({"frame": "icrf", "samples": [99]}, "sample 99 has no flight"),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "words"), [
+    ({"frame": "icrf", "epoch": EPOCH}, "leave epoch out"),
+    ({"frame": "icrf", "samples": [99]}, "sample 99 has no flight"),
+])  # fmt: skip
 def test_what_contradicts_the_study_is_refused(
     delivered: StudyResults, tmp_path: Path, wrong: dict[str, object], words: str
 ) -> None:

@@ -82,14 +82,11 @@ def test_as_many_terms_as_symmetry_leaves(terms: AttitudeTerms, count: int) -> N
     assert len(terms.ranges) == count
 
 
-@pytest.mark.parametrize(
-    ("terms", "symmetries"),
-    [
-        (BOX, HALF_TURNS),
-        (PRISM, [*HALF_TURNS, Rotation.from_rotvec([0.0, 0.0, 0.5 * np.pi])]),
-        (CUBE, [Rotation.from_rotvec(0.5 * np.pi * axis) for axis in np.eye(3)]),
-    ],
-)
+@pytest.mark.parametrize(("terms", "symmetries"), [
+    (BOX, HALF_TURNS),
+    (PRISM, [*HALF_TURNS, Rotation.from_rotvec([0.0, 0.0, 0.5 * np.pi])]),
+    (CUBE, [Rotation.from_rotvec(0.5 * np.pi * axis) for axis in np.eye(3)]),
+])  # fmt: skip
 def test_symmetries_of_the_lander_change_no_term(terms: AttitudeTerms, symmetries: list[Rotation]) -> None:
     attitudes = Rotation.random(50, rng=2)
     for symmetry in symmetries:

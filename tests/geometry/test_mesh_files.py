@@ -29,24 +29,21 @@ def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") 
     return path
 
 
-@pytest.mark.parametrize(
-    ("header", "label", "ending", "length"),
-    [
-        ("", "", "", 1.0),
-        ("# Blender v2.9 OBJ File: ''\n", "", "", 1.0),
-        ("# Units: km\n", "", "", 1e3),
-        ("# PRODUCT_VERSION = 3\n#\n# The units are kilometers.\n", "", "", 1e3),
-        ("# vertices in meters\n", "", "", 1.0),
-        ("# File units = millimetres\n", "", "", 1e-3),
-        ("# UNITS: MM\n", "", "", 1e-3),
-        ("# 1 unit = 1 km\n", "", "", 1e3),
-        ("# all lengths are in km\n", "", "", 1e3),
-        ("# x [km] y [km] z [km]\n", "", "", 1e3),
-        ("mtllib rock.mtl\n\n# units: km\n", "", "", 1e3),
-        ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
-        ("", PDS3_LABEL, ".lbl", 1e3),
-    ],
-)
+@pytest.mark.parametrize(("header", "label", "ending", "length"), [
+    ("", "", "", 1.0),
+    ("# Blender v2.9 OBJ File: ''\n", "", "", 1.0),
+    ("# Units: km\n", "", "", 1e3),
+    ("# PRODUCT_VERSION = 3\n#\n# The units are kilometers.\n", "", "", 1e3),
+    ("# vertices in meters\n", "", "", 1.0),
+    ("# File units = millimetres\n", "", "", 1e-3),
+    ("# UNITS: MM\n", "", "", 1e-3),
+    ("# 1 unit = 1 km\n", "", "", 1e3),
+    ("# all lengths are in km\n", "", "", 1e3),
+    ("# x [km] y [km] z [km]\n", "", "", 1e3),
+    ("mtllib rock.mtl\n\n# units: km\n", "", "", 1e3),
+    ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
+    ("", PDS3_LABEL, ".lbl", 1e3),
+])  # fmt: skip
 def test_the_unit_is_what_header_or_label_state(
     tmp_path: Path, header: str, label: str, ending: str, length: float
 ) -> None:
@@ -54,35 +51,32 @@ def test_the_unit_is_what_header_or_label_state(
     assert vertices.max() == length
 
 
-@pytest.mark.parametrize(
-    ("header", "label", "unit", "words"),
-    [
-        ("# GSD = TBD\n", "", None, "do not state the unit"),
-        ("", "<Product_Observational/>", None, "do not state the unit"),
-        ("# Units: km\n", "", "m", "says km, and unit is 'm'"),
-        ("# Units: km\n", "<unit>m</unit>", None, "name km, m"),
-        ("", "", "inch", "allowed are m, km, cm, mm"),
-        ("# Units: feet\n", "", None, "gives lengths in feet; allowed are m, km, cm, mm"),
-        ("# the units are Feet\n", "", "m", "gives lengths in feet"),
-        ("# units = inches\n", "", None, "gives lengths in inches"),
-        ("# units: in\n", "", "m", "gives lengths in in;"),
-        ("# unit: mi\n", "", None, "gives lengths in miles"),
-        ("# unit: \u00b5m\n", "", None, "gives lengths in um"),
-        ("# unit: \u03bcm\n", "", None, "gives lengths in um"),
-        ("# length_unit: ft\n", "", None, "gives lengths in feet"),
-        ("# LENGTH_UNIT = FT\n", "", None, "gives lengths in feet"),
-        ("# unit_length = furlongs\n", "", None, "gives lengths in furlongs"),
-        ("\ufeff# units: km\n", "", "m", "says km, and unit is 'm'"),
-        ("# vertices in furlongs\n", "", None, "gives lengths in furlongs"),
-        ("# UNIT: AU\n", "", "km", "gives lengths in au"),
-        ("# unit: au\n", "", None, "gives lengths in au"),
-        ("# units: Mm\n", "", None, "gives lengths in Mm"),
-        ("# units: parasangs\n", "", None, "gives lengths in parasangs"),
-        ("# units: 0.3 m\n", "", None, "gives lengths in 0.3"),
-        ("# units: km/s\n", "", "km", "gives lengths in km/s"),
-        ("", "<unit>AU</unit>", None, "gives lengths in au"),
-    ],
-)
+@pytest.mark.parametrize(("header", "label", "unit", "words"), [
+    ("# GSD = TBD\n", "", None, "do not state the unit"),
+    ("", "<Product_Observational/>", None, "do not state the unit"),
+    ("# Units: km\n", "", "m", "says km, and unit is 'm'"),
+    ("# Units: km\n", "<unit>m</unit>", None, "name km, m"),
+    ("", "", "inch", "allowed are m, km, cm, mm"),
+    ("# Units: feet\n", "", None, "gives lengths in feet; allowed are m, km, cm, mm"),
+    ("# the units are Feet\n", "", "m", "gives lengths in feet"),
+    ("# units = inches\n", "", None, "gives lengths in inches"),
+    ("# units: in\n", "", "m", "gives lengths in in;"),
+    ("# unit: mi\n", "", None, "gives lengths in miles"),
+    ("# unit: \u00b5m\n", "", None, "gives lengths in um"),
+    ("# unit: \u03bcm\n", "", None, "gives lengths in um"),
+    ("# length_unit: ft\n", "", None, "gives lengths in feet"),
+    ("# LENGTH_UNIT = FT\n", "", None, "gives lengths in feet"),
+    ("# unit_length = furlongs\n", "", None, "gives lengths in furlongs"),
+    ("\ufeff# units: km\n", "", "m", "says km, and unit is 'm'"),
+    ("# vertices in furlongs\n", "", None, "gives lengths in furlongs"),
+    ("# UNIT: AU\n", "", "km", "gives lengths in au"),
+    ("# unit: au\n", "", None, "gives lengths in au"),
+    ("# units: Mm\n", "", None, "gives lengths in Mm"),
+    ("# units: parasangs\n", "", None, "gives lengths in parasangs"),
+    ("# units: 0.3 m\n", "", None, "gives lengths in 0.3"),
+    ("# units: km/s\n", "", "km", "gives lengths in km/s"),
+    ("", "<unit>AU</unit>", None, "gives lengths in au"),
+])  # fmt: skip
 def test_a_unit_is_never_guessed(tmp_path: Path, header: str, label: str, unit: str | None, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         read_mesh(mesh(tmp_path, header, label), unit)
@@ -119,17 +113,14 @@ def test_the_vertices_of_a_plate_table_have_their_numbers(tmp_path: Path) -> Non
     assert np.array_equal(read_mesh(path)[0], wanted[0])
 
 
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        ("5 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
-        ("7 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
-        ("0 0 0 -1", "6 is missing"),
-        ("0 0 -1", "lines of vertices have 3, 4 entries"),
-        ("6 0 0 -1 1", "lines of vertices have 4, 5 entries"),
-        ("six 0 0 -1", "invalid literal"),
-    ],
-)
+@pytest.mark.parametrize(("line", "words"), [
+    ("5 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+    ("7 0 0 -1", "vertices are not numbered from 1 to 6: 6 is missing"),
+    ("0 0 0 -1", "6 is missing"),
+    ("0 0 -1", "lines of vertices have 3, 4 entries"),
+    ("6 0 0 -1 1", "lines of vertices have 4, 5 entries"),
+    ("six 0 0 -1", "invalid literal"),
+])  # fmt: skip
 def test_a_plate_table_with_gaps_between_its_numbers_is_refused(tmp_path: Path, line: str, words: str) -> None:
     vertices, plates = NUMBERED
     (tmp_path / "rock.tab").write_text(plate_table([*vertices[:-1], line], plates))

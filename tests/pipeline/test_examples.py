@@ -145,15 +145,12 @@ def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     assert solver_dependencies(here) != solver_dependencies(there)
 
 
-@pytest.mark.parametrize(
-    ("command", "said"),
-    [
-        ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
-        ("python3 'x", "close every quotation mark"),
-        (r"python3 \u0000x", r"allowed: what can be shown on one line; write plain words"),
-        ("/" + "x" * 300, "which is no program here; give its path"),
-    ],
-)
+@pytest.mark.parametrize(("command", "said"), [
+    ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
+    ("python3 'x", "close every quotation mark"),
+    (r"python3 \u0000x", r"allowed: what can be shown on one line; write plain words"),
+    ("/" + "x" * 300, "which is no program here; give its path"),
+])  # fmt: skip
 def test_a_command_that_cannot_be_started_is_refused(command: str, said: str, tmp_path: Path) -> None:
     text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("python3 ball_on_plate.py", command)
     (tmp_path / "study.toml").write_text(text)
@@ -204,13 +201,10 @@ def test_a_study_starts_from_a_piped_script_without_a_guard(tmp_path: Path) -> N
     assert (said.returncode, said.stdout) == (0, "started\n13 ['clear']\n"), said.stderr
 
 
-@pytest.mark.parametrize(
-    ("piped", "words"),
-    [
-        (False, 'what starts it belongs under: if __name__ == "__main__":'),
-        (True, "write it to a file, say model.py, and import it from there"),
-    ],
-)
+@pytest.mark.parametrize(("piped", "words"), [
+    (False, 'what starts it belongs under: if __name__ == "__main__":'),
+    (True, "write it to a file, say model.py, and import it from there"),
+])  # fmt: skip
 def test_a_model_that_workers_cannot_import_is_one_sentence(piped: bool, words: str, tmp_path: Path) -> None:
     write_ball(tmp_path / "ball.toml", FEW_RUNS)
     said = said_by_python(tmp_path, OWN_MODEL, piped)

@@ -92,14 +92,11 @@ runpy.run_path(PROGRAM, run_name="__main__")
 """
 
 
-@pytest.mark.parametrize(
-    ("share", "said"),
-    [
-        ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
-                 "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
-        ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("share", "said"), [
+    ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
+             "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
+    ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
+])  # fmt: skip
 def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(PROGRAM))))
     changes = {

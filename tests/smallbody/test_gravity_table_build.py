@@ -37,14 +37,10 @@ def with_objects() -> bytes:
     return file.getvalue()
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [
-        lambda whole: whole[:-500], lambda whole: b"", lambda whole: whole[:300] + b"?" + whole[301:],
-        lambda whole: with_objects(),
-    ],
-    ids=["truncated", "empty", "one byte", "objects"],
-)  # fmt: skip
+@pytest.mark.parametrize("spoil", [
+    lambda whole: whole[:-500], lambda whole: b"", lambda whole: whole[:300] + b"?" + whole[301:],
+    lambda whole: with_objects(),
+], ids=["truncated", "empty", "one byte", "objects"])  # fmt: skip
 def test_damaged_table_is_made_again(cube, folder, caplog, spoil: Callable[[bytes], bytes]):
     values, error = built(cube)
     (file,) = folder.rglob("gravity-*")

@@ -332,14 +332,11 @@ def test_flights_longer_than_the_history_are_refused():
         fly(body, [100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0, spin_period=3e4)
 
 
-@pytest.mark.parametrize(
-    ("attitude", "spin", "words"),
-    [
-        (np.ones((1, 4)), np.zeros((1, 3)), "at least two"),
-        (np.zeros((2, 4)), np.zeros((2, 3)), "no quaternion 0"),
-        (np.ones((2, 4)), np.full((2, 3), 1.0), "more attitudes"),
-    ],
-)
+@pytest.mark.parametrize(("attitude", "spin", "words"), [
+    (np.ones((1, 4)), np.zeros((1, 3)), "at least two"),
+    (np.zeros((2, 4)), np.zeros((2, 3)), "no quaternion 0"),
+    (np.ones((2, 4)), np.full((2, 3), 1.0), "more attitudes"),
+])  # fmt: skip
 def test_attitudes_that_are_no_history_are_refused(attitude, spin, words):
     with pytest.raises(ValueError, match=words):
         AttitudeHistory(10.0, attitude, spin)

@@ -73,20 +73,17 @@ def test_plate_models(tmp_path, numbered, together):
             Shape.read(path)
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (lambda v, f: (v, f[:-1]), "open"),
-        (lambda v, f: (v, np.concatenate([f, [[0, 1, 6]]])), "edges belong to"),
-        (lambda v, f: (v, np.concatenate([f, f[:1], f[:1, ::-1]])), "non-manifold"),
-        (lambda v, f: (v, np.concatenate([f, [[0, 0, 1]]])), "degenerate"),
-        (lambda v, f: (np.concatenate([v, v + 5.0]), np.concatenate([f, f + 8])), "separate"),
-        (lambda v, f: (v, f + 1), "names vertices"),
-        (lambda v, f: (np.where(v == v[6], np.nan, v), f), "finite"),
-        (lambda v, f: (v, f[:3]), "facets"),
-        (lambda v, f: (v, f.astype(float)), "integers"),
-    ],
-)
+@pytest.mark.parametrize(("change", "said"), [
+    (lambda v, f: (v, f[:-1]), "open"),
+    (lambda v, f: (v, np.concatenate([f, [[0, 1, 6]]])), "edges belong to"),
+    (lambda v, f: (v, np.concatenate([f, f[:1], f[:1, ::-1]])), "non-manifold"),
+    (lambda v, f: (v, np.concatenate([f, [[0, 0, 1]]])), "degenerate"),
+    (lambda v, f: (np.concatenate([v, v + 5.0]), np.concatenate([f, f + 8])), "separate"),
+    (lambda v, f: (v, f + 1), "names vertices"),
+    (lambda v, f: (np.where(v == v[6], np.nan, v), f), "finite"),
+    (lambda v, f: (v, f[:3]), "facets"),
+    (lambda v, f: (v, f.astype(float)), "integers"),
+])  # fmt: skip
 def test_refusals_name_the_fault(change, said):
     with pytest.raises(ValueError, match=said):
         Shape(*change(cube_vertices(), CUBE_FACES))
@@ -183,16 +180,13 @@ def test_height_and_inside_agree(shapes):
     assert np.array_equal(inside, shape.height(points) < 0.0)
 
 
-@pytest.mark.parametrize(
-    ("file", "facets", "volume"),
-    [
-        ("didymos_radar2020_1996.obj", 1996, 2.4855e8),
-        ("dimorphos_gama.obj", 4700, 1.8023e6),
-        ("itokawa_5430.obj", 5430, 1.7745e7),
-        ("eros_7624.obj", 7624, 2.4995e12),
-        ("bennu_2692.obj", 2692, 6.2266e7),
-    ],
-)
+@pytest.mark.parametrize(("file", "facets", "volume"), [
+    ("didymos_radar2020_1996.obj", 1996, 2.4855e8),
+    ("dimorphos_gama.obj", 4700, 1.8023e6),
+    ("itokawa_5430.obj", 5430, 1.7745e7),
+    ("eros_7624.obj", 7624, 2.4995e12),
+    ("bennu_2692.obj", 2692, 6.2266e7),
+])  # fmt: skip
 def test_real_shapes(shapes, file, facets, volume):
     shape = Shape.read(shapes / file)
     assert len(shape.faces) == facets

@@ -63,18 +63,15 @@ def covariance(**entries: float) -> list[list[float]]:
     return matrix.tolist()
 
 
-@pytest.mark.parametrize(
-    ("matrix", "words"),
-    [
-        ([[1.0]], "allowed: 6 rows of 6 numbers"),
-        ([["1"] * 6] * 6, "write finite numbers without quotes"),
-        (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
-        (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
-        (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
-        (covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
-         "has the eigenvalue -0.8; allowed: none below 0"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("matrix", "words"), [
+    ([[1.0]], "allowed: 6 rows of 6 numbers"),
+    ([["1"] * 6] * 6, "write finite numbers without quotes"),
+    (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
+    (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
+    (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
+    (covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
+     "has the eigenvalue -0.8; allowed: none below 0"),
+])  # fmt: skip
 def test_what_is_no_covariance_is_refused(matrix: Any, words: str) -> None:
     said = refused(FLOWN | {"release": RELEASE | {"covariance": matrix}})
     assert "delivery.release.covariance" in said
@@ -87,25 +84,22 @@ def test_covariances_without_full_rank_are_taken() -> None:
     checked(FLOWN | {"release": RELEASE | {"covariance": one.tolist()}})
 
 
-@pytest.mark.parametrize(
-    ("delivery", "words"),
-    [
-        ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
-        ({"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
-         "has covariance and position_std; keep one"),
-        ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
-        ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
-        ({"heading_deg": 10.0}, "site.heading_deg is given"),
-        ({"north_error": NORMAL}, "site.north_error is given"),
-        ({"frame": None}, "delivery.frame is missing"),
-        ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
-        ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
-        ({"latitude_deg": None}, "delivery.latitude_deg is missing"),
-        ({"longitude_deg": SPEED}, "one number, that of the aim point"),
-        ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
-        ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("delivery", "words"), [
+    ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
+    ({"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
+     "has covariance and position_std; keep one"),
+    ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
+    ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
+    ({"heading_deg": 10.0}, "site.heading_deg is given"),
+    ({"north_error": NORMAL}, "site.north_error is given"),
+    ({"frame": None}, "delivery.frame is missing"),
+    ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
+    ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
+    ({"latitude_deg": None}, "delivery.latitude_deg is missing"),
+    ({"longitude_deg": SPEED}, "one number, that of the aim point"),
+    ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
+    ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
+])  # fmt: skip
 def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], words: str) -> None:
     given = {key: value for key, value in (FLOWN | delivery).items() if value is not None}
     assert words.replace("'", '"') in refused(given).replace("'", '"')
@@ -119,19 +113,16 @@ def test_a_delivery_by_states_needs_a_journey() -> None:
     assert "delivery.frame goes with states or [delivery.release]" in refused(SURFACE | {"frame": "icrf"})
 
 
-@pytest.mark.parametrize(
-    ("pairs", "words"),
-    [
-        ([["north_error", "east_error"]], "allowed: two keys and a number between -1 and 1"),
-        ([["north_error", "east_error", 1.0]], "allowed: two keys and a number between -1 and 1"),
-        ([["north_error", "east", 0.5]], "names 'east'"),
-        ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
-        ([["speed", "speed", 0.5]], "allowed: two different keys"),
-        ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
-        ([["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
-         "weaken the correlations that contradict each other"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("pairs", "words"), [
+    ([["north_error", "east_error"]], "allowed: two keys and a number between -1 and 1"),
+    ([["north_error", "east_error", 1.0]], "allowed: two keys and a number between -1 and 1"),
+    ([["north_error", "east", 0.5]], "names 'east'"),
+    ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
+    ([["speed", "speed", 0.5]], "allowed: two different keys"),
+    ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
+    ([["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
+     "weaken the correlations that contradict each other"),
+])  # fmt: skip
 def test_correlations_that_cannot_be_are_refused(pairs: Any, words: str) -> None:
     assert words.replace("'", '"') in refused(SURFACE | {"correlations": pairs}).replace("'", '"')
 
@@ -148,22 +139,19 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     assert "other.csv cannot be read" in refused(given | {"states": "other.csv"}, tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (("x_m", "x"), "line 1: x has no unit; write it into the title, as x_m"),
-        (("x_m", "x_kg"), "line 1: x_kg has the unit [kg]; allowed: m, km, cm"),
-        (("vx_m_s", "vx_m"), "line 1: vx_m has the unit [m]; allowed: m/s, km/s"),
-        (("x_m", "run"), "is no column"),
-        (("vz_m_s", "vy_km_s"), "line 1: vy has two columns"),
-        (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
-        (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
-        (("210", "nan"), "line 3: y is"),
-        ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
-        (("time_s", "<xml>"), "is XML"),
-        ((",vz_m_s", ""), "the column vz_m_s is missing"),
-    ],
-)
+@pytest.mark.parametrize(("change", "words"), [
+    (("x_m", "x"), "line 1: x has no unit; write it into the title, as x_m"),
+    (("x_m", "x_kg"), "line 1: x_kg has the unit [kg]; allowed: m, km, cm"),
+    (("vx_m_s", "vx_m"), "line 1: vx_m has the unit [m]; allowed: m/s, km/s"),
+    (("x_m", "run"), "is no column"),
+    (("vz_m_s", "vy_km_s"), "line 1: vy has two columns"),
+    (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
+    (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
+    (("210", "nan"), "line 3: y is"),
+    ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
+    (("time_s", "<xml>"), "is XML"),
+    ((",vz_m_s", ""), "the column vz_m_s is missing"),
+])  # fmt: skip
 def test_tables_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], words: str, tmp_path: Path
 ) -> None:
@@ -211,19 +199,16 @@ META_STOP
 """
 
 
-@pytest.mark.parametrize(
-    ("change", "frame", "words"),
-    [
-        (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
-        (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
-        (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
-        (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
-        (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
-        (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
-        (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
-        (("META_START", "META_STOP"), "icrf", "the segment has no"),
-    ],
-)
+@pytest.mark.parametrize(("change", "frame", "words"), [
+    (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
+    (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
+    (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
+    (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
+    (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
+    (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
+    (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
+    (("META_START", "META_STOP"), "icrf", "the segment has no"),
+])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path
 ) -> None:

@@ -184,23 +184,20 @@ LOOP: dict[str, Any] = {}
 LOOP["loop"] = LOOP
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        (tables("lander", mass=Decimal(1)), "lander.mass is 1, of the type Decimal; allowed: numbers, text"),
-        (tables("lander", mass=Fraction(1, 2)), "lander.mass is 1/2, of the type Fraction"),
-        (tables("lander", mass=1j), "lander.mass is 1j, of the type complex"),
-        (tables("lander", mass=None), "lander.mass is None, of the type NoneType"),
-        (tables("lander", edges=[0.1, 0.1, b"x"]), "lander.edges.2 is b'x', of the type bytes"),
-        (tables("lander", mass=np.ma.masked), "lander.mass is"),
-        (TABLES | {"title": b"x"}, "title is b'x', of the type bytes"),
-        (TABLES | {"title": "a\ud800"}, 'title is "a\\ud800", which UTF-8 cannot hold'),
-        (TABLES | {3: {}}, "the study has the key 3; allowed: names in text"),
-        (TABLES | {"limit_states": {"a\ud800": "stays"}}, 'a key of limit_states is "a\\ud800"'),
-        (TABLES | {"lander": {3: 1}}, "lander has the key 3"),
-        (TABLES | {"lander": LOOP}, "is nested too deeply"),
-    ],
-)
+@pytest.mark.parametrize(("given", "words"), [
+    (tables("lander", mass=Decimal(1)), "lander.mass is 1, of the type Decimal; allowed: numbers, text"),
+    (tables("lander", mass=Fraction(1, 2)), "lander.mass is 1/2, of the type Fraction"),
+    (tables("lander", mass=1j), "lander.mass is 1j, of the type complex"),
+    (tables("lander", mass=None), "lander.mass is None, of the type NoneType"),
+    (tables("lander", edges=[0.1, 0.1, b"x"]), "lander.edges.2 is b'x', of the type bytes"),
+    (tables("lander", mass=np.ma.masked), "lander.mass is"),
+    (TABLES | {"title": b"x"}, "title is b'x', of the type bytes"),
+    (TABLES | {"title": "a\ud800"}, 'title is "a\\ud800", which UTF-8 cannot hold'),
+    (TABLES | {3: {}}, "the study has the key 3; allowed: names in text"),
+    (TABLES | {"limit_states": {"a\ud800": "stays"}}, 'a key of limit_states is "a\\ud800"'),
+    (TABLES | {"lander": {3: 1}}, "lander has the key 3"),
+    (TABLES | {"lander": LOOP}, "is nested too deeply"),
+])  # fmt: skip
 def test_a_value_of_another_type_is_refused_by_its_key_and_type(given: Any, words: str) -> None:
     with pytest.raises(ValueError, match=r"^study\.toml: [^\n]*$") as refused:
         StudySource.of_tables(given)

@@ -92,27 +92,24 @@ def test_a_landing_depends_on_the_parts_and_on_nothing_more_without_any() -> Non
     assert one != other
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"part": {"a b": BOOM}}, ["lander.part.a b is no name"]),
-        ({"part": {"a": {**BOOM, "diameter": 0.1}}}, ["lander.part.a.diameter does not go with this shape"]),
-        ({"part": {"a": {**BOOM, "mass": None}}}, ["lander.part.a takes mass or density", "neither"]),
-        ({"part": {"a": {**BOOM, "density": 2.0}}}, ["lander.part.a takes mass or density", "both"]),
-        ({"part": {"a": {**BOOM, "mass": 12.5}}}, ["lander.part has 12.5 kg", "raise it"]),
-        ({"part": {"a": {**BOOM, "edges": [1.5, 1e-3, 0.1]}}}, ["lander.part.a.edges", "thicken the box"]),
-        ({"part": {"a": {**BOOM, "orientation": [0, 0, 0, 0]}}}, ["lander.part.a.orientation", "[1, 0, 0, 0]"]),
-        ({"part": {"a": {**BOOM, "resitution": 0.2}}}, ["lander.part.a.resitution", "did you mean restitution?"]),
-        ({"part": {"a": {**BOOM, "shape": "hull"}}}, ["lander.part.a.file is missing"]),
-        ({"part": {"a": {**BOOM, "unit": "mm"}}}, ["lander.part.a.unit"]),
-        ({"part": {"a": {**BOOM, "centre": [9.0, 0.0, 0.0]}}}, ["bed.width", "with its parts, reaches"]),
-        ({"inertia": [0.1, 0.1, 0.3]}, ["lander.inertia", "as every body has it"]),
-        ({"inertia": [1.0, 1.0, 1.0, 0.9, 0.9, -0.9]}, ["lander.inertia", "as every body has it"]),
-        ({"inertia": [0.5, 0.5, 1.0, 0.5, 0.0, 0.0]}, ["lander.inertia", "as every body has it"]),
-        ({"inertia": [1.0, 1.0, -1.0]}, ["lander.inertia", "moments above 0"]),
-        ({"inertia": [1.0, 1.0, 1.0, 0.0]}, ["lander.inertia", "3 or 6 numbers"]),
-    ],
-)
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"part": {"a b": BOOM}}, ["lander.part.a b is no name"]),
+    ({"part": {"a": {**BOOM, "diameter": 0.1}}}, ["lander.part.a.diameter does not go with this shape"]),
+    ({"part": {"a": {**BOOM, "mass": None}}}, ["lander.part.a takes mass or density", "neither"]),
+    ({"part": {"a": {**BOOM, "density": 2.0}}}, ["lander.part.a takes mass or density", "both"]),
+    ({"part": {"a": {**BOOM, "mass": 12.5}}}, ["lander.part has 12.5 kg", "raise it"]),
+    ({"part": {"a": {**BOOM, "edges": [1.5, 1e-3, 0.1]}}}, ["lander.part.a.edges", "thicken the box"]),
+    ({"part": {"a": {**BOOM, "orientation": [0, 0, 0, 0]}}}, ["lander.part.a.orientation", "[1, 0, 0, 0]"]),
+    ({"part": {"a": {**BOOM, "resitution": 0.2}}}, ["lander.part.a.resitution", "did you mean restitution?"]),
+    ({"part": {"a": {**BOOM, "shape": "hull"}}}, ["lander.part.a.file is missing"]),
+    ({"part": {"a": {**BOOM, "unit": "mm"}}}, ["lander.part.a.unit"]),
+    ({"part": {"a": {**BOOM, "centre": [9.0, 0.0, 0.0]}}}, ["bed.width", "with its parts, reaches"]),
+    ({"inertia": [0.1, 0.1, 0.3]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [1.0, 1.0, 1.0, 0.9, 0.9, -0.9]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [0.5, 0.5, 1.0, 0.5, 0.0, 0.0]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [1.0, 1.0, -1.0]}, ["lander.inertia", "moments above 0"]),
+    ({"inertia": [1.0, 1.0, 1.0, 0.0]}, ["lander.inertia", "3 or 6 numbers"]),
+])  # fmt: skip
 def test_parts_that_make_no_lander_are_refused(changes: dict[str, Any], words: list[str]) -> None:
     found = tables(**changes)
     for part in found["lander"].get("part", {}).values():

@@ -78,22 +78,19 @@ def test_another_spin_in_the_kernel_makes_the_flights_anew_and_another_comment_d
     assert flight_dependencies(study(folder)) == flight_dependencies(study(folder, kernels=[]))
 
 
-@pytest.mark.parametrize(
-    ("site", "words"),
-    [
-        ({"kernels": ["absent.tpc"]}, 'absent.tpc"; no such file'),
-        ({"kernels": NAMES[1:2]}, "site.kernels: the kernels have no BODY920065803_POLE_RA; add the constants"),
-        ({"kernels": NAMES[:1], "kernel_body": "Utopia"}, "add the kernel that has it"),
-        ({"kernels": NAMES[:2], "epoch": EPOCH}, "add the kernel that has it"),
-        ({"kernels": NAMES[:1], "spin_period": 8136.0}, "site.spin_period is given, and site.kernels has it read"),
-        ({"kernels": NAMES, "epoch": EPOCH, "partner_longitude_deg": 0.0},
-         "site.partner_longitude_deg is given, and site.epoch has it read"),
-        ({"kernels": NAMES, "epoch": EPOCH, "partner": False}, "the body has none; leave it out"),
-        ({"epoch": EPOCH}, "site.epoch goes with site.kernels"),
-        ({"body": "cube.obj", "mass": 2e9, "kernels": NAMES[:1]}, "site.kernel_body is missing"),
-        ({"kernels": NAMES[0]}, "allowed: a list; write its entries in square brackets"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("site", "words"), [
+    ({"kernels": ["absent.tpc"]}, 'absent.tpc"; no such file'),
+    ({"kernels": NAMES[1:2]}, "site.kernels: the kernels have no BODY920065803_POLE_RA; add the constants"),
+    ({"kernels": NAMES[:1], "kernel_body": "Utopia"}, "add the kernel that has it"),
+    ({"kernels": NAMES[:2], "epoch": EPOCH}, "add the kernel that has it"),
+    ({"kernels": NAMES[:1], "spin_period": 8136.0}, "site.spin_period is given, and site.kernels has it read"),
+    ({"kernels": NAMES, "epoch": EPOCH, "partner_longitude_deg": 0.0},
+     "site.partner_longitude_deg is given, and site.epoch has it read"),
+    ({"kernels": NAMES, "epoch": EPOCH, "partner": False}, "the body has none; leave it out"),
+    ({"epoch": EPOCH}, "site.epoch goes with site.kernels"),
+    ({"body": "cube.obj", "mass": 2e9, "kernels": NAMES[:1]}, "site.kernel_body is missing"),
+    ({"kernels": NAMES[0]}, "allowed: a list; write its entries in square brackets"),
+])  # fmt: skip
 def test_what_kernels_do_not_tell_is_refused_in_one_sentence(folder: Path, site: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=r"study\.toml: site") as refused:
         study(folder, **site)

@@ -306,35 +306,32 @@ def test_what_is_within_its_limits_is_accepted(changes: dict[str, Any]) -> None:
     assert problems(changes) == []
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        # 2 * 0.134 m of the lander and 3.2 * 0.09 m of the grains.
-        (
-            {"bed.width": [0.56, 0.55], "bed.diameter": table("constant", value=0.09)},
-            [
-                "bed.width is 0.55 m at its narrowest; allowed: at least 0.555 m",
-                "3.2 of the grains' largest diameters, as with bed",
-            ],
-        ),
-        (
-            {"bed.diameter": table("uniform", lower=0.08, upper=0.11)},
-            ["at most 0.1 m, bed.width over 5.5 with bed.sides"],
-        ),
-        # Grains of ten points may be longer: 4 * 1.55 + 0.5 of their diameters.
-        (
-            {"bed.width": [0.53, 0.6], "bed.cloud_point_count": 10},
-            ['at most 0.0791 m, bed.width over 6.7 with bed.sides = "periodic" and bed.cloud_point_count = 10'],
-        ),
-        (
-            {"surface.slope_deg": 40.0, "grain.friction": 0.3},
-            [
-                "surface.slope_deg reaches to 40 and grain.friction down to 0.3",
-                "friction of at least 0.336, 0.4 of the",
-            ],
-        ),
-    ],
-)
+@pytest.mark.parametrize(("changes", "words"), [
+    # 2 * 0.134 m of the lander and 3.2 * 0.09 m of the grains.
+    (
+        {"bed.width": [0.56, 0.55], "bed.diameter": table("constant", value=0.09)},
+        [
+            "bed.width is 0.55 m at its narrowest; allowed: at least 0.555 m",
+            "3.2 of the grains' largest diameters, as with bed",
+        ],
+    ),
+    (
+        {"bed.diameter": table("uniform", lower=0.08, upper=0.11)},
+        ["at most 0.1 m, bed.width over 5.5 with bed.sides"],
+    ),
+    # Grains of ten points may be longer: 4 * 1.55 + 0.5 of their diameters.
+    (
+        {"bed.width": [0.53, 0.6], "bed.cloud_point_count": 10},
+        ['at most 0.0791 m, bed.width over 6.7 with bed.sides = "periodic" and bed.cloud_point_count = 10'],
+    ),
+    (
+        {"surface.slope_deg": 40.0, "grain.friction": 0.3},
+        [
+            "surface.slope_deg reaches to 40 and grain.friction down to 0.3",
+            "friction of at least 0.336, 0.4 of the",
+        ],
+    ),
+])  # fmt: skip
 def test_ground_that_repeats_is_wide_enough_and_holds_on_its_slope(changes: dict[str, Any], words: list[str]) -> None:
     said = "\n".join(problems({"bed.sides": "periodic", **changes}))
     for word in words:
@@ -440,20 +437,17 @@ def test_a_mesh_in_another_unit_is_refused_with_the_unit_that_was_meant_and_read
     assert "1 to 1e+06 m" in said
 
 
-@pytest.mark.parametrize(
-    ("text", "changes", "said"),
-    [
-        (octahedron(100.0).replace("f 1 4 6\n", ""), {}, "open, 3 edges belong to one facet only"),
-        ("a stone\n", {}, "0 facets cannot enclose a volume"),
-        ("v 1 2 x\n", {}, "is not a vertex or a facet"),
-        (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
-        (octahedron(100.0), {"mass": None}, "site.mass is missing"),
-        (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
-        (octahedron(100.0), {"name": "<b>"}, 'site.name is "<b>"; allowed: 1 to 40 letters'),
-        (octahedron(100.0), {"name": ""}, 'site.name is ""; allowed'),
-        (octahedron(100.0), {"name": "a" * 41}, "site.name is"),
-    ],
-)
+@pytest.mark.parametrize(("text", "changes", "said"), [
+    (octahedron(100.0).replace("f 1 4 6\n", ""), {}, "open, 3 edges belong to one facet only"),
+    ("a stone\n", {}, "0 facets cannot enclose a volume"),
+    ("v 1 2 x\n", {}, "is not a vertex or a facet"),
+    (octahedron(100.0, middle=200.0), {}, "the origin, about which the body turns, lies outside"),
+    (octahedron(100.0), {"mass": None}, "site.mass is missing"),
+    (octahedron(100.0), {"east_error": 120.0}, "at most 107"),
+    (octahedron(100.0), {"name": "<b>"}, 'site.name is "<b>"; allowed: 1 to 40 letters'),
+    (octahedron(100.0), {"name": ""}, 'site.name is ""; allowed'),
+    (octahedron(100.0), {"name": "a" * 41}, "site.name is"),
+])  # fmt: skip
 def test_a_body_that_cannot_be_used_is_refused_before_anything_runs(
     text: str, changes: dict[str, Any], said: str, tmp_path: Path
 ) -> None:

@@ -50,22 +50,19 @@ def test_the_mean_diameter_is_that_of_the_law():
     assert GrainSizes(distribution="constant", lower=0.1, upper=0.1).mean_diameter == pytest.approx(0.1, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"distribution": "gamma", "lower": 0.1, "upper": 0.2},
-        {"distribution": "constant", "lower": 0.1, "upper": 0.2},
-        {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -2.5},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -500.0},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": float("nan")},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": float("nan"), "std": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 1e300, "std": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
-    ],
-)
+@pytest.mark.parametrize("wrong", [
+    {"distribution": "gamma", "lower": 0.1, "upper": 0.2},
+    {"distribution": "constant", "lower": 0.1, "upper": 0.2},
+    {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -2.5},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -500.0},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": float("nan")},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": float("nan"), "std": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 1e300, "std": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
+])  # fmt: skip
 def test_wrong_sizes_are_refused(wrong):
     with pytest.raises(ValueError, match=r"grain|sizes"):
         GrainSizes(**wrong)
@@ -190,16 +187,13 @@ def test_height_map_sees_the_top_of_every_grain(bed):
     assert (one == 0.0).any()
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("grain_count", 0),
-        ("cloud_point_count", 3),
-        ("width", (0.1, 0.4)),
-        ("gravity", (0, 0, 1e-4)),
-        ("pour_gravity", 1e-5),
-    ],
-)
+@pytest.mark.parametrize(("name", "value"), [
+    ("grain_count", 0),
+    ("cloud_point_count", 3),
+    ("width", (0.1, 0.4)),
+    ("gravity", (0, 0, 1e-4)),
+    ("pour_gravity", 1e-5),
+])  # fmt: skip
 def test_impossible_recipes_are_refused(recipe, name, value):
     with pytest.raises(ValueError, match=f"BedRecipe.{name}"):
         recipe(**{name: value})

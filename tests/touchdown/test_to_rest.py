@@ -123,17 +123,13 @@ def test_a_lander_that_flies_up_over_the_rim_is_clear_and_says_so():
     assert (outputs["velocity_out_x"], outputs["velocity_out_z"]) == (0.1, 0.05)
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"velocity": (0.1, 0.0, -0.05)},
-        {"touches": True},
-        {"touched": None},
-        # Too slow to lift itself by half its size: not known to leave, and never said to stay.
-        {"velocity": (1e-3, 0.0, 1e-3)},
-    ],
-    ids=["goes down", "still touches", "has not touched", "too slow"],
-)
+@pytest.mark.parametrize("changes", [
+    {"velocity": (0.1, 0.0, -0.05)},
+    {"touches": True},
+    {"touched": None},
+    # Too slow to lift itself by half its size: not known to leave, and never said to stay.
+    {"velocity": (1e-3, 0.0, 1e-3)},
+], ids=["goes down", "still touches", "has not touched", "too slow"])  # fmt: skip
 def test_any_other_lander_over_the_rim_is_missing(changes):
     judge = judged(**changes)
     assert judge.ended == "left_sideways"

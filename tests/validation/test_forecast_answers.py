@@ -108,14 +108,11 @@ def test_rank_correlations_are_those_of_a_normal_law() -> None:
     assert none["lower"] < 0.0 < none["upper"]
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"latitude_deg": 10.0}, "give both"),
-        ({"latitude_deg": -95.0, "longitude_deg": 10.0}, "allowed: -90 to 90"),
-        ({"contacts": math.nan}, "--contacts is nan"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"latitude_deg": 10.0}, "give both"),
+    ({"latitude_deg": -95.0, "longitude_deg": 10.0}, "allowed: -90 to 90"),
+    ({"contacts": math.nan}, "--contacts is nan"),
+])  # fmt: skip
 def test_an_observation_that_cannot_be_is_refused(changes: dict[str, float], words: str) -> None:
     from score import observed_bins
 

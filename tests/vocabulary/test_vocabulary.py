@@ -182,19 +182,16 @@ class Entry(NamedTuple):
     upper: float | None = None
 
 
-@pytest.mark.parametrize(
-    ("found", "words"),
-    [
-        (Entry(0.7082, 0.667, 0.749), "71 % (67-75 %)"),
-        (Entry(0.7449, 0.737, 0.7566), "74.5 % (73.7-75.7 %)"),
-        (Entry(0.7449), "74 %"),
-        (Entry(0.004, 0.0, 0.03), "0.4 % (0-3 %)"),
-        (Entry(0.0, 0.0, 0.17), "0 % (0-17 %)"),
-        (Entry(1.0, 0.83, 1.0), "100 % (83-100 %)"),
-        (Entry(0.0113, 0.0098, 0.038), "1 % (1-4 %)"),
-        (Entry(0.0, 0.0, 0.00027), "0 % (0-0.03 %)"),
-    ],
-)
+@pytest.mark.parametrize(("found", "words"), [
+    (Entry(0.7082, 0.667, 0.749), "71 % (67-75 %)"),
+    (Entry(0.7449, 0.737, 0.7566), "74.5 % (73.7-75.7 %)"),
+    (Entry(0.7449), "74 %"),
+    (Entry(0.004, 0.0, 0.03), "0.4 % (0-3 %)"),
+    (Entry(0.0, 0.0, 0.17), "0 % (0-17 %)"),
+    (Entry(1.0, 0.83, 1.0), "100 % (83-100 %)"),
+    (Entry(0.0113, 0.0098, 0.038), "1 % (1-4 %)"),
+    (Entry(0.0, 0.0, 0.00027), "0 % (0-0.03 %)"),
+])  # fmt: skip
 def test_tenths_stand_only_where_the_interval_is_narrower_than_two_points(found: Entry, words: str) -> None:
     assert with_interval(found) == words
 

@@ -62,30 +62,27 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
     assert 0.0 < told["outputs"]["speed_out"] < 0.3
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--set", "grain.colour=1"], "--set names 'grain.colour', which no landing of this study uses"),
-        (["--set", "impact.speed"], "--set is 'impact.speed'; allowed: KEY=VALUE"),
-        (["--set", "impact.speed=fast"], "--set impact.speed is 'fast'; allowed: a number"),
-        (["--set", "impact.speed=nan"], "--set impact.speed is nan; allowed: a finite number"),
-        (["--set", "impact.speed=-1"], "--set: impact.speed is -1; allowed: above 0 and at most 1000 [m/s]"),
-        (["--set", "lander.mass=0"], "--set: lander.mass is 0; allowed: above 0 [kg]"),
-        (["--set", "impact.incidence_deg=100"], "--set: impact.incidence_deg is 100; allowed: at least 0 and below 90"),
-        (["--set", "impact.place.x=3"], "--set: impact.place.x reaches from 3 to 3 m; allowed: -0.27 to 0.27 m"),
-        (["--set", "grain.fricton=0.4"], "which no landing of this study uses; did you mean grain.friction?"),
-        (["--set", "grain.friction=true"], "--set grain.friction is 'true'; allowed: a number"),
-        (["--set", "grain.friction=0.4\ny=3"], "--set grain.friction is '0.4\\ny=3'; allowed: a number"),
-        (["--set", "grain.friction=0.4 # more"], "--set grain.friction is '0.4 # more'; allowed: a number"),
-        (["--set", "grain.friction=.5"], "--set grain.friction is '.5'; allowed: a number as in a study file"),
-        (["--set", "grain.friction='0.4'"], "allowed: a number"),
-        (["--set", f"grain.friction={'9' * 5000}"], "--set grain.friction is inf; allowed: a finite number"),
-        (["--set", "bed=0.5"], "--set bed is 0.5; allowed: a whole number from 0 to 4294967295"),
-        (["--set", "bed=1e300"], "--set bed is 1e+300; allowed: a whole number from 0 to 4294967295"),
-        (["--number", "-1"], "the number of a run is -1; allowed: 0 to 239, the runs of the study"),
-        (["--number", "1000000000"], "the number of a run is 1000000000; allowed: 0 to 239, the runs of the study"),
-    ],
-)
+@pytest.mark.parametrize(("options", "said"), [
+    (["--set", "grain.colour=1"], "--set names 'grain.colour', which no landing of this study uses"),
+    (["--set", "impact.speed"], "--set is 'impact.speed'; allowed: KEY=VALUE"),
+    (["--set", "impact.speed=fast"], "--set impact.speed is 'fast'; allowed: a number"),
+    (["--set", "impact.speed=nan"], "--set impact.speed is nan; allowed: a finite number"),
+    (["--set", "impact.speed=-1"], "--set: impact.speed is -1; allowed: above 0 and at most 1000 [m/s]"),
+    (["--set", "lander.mass=0"], "--set: lander.mass is 0; allowed: above 0 [kg]"),
+    (["--set", "impact.incidence_deg=100"], "--set: impact.incidence_deg is 100; allowed: at least 0 and below 90"),
+    (["--set", "impact.place.x=3"], "--set: impact.place.x reaches from 3 to 3 m; allowed: -0.27 to 0.27 m"),
+    (["--set", "grain.fricton=0.4"], "which no landing of this study uses; did you mean grain.friction?"),
+    (["--set", "grain.friction=true"], "--set grain.friction is 'true'; allowed: a number"),
+    (["--set", "grain.friction=0.4\ny=3"], "--set grain.friction is '0.4\\ny=3'; allowed: a number"),
+    (["--set", "grain.friction=0.4 # more"], "--set grain.friction is '0.4 # more'; allowed: a number"),
+    (["--set", "grain.friction=.5"], "--set grain.friction is '.5'; allowed: a number as in a study file"),
+    (["--set", "grain.friction='0.4'"], "allowed: a number"),
+    (["--set", f"grain.friction={'9' * 5000}"], "--set grain.friction is inf; allowed: a finite number"),
+    (["--set", "bed=0.5"], "--set bed is 0.5; allowed: a whole number from 0 to 4294967295"),
+    (["--set", "bed=1e300"], "--set bed is 1e+300; allowed: a whole number from 0 to 4294967295"),
+    (["--number", "-1"], "the number of a run is -1; allowed: 0 to 239, the runs of the study"),
+    (["--number", "1000000000"], "the number of a run is 1000000000; allowed: 0 to 239, the runs of the study"),
+])  # fmt: skip
 def test_what_cannot_be_landed_is_one_sentence(options: list[str], said: str, study_file: Path) -> None:
     refused = CliRunner().invoke(app, ["land", str(study_file), *options])
     assert refused.exit_code == 2

@@ -153,15 +153,12 @@ def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> Non
     assert "no landing met it down to the last level, a probability of" in found["statement"]
 
 
-@pytest.mark.parametrize(
-    ("name", "count", "words"),
-    [
-        ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
-        ("gone", 200, r"limit_states\.gone uses returns, which is true or false"),
-        ("hard", 20, r"limit_states\.hard uses peak_acceleration, which no landing has"),
-        ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
-    ],
-)
+@pytest.mark.parametrize(("name", "count", "words"), [
+    ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
+    ("gone", 200, r"limit_states\.gone uses returns, which is true or false"),
+    ("hard", 20, r"limit_states\.hard uses peak_acceleration, which no landing has"),
+    ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
+])  # fmt: skip
 def test_what_has_no_levels_is_refused(name: str, count: int, words: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=words):
         rare(tmp_path / "out", name, landing_count=count)

@@ -196,14 +196,11 @@ def test_sides_that_the_lander_does_not_have_are_refused(sides: list[str], said:
         check_tables(journey_tables(aim={"sides": sides}), Path())
 
 
-@pytest.mark.parametrize(
-    ("grid", "said"),
-    [
-        ({"impact.speed": [0.05]}, r'"impact.speed" is no aim; allowed: delivery.speed'),
-        ({"delivery.speed": [0.05, 0.2]}, r"ascending values from 0.04 to 0.08"),
-        ({"delivery.spin_x": [0.1]}, r'"delivery.spin_x" is no aim'),
-    ],
-)
+@pytest.mark.parametrize(("grid", "said"), [
+    ({"impact.speed": [0.05]}, r'"impact.speed" is no aim; allowed: delivery.speed'),
+    ({"delivery.speed": [0.05, 0.2]}, r"ascending values from 0.04 to 0.08"),
+    ({"delivery.spin_x": [0.1]}, r'"delivery.spin_x" is no aim'),
+])  # fmt: skip
 def test_options_that_journeys_do_not_reach_are_refused(grid: dict[str, list[float]], said: str) -> None:
     with pytest.raises(StudyError, match=said):
         check_tables(journey_tables(aim={"grid": grid}), Path())

@@ -51,45 +51,39 @@ def test_a_file_of_bounces_is_read_row_by_row(tmp_path: Path) -> None:
     assert (known.known, known.outputs) == ({"impact.speed": 0.3}, {"speed_out": 0.1})
 
 
-@pytest.mark.parametrize(
-    ("title", "si"),
-    [
-        ("speed_out [cm/s]", 0.011),
-        ("speed_out[mm/s]", 0.0011),
-        ("speed_out [ m s-1 ]", 1.1),
-        ("speed_out [ft/s]", 0.33528),
-        ("spin_out [deg/s]", math.radians(1.1)),
-        ("spin_out [rpm]", 1.1 * 2.0 * math.pi / 60.0),
-        ("elevation_out [°]", math.radians(1.1)),
-        ("peak_acceleration [cm/s^2]", 0.011),
-        ("contact_duration [min]", 66.0),
-        ("error:spin_out [deg/s]", math.radians(1.1)),
-        ("impact.incidence_deg [rad]", math.degrees(1.1)),
-        ("impact.incidence_deg", 1.1),
-    ],
-)
+@pytest.mark.parametrize(("title", "si"), [
+    ("speed_out [cm/s]", 0.011),
+    ("speed_out[mm/s]", 0.0011),
+    ("speed_out [ m s-1 ]", 1.1),
+    ("speed_out [ft/s]", 0.33528),
+    ("spin_out [deg/s]", math.radians(1.1)),
+    ("spin_out [rpm]", 1.1 * 2.0 * math.pi / 60.0),
+    ("elevation_out [°]", math.radians(1.1)),
+    ("peak_acceleration [cm/s^2]", 0.011),
+    ("contact_duration [min]", 66.0),
+    ("error:spin_out [deg/s]", math.radians(1.1)),
+    ("impact.incidence_deg [rad]", math.degrees(1.1)),
+    ("impact.incidence_deg", 1.1),
+])  # fmt: skip
 def test_a_unit_behind_the_name_of_a_column_is_converted(title: str, si: float, tmp_path: Path) -> None:
     one = read_bounces(bounces(tmp_path, f"{title}\n1.1\n"))[0]
     (value,) = (one.outputs | one.errors | one.known).values()
     assert value == pytest.approx(si, rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("speed_out\nfast\n", 'has "fast" for speed_out in row 1; write a number'),
-        ("outcome\nlost\n", 'has the outcome "lost" in row 1; allowed: clear, captured'),
-        ("speed_out\n", "has no bounce"),
-        ("speed_out [furlong/s]\n0.1\n", r"speed_out in the unit \[furlong/s\]; allowed: m/s, km/s, cm/s, mm/s"),
-        ("spin_out [Hz]\n1\n", r"spin_out in the unit \[Hz\]; allowed: rad/s, mrad/s, deg/s"),
-        ("error:speed_out [m]\n1\n", r"error:speed_out in the unit \[m\]; allowed: m/s"),
-        ("outcome [s],speed_out\n,1\n", r"outcome in the unit \[s\]; allowed: -, 1, %"),
-        ("bed [m],speed_out\n,1\n", r"bed in the unit \[m\]; allowed: -, 1, %"),
-        ("speed_out [M/S]\n0.1\n", r"unit \[M/S\]; allowed: m/s"),
-        ("speed_out,speed_out\n0.1,0.2\n", "it has 2 columns speed_out"),
-        ("speed_out [cm/s],speed_out [m/s]\n11,0.1\n", "it has 2 columns speed_out"),
-    ],
-)
+@pytest.mark.parametrize(("text", "words"), [
+    ("speed_out\nfast\n", 'has "fast" for speed_out in row 1; write a number'),
+    ("outcome\nlost\n", 'has the outcome "lost" in row 1; allowed: clear, captured'),
+    ("speed_out\n", "has no bounce"),
+    ("speed_out [furlong/s]\n0.1\n", r"speed_out in the unit \[furlong/s\]; allowed: m/s, km/s, cm/s, mm/s"),
+    ("spin_out [Hz]\n1\n", r"spin_out in the unit \[Hz\]; allowed: rad/s, mrad/s, deg/s"),
+    ("error:speed_out [m]\n1\n", r"error:speed_out in the unit \[m\]; allowed: m/s"),
+    ("outcome [s],speed_out\n,1\n", r"outcome in the unit \[s\]; allowed: -, 1, %"),
+    ("bed [m],speed_out\n,1\n", r"bed in the unit \[m\]; allowed: -, 1, %"),
+    ("speed_out [M/S]\n0.1\n", r"unit \[M/S\]; allowed: m/s"),
+    ("speed_out,speed_out\n0.1,0.2\n", "it has 2 columns speed_out"),
+    ("speed_out [cm/s],speed_out [m/s]\n11,0.1\n", "it has 2 columns speed_out"),
+])  # fmt: skip
 def test_a_file_that_tells_no_bounce_is_refused(text: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=words):
         read_bounces(bounces(tmp_path, text))

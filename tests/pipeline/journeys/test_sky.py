@@ -201,24 +201,21 @@ def test_kernels_tell_where_sun_earth_and_orbiter_stand(tmp_path: Path) -> None:
         sky_study(**tables)
 
 
-@pytest.mark.parametrize(
-    ("sky", "words"),
-    [
-        ({"date": "soon"}, "allowed: a UTC date and time such as"),
-        ({"date": "2027-04-20", "orbit": ORBIT}, "site.pole_right_ascension_deg is missing"),
-        ({"date": "2027-04-20"}, "sky.orbit is missing"),
-        ({"date": "2027-04-20", "until": "2027-04-19", "orbit": ORBIT}, "allowed: later than sky.date"),
-        ({"date": "2027-04-20", "sun_latitude_deg": 3.0, "orbit": ORBIT}, "leave one of the two out"),
-        ({"until": "2027-04-20"}, "sky.until goes with sky.date"),
-        ({"orbiter": {}}, r"\[sky.orbiter\] has nothing; allowed: one of altitude, states, kernel_name"),
-        ({"orbiter": {"altitude": 1.0, "kernel_name": "HERA"}}, "sky.orbiter.altitude and sky.orbiter.kernel_name"),
-        ({"orbiter": {"kernel_name": "HERA"}}, "site.kernels is missing"),
-        ({"orbiter": {"states": "nowhere.csv"}}, "cannot be read"),
-        ({"orbiter": {"states": "x", "inclination_deg": 3.0}}, "is that of a circle"),
-        ({"sun_latitude_deg": 3.0, "beam_deg": 30.0}, "sky.beam_deg is of Earth and the orbiter"),
-        ({"earth_latitude_deg": 3.0, "beam_deg": 91.0}, "above 0 and at most 90"),
-    ],
-)
+@pytest.mark.parametrize(("sky", "words"), [
+    ({"date": "soon"}, "allowed: a UTC date and time such as"),
+    ({"date": "2027-04-20", "orbit": ORBIT}, "site.pole_right_ascension_deg is missing"),
+    ({"date": "2027-04-20"}, "sky.orbit is missing"),
+    ({"date": "2027-04-20", "until": "2027-04-19", "orbit": ORBIT}, "allowed: later than sky.date"),
+    ({"date": "2027-04-20", "sun_latitude_deg": 3.0, "orbit": ORBIT}, "leave one of the two out"),
+    ({"until": "2027-04-20"}, "sky.until goes with sky.date"),
+    ({"orbiter": {}}, r"\[sky.orbiter\] has nothing; allowed: one of altitude, states, kernel_name"),
+    ({"orbiter": {"altitude": 1.0, "kernel_name": "HERA"}}, "sky.orbiter.altitude and sky.orbiter.kernel_name"),
+    ({"orbiter": {"kernel_name": "HERA"}}, "site.kernels is missing"),
+    ({"orbiter": {"states": "nowhere.csv"}}, "cannot be read"),
+    ({"orbiter": {"states": "x", "inclination_deg": 3.0}}, "is that of a circle"),
+    ({"sun_latitude_deg": 3.0, "beam_deg": 30.0}, "sky.beam_deg is of Earth and the orbiter"),
+    ({"earth_latitude_deg": 3.0, "beam_deg": 91.0}, "above 0 and at most 90"),
+])  # fmt: skip
 def test_a_sky_that_cannot_be_is_refused(sky: dict[str, Any], words: str) -> None:
     pytest.importorskip("spiceypy")
     pytest.importorskip("erfa")

@@ -202,20 +202,16 @@ def test_a_lander_turns_among_the_stars_while_the_ground_turns_under_it() -> Non
     assert against == pytest.approx(end.inv().apply(spins[0]) - own, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("site", "words"),
-    [
-        ({"body": "didymos"}, 'allowed with [site.rotation]: "dimorphos" with its partner'),
-        ({"partner": False}, "site.partner is false"),
-        ({"spin_period": 40000.0}, "site.spin_period is given; with [site.rotation]"),
-        ({"rotation_time": 2e5}, "site.rotation_time reaches 200000 s; allowed: at most 172800 s"),
-        ({"rotation": None, "rotation_time": 5.0},
-         "site.rotation_time is a time in [site.rotation], and there is none"),
-        ({"rotation": {"pitch_deg": 91.0}}, "allowed: at least -90 and at most 90"),
-        ({"rotation": {"spin": [0.1, 0.0, 0.0]}}, "allowed: 3 numbers, each at least -0.002"),
-        ({"rotation": {"yaw": 3.0}}, "yaw"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("site", "words"), [
+    ({"body": "didymos"}, 'allowed with [site.rotation]: "dimorphos" with its partner'),
+    ({"partner": False}, "site.partner is false"),
+    ({"spin_period": 40000.0}, "site.spin_period is given; with [site.rotation]"),
+    ({"rotation_time": 2e5}, "site.rotation_time reaches 200000 s; allowed: at most 172800 s"),
+    ({"rotation": None, "rotation_time": 5.0}, "site.rotation_time is a time in [site.rotation], and there is none"),
+    ({"rotation": {"pitch_deg": 91.0}}, "allowed: at least -90 and at most 90"),
+    ({"rotation": {"spin": [0.1, 0.0, 0.0]}}, "allowed: 3 numbers, each at least -0.002"),
+    ({"rotation": {"yaw": 3.0}}, "yaw"),
+])  # fmt: skip
 def test_what_does_not_go_with_a_rotation_is_refused(site: dict[str, Any], words: str) -> None:
     given = turning(site=site)
     given["site"] = {key: value for key, value in given["site"].items() if value is not None}

@@ -216,14 +216,11 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     assert plan[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
-        ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
-        ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
+    ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
+    ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
+])  # fmt: skip
 def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     changes: dict[str, str], said: str, tmp_path: Path
 ) -> None:
@@ -238,25 +235,20 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     assert not (tmp_path / "plan").exists()
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"site": {"latitude_deg": 0.0}}, "push outward"),
-        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation"),
-        ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
-        ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
-        ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
-        ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
-        (
-            {"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
-            "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07",
-        ),
-        ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
-        ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
-        ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
-        ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"site": {"latitude_deg": 0.0}}, "push outward"),
+    ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation"),
+    ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
+    ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
+    ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
+    ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
+    ({"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
+     "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07"),
+    ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
+    ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
+    ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
+    ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
+])  # fmt: skip
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
     kept = {
         section: {key: value for key, value in keys.items() if value is not None} for section, keys in changes.items()
@@ -279,20 +271,17 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     return check_tables(tables, SCENARIOS)
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({}, None),
-        ({"bed": {"bed_count": 1}}, "All runs land on one bed, and another bed would change the result"),
-        # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
-        ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
-        ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
-        (
-            {"impact": {"place": {"x": 0.0, "y": 0.1}}},
-            "All runs land at the same point of their beds: give impact.region",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("changes", "said"), [
+    ({}, None),
+    ({"bed": {"bed_count": 1}}, "All runs land on one bed, and another bed would change the result"),
+    # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
+    ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
+    ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
+    (
+        {"impact": {"place": {"x": 0.0, "y": 0.1}}},
+        "All runs land at the same point of their beds: give impact.region",
+    ),
+])  # fmt: skip
 def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
     study = drawn(**changes)
     found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))

@@ -120,19 +120,15 @@ def test_ways_over_the_ground_are_arcs_and_none_where_the_end_is_not_on_it() -> 
     assert _distances(body, site, ends) == pytest.approx([0.5 * np.pi * radius, np.nan, 0.0], nan_ok=True)
 
 
-@pytest.mark.parametrize(
-    ("aim", "words"),
-    [
-        ({"grid": {"impact.sped": [0.1]}}, r'aim\.grid\."impact\.sped" is no aim; .* did you mean impact\.speed'),
-        ({"grid": {"impact.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
-        ({"grid": {"impact.speed": [0.2, 0.1]}}, "ascending values"),
-        ({"within": ["incidence_deg"]},
-         r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled'),
-        ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
-        ({"grid": {}}, r"aim\.within is given without aim\.grid"),
-        ({"grid": {"impact.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("aim", "words"), [
+    ({"grid": {"impact.sped": [0.1]}}, r'aim\.grid\."impact\.sped" is no aim; .* did you mean impact\.speed'),
+    ({"grid": {"impact.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
+    ({"grid": {"impact.speed": [0.2, 0.1]}}, "ascending values"),
+    ({"within": ["incidence_deg"]}, r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled'),
+    ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
+    ({"grid": {}}, r"aim\.within is given without aim\.grid"),
+    ({"grid": {"impact.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
+])  # fmt: skip
 def test_aims_that_cannot_be_are_refused(aim: dict[str, Any], words: str) -> None:
     with pytest.raises(StudyError, match=words):
         check_tables(tables(**aim), Path())

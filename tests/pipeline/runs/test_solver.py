@@ -70,22 +70,19 @@ def test_numbers_printed_with_six_digits_agree() -> None:
     assert made(printed)["outputs"] == printed
 
 
-@pytest.mark.parametrize(
-    ("outputs", "said"),
-    [
-        ({**CLEAR, "velocity_out_z": -0.06}, "velocity_out_z of -0.06 m/s; a lander that leaves moves outwards"),
-        ({**CLEAR, "velocity_out_z": 0.0}, "velocity_out_z of 0 m/s"),
-        ({**CLEAR, "speed_out": 7.0}, "7 for speed_out, and 0.07 follows"),
-        ({**CLEAR, "elevation_out": 59.0}, "59 for elevation_out, and 1.029"),
-        ({**CLEAR, "spin_out": -1.5}, "spin_out of -1.5 rad/s"),
-        (VELOCITY, "lacks spin_out"),
-        ({**CLEAR, **SPIN}, "1.5 for spin_out, and 3 follows from spin_out_x, _y and _z"),
-        ({**CLEAR, "spin_out_x": 1.5}, "has spin_out_x and lacks spin_out_y, spin_out_z; give all of them, or none"),
-        ({**CLEAR, "orientation_out_w": 1.0}, "has orientation_out_w and lacks orientation_out_x"),
-        ({**CLEAR, **{f"orientation_out_{part}": 1.0 for part in "wxyz"}}, "of length 2; allowed: 1"),
-        ({"speed_out": 0.07, "elevation_out": 1.03, "spin_out": 1.5}, "lacks velocity_out_x"),
-    ],
-)
+@pytest.mark.parametrize(("outputs", "said"), [
+    ({**CLEAR, "velocity_out_z": -0.06}, "velocity_out_z of -0.06 m/s; a lander that leaves moves outwards"),
+    ({**CLEAR, "velocity_out_z": 0.0}, "velocity_out_z of 0 m/s"),
+    ({**CLEAR, "speed_out": 7.0}, "7 for speed_out, and 0.07 follows"),
+    ({**CLEAR, "elevation_out": 59.0}, "59 for elevation_out, and 1.029"),
+    ({**CLEAR, "spin_out": -1.5}, "spin_out of -1.5 rad/s"),
+    (VELOCITY, "lacks spin_out"),
+    ({**CLEAR, **SPIN}, "1.5 for spin_out, and 3 follows from spin_out_x, _y and _z"),
+    ({**CLEAR, "spin_out_x": 1.5}, "has spin_out_x and lacks spin_out_y, spin_out_z; give all of them, or none"),
+    ({**CLEAR, "orientation_out_w": 1.0}, "has orientation_out_w and lacks orientation_out_x"),
+    ({**CLEAR, **{f"orientation_out_{part}": 1.0 for part in "wxyz"}}, "of length 2; allowed: 1"),
+    ({"speed_out": 0.07, "elevation_out": 1.03, "spin_out": 1.5}, "lacks velocity_out_x"),
+])  # fmt: skip
 def test_a_lander_that_leaves_and_contradicts_itself_is_a_failed_run(outputs: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         made(outputs)
@@ -161,17 +158,14 @@ def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str =
     return Record(**{**unknown, "outcome": outcome, "inputs": inputs, "outputs": outputs})
 
 
-@pytest.mark.parametrize(
-    ("records", "said"),
-    [
-        ([], None),
-        ([landed(0.19, 0.0), landed(0.2, 0.0), landed(0.0, 6.3)], None),
-        ([landed(50.0, 0.0, outcome="captured")], None),
-        ([landed(0.19, 0.0), landed(50.0, 0.0)],
-         "1 of 2 landers that left have more energy than impact and gravity provide, at most 6.25e+04 times as"),
-        ([landed(0.15, 6.0)], "1 of 1 landers that left have more energy"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("records", "said"), [
+    ([], None),
+    ([landed(0.19, 0.0), landed(0.2, 0.0), landed(0.0, 6.3)], None),
+    ([landed(50.0, 0.0, outcome="captured")], None),
+    ([landed(0.19, 0.0), landed(50.0, 0.0)],
+     "1 of 2 landers that left have more energy than impact and gravity provide, at most 6.25e+04 times as"),
+    ([landed(0.15, 6.0)], "1 of 1 landers that left have more energy"),
+])  # fmt: skip
 def test_landers_that_gain_energy_are_told(records: list[Record], said: str | None) -> None:
     found = energy_warning(DrawnDesign(study(impact={"speed": 0.2})), records, NO_BED)
     assert found is None if said is None else found is not None and found.startswith(said)
