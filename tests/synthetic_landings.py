@@ -186,8 +186,7 @@ def _capture_offset(share: float, slope: float) -> float:
 def _rim_offset(truth: Truth) -> float:
     """Offset that makes the mean chance of leaving over the rim its share, from a quarter of a million draws."""
     rng = np.random.default_rng(1)
-    left = truth._leaving(random_soils(250_000, rng), rng.standard_normal(250_000), rng)
-    score = _rim_score(truth, left)
+    score = _rim_score(truth, truth._leaving(random_soils(250_000, rng), rng.standard_normal(250_000), rng))
     return float(
         optimize.brentq(lambda offset: special.expit(score - offset).mean() - truth.rim_share, score.min(), score.max())
     )

@@ -98,8 +98,7 @@ def test_an_installed_wheel_runs_its_studies_by_name_and_gives_its_examples(rele
     install = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--no-compile", "--target", place, wheel]
     done([sys.executable, *install], tmp_path)
     assert int(done([sys.executable, "-c", SAY.replace("VERSION", lithobrake.__version__)], tmp_path, str(place))) > 10
-    listed = done([sys.executable, "-m", "lithobrake", "examples"], tmp_path, str(place))
-    assert "\n  quick " in listed
+    assert "\n  quick " in done([sys.executable, "-m", "lithobrake", "examples"], tmp_path, str(place))
     done([sys.executable, "-m", "lithobrake", "examples", "ball_on_plate"], tmp_path, str(place))
     assert (tmp_path / "ball_on_plate.toml").read_bytes() == (ROOT / "examples/ball_on_plate.toml").read_bytes()
     assert (place / "bin" / "lithobrake").is_file()
@@ -178,5 +177,4 @@ def test_imports_of_third_parties_are_declared() -> None:
 
 
 def _project() -> dict[str, list[str]]:
-    project: dict[str, list[str]] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    return project
+    return tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

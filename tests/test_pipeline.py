@@ -298,8 +298,7 @@ def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
     site = starts(Site(study), made_samples("clear")).site
     body = Site(study).body
-    time = Site(study).clock(site)
-    angle = body.orbit.angle + body.orbit.rate * time[0]
+    angle = body.orbit.angle + body.orbit.rate * Site(study).clock(site)[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
     open_ended = starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
     assert np.ptp(open_ended) > 180.0

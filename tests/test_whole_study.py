@@ -60,8 +60,7 @@ def go_on(study: Path, out: Path, workers: int) -> None:
 
 
 def summary(out: Path) -> dict[str, Any]:
-    content: dict[str, Any] = open_study(out).summary
-    return content
+    return open_study(out).summary
 
 
 def finished_runs(out: Path) -> int:
@@ -163,8 +162,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert process.returncode == 130
     assert "to continue, run the same command" in said
     assert "Traceback" not in said
-    kept = finished_runs(other)
-    assert 2 <= kept < finished_runs(out)
+    assert 2 <= finished_runs(other) < finished_runs(out)
     go_on(study, other, workers=1)
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]

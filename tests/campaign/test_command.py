@@ -193,8 +193,7 @@ def prints_much(inputs: dict[str, float], seed: int) -> dict[str, float]:
 
 
 def test_the_log_of_a_model_is_capped_too(tmp_path: Path) -> None:
-    result = run_model(prints_much, {"a": 1.0}, 1, tmp_path / "logs" / "run.log")
-    assert result["outputs"] == {"height": 1.0}
+    assert run_model(prints_much, {"a": 1.0}, 1, tmp_path / "logs" / "run.log")["outputs"] == {"height": 1.0}
     text = (tmp_path / "logs" / "run.log").read_text()
     assert len(text) <= 3 * KEPT
     assert text.startswith('{"inputs": {"a": 1.0}, "seed": 1}\noverlap xxx')

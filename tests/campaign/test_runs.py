@@ -248,8 +248,7 @@ def test_processes_give_the_same_records(tmp_path: Path) -> None:
     with LocalExecutor(2) as executor:
         made = chains(tmp_path, executor)
     (tmp_path / "other").mkdir()
-    one = chains(tmp_path / "other", HereExecutor())
-    assert what_came_of_chains(made) == what_came_of_chains(one)
+    assert what_came_of_chains(made) == what_came_of_chains(chains(tmp_path / "other", HereExecutor()))
 
 
 def test_a_failed_run_ends_its_chain_as_then_says(tmp_path: Path) -> None:

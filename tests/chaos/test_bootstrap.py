@@ -77,8 +77,7 @@ def test_sobol_intervals_cover_the_truth_under_strong_scatter(keywords):
 def test_no_input_is_ruled_out_by_outputs_that_are_all_scatter():
     x = sobol_sequence(CUBE, 60)
     y = np.random.default_rng(4).normal(size=60)
-    surrogate = fit(CUBE, x, y)
-    bounds = sobol_intervals(surrogate, x, y, count=200)
+    bounds = sobol_intervals(fit(CUBE, x, y), x, y, count=200)
     assert np.all(bounds["total"][0] == 0.0)
     assert np.all(bounds["total"][1] > 0.5)
 
@@ -127,8 +126,7 @@ def test_several_outputs_of_different_methods_and_a_constant_one():
 def test_on_a_grid_only_terms_that_it_determines_are_drawn():
     x = smolyak(CUBE, 4)
     y = x[:, 0] + 0.5 * x[:, 1] + x[:, 0] * x[:, 2] + 0.2 * np.random.default_rng(0).normal(size=len(x))
-    surrogate = fit(CUBE, x, y, method="omp")
-    bounds = sobol_intervals(surrogate, x, y, count=100)
+    bounds = sobol_intervals(fit(CUBE, x, y, method="omp"), x, y, count=100)
     assert np.all(bounds["total"][0] <= TOTAL)
     assert np.all(bounds["total"][1] - bounds["total"][0] < 0.3)
 
@@ -223,8 +221,7 @@ def test_mean_scatter_and_joint_samples(tmp_path):
     assert np.all(np.sqrt(np.mean(error**2, axis=0)) < 0.25 * model.scatter_std(test).mean(axis=0))
     # The logarithm of a variance from 8 runs has the standard deviation sqrt(trigamma(3.5)) = 0.57; sixty groups and
     # three to six terms leave 0.57 sqrt(6 / 60) / 2 = 0.09 in the logarithm of the standard deviation.
-    logarithm = np.log(model.scatter_std(test)[:, 0] / (0.1 * np.exp(test[:, 0])))
-    assert np.sqrt(np.mean(logarithm**2)) < 0.18
+    assert np.sqrt(np.mean(np.log(model.scatter_std(test)[:, 0] / (0.1 * np.exp(test[:, 0]))) ** 2)) < 0.18
     assert model.correlation[0, 1] == pytest.approx(0.8, abs=0.08)
     many = np.tile(test[:1], (20000, 1))
     drawn = model.sample(many, seed=3)

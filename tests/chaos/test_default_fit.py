@@ -59,8 +59,7 @@ def test_noise_is_recognised_and_not_chased():
     spread = np.std(friedman(x))
     y = friedman(x) + 0.2 * spread * np.random.default_rng(5).normal(size=150)
     surrogate = fit(FIVE, x, y)
-    entry = surrogate.report["outputs"]["y"]
-    assert entry["noise_std"] == pytest.approx(0.2 * spread, rel=0.35)
+    assert surrogate.report["outputs"]["y"]["noise_std"] == pytest.approx(0.2 * spread, rel=0.35)
     assert share(surrogate, friedman) < 0.15
     answer = surrogate.runs_needed(0.05)["y"]
     assert answer["more_runs"] is None
@@ -73,8 +72,7 @@ def test_noise_is_recognised_and_not_chased():
 
 def test_a_model_without_scatter_is_given_none_above_its_error():
     x = sobol(FIVE, 60, seed=4)
-    surrogate = fit(FIVE, x, x[:, 0] - 2.0 * x[:, 1])
-    entry = surrogate.report["outputs"]["y"]
+    entry = fit(FIVE, x, x[:, 0] - 2.0 * x[:, 1]).report["outputs"]["y"]
     assert 0.0 < entry["rmse_estimate"] < 1e-12
     assert entry["noise_std"] == entry["rmse_estimate"]
     assert entry["noise_from"] == "expected error, below the nugget"

@@ -183,8 +183,7 @@ def test_moments_under_dependent_inputs_are_those_of_values_at_dependent_points(
     normals = {"a": Normal(1.0, 2.0), "b": Normal(0.0, 1.0)}
     copula = GaussianCopula(normals, [[1.0, RANK_OF_HALF], [RANK_OF_HALF, 1.0]])
     x = copula.sobol_sequence(40)
-    surrogate = fit(normals, x, x[:, 0] * x[:, 1], degree=2)
-    values = surrogate(copula.sobol_sequence(2**15, seed=1))
+    values = fit(normals, x, x[:, 0] * x[:, 1], degree=2)(copula.sobol_sequence(2**15, seed=1))
     # E[ab] = cov = 1; Var[ab] = mean_a**2 var_b + var_a var_b + cov**2. A Sobol sequence errs by a few parts in 1e4.
     assert values.mean() == pytest.approx(1.0, rel=2e-3)
     assert values.var() == pytest.approx(1.0 + 4.0 + 1.0, rel=5e-3)

@@ -134,8 +134,7 @@ def test_several_outputs_equal_single_ones():
 
 def test_missing_runs_are_dropped_and_counted_other_nan_refused():
     x = smolyak(ISHIGAMI, 3)
-    y = np.column_stack([ishigami(x), x[:, 0]])
-    holes = y.copy()
+    holes = np.column_stack([ishigami(x), x[:, 0]]).copy()
     holes[[3, 10]] = np.nan
     surrogate = fit(ISHIGAMI, x, holes, degree=3)
     assert surrogate.dropped_count == 2
@@ -150,8 +149,7 @@ def test_missing_runs_are_dropped_and_counted_other_nan_refused():
 def test_masked_outputs_are_missing_runs_and_masked_inputs_are_refused():
     x = smolyak(ISHIGAMI, 3)
     y, hidden = ishigami(x), np.arange(len(x)) < 5
-    masked = np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden)
-    surrogate = fit(ISHIGAMI, x, masked, degree=2)
+    surrogate = fit(ISHIGAMI, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden), degree=2)
     assert surrogate.dropped_count == 5
     assert np.array_equal(surrogate.coefficients, fit(ISHIGAMI, x[5:], y[5:], degree=2).coefficients)
     with pytest.raises(ValueError, match="x has 1 masked values"):

@@ -79,8 +79,7 @@ def test_help_has_a_short_name_too(arguments: list[str]) -> None:
 
 @pytest.mark.parametrize("command", sorted(typer.main.get_command(app).commands))
 def test_the_help_of_each_command_ends_in_an_example(command: str) -> None:
-    shown = RUNNER.invoke(app, [command, "--help"])
-    assert f"Example: lithobrake {command} " in shown.output
+    assert f"Example: lithobrake {command} " in RUNNER.invoke(app, [command, "--help"]).output
 
 
 def test_the_version_is_told() -> None:

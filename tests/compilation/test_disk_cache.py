@@ -29,8 +29,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def prepare(folder: Path, content: bytes) -> None:
     """A file as anyone can make it, who knows how a cache is laid out but not the key of this user."""
     folder.mkdir(mode=0o700, parents=True)
-    signature = hashlib.sha256(NAME.encode() + b"\0" + content).digest()
-    (folder / NAME).write_bytes(content + signature)
+    (folder / NAME).write_bytes(content + hashlib.sha256(NAME.encode() + b"\0" + content).digest())
     (folder / NAME).chmod(0o600)
 
 

@@ -108,8 +108,7 @@ def refuse_owner(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def refuse_mode(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = compiled.disk_cache("dem").folder
-    folder.chmod(0o777)
+    compiled.disk_cache("dem").folder.chmod(0o777)
 
 
 def refuse_place(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:

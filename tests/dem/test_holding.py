@@ -37,8 +37,7 @@ def heap() -> World:
 
 def held(world: World) -> np.ndarray:
     """Which bodies are held."""
-    local = world._state.local
-    return local.flight.held
+    return world._state.local.flight.held
 
 
 def test_a_blow_frees_what_it_reaches_and_keeps_its_momentum() -> None:
@@ -217,8 +216,7 @@ def test_the_same_motion_as_with_one_cell_for_all(monkeypatch: pytest.MonkeyPatc
     def motion() -> tuple[np.ndarray, int]:
         world = flock(0.3)
         world.run_locally(0.3, 15.0)
-        local = world._state.local
-        return world.position.copy(), len(local.cells.first)
+        return world.position.copy(), len(world._state.local.cells.first)
 
     many = motion()
     monkeypatch.setattr(cells, "MOST_CELLS", 1.0 / 217.0)

@@ -121,8 +121,7 @@ def test_the_same_bits_each_time_and_with_slots_that_do_not_suffice(monkeypatch:
     def ends() -> tuple[bytes, int]:
         world = cluster(rock(0.6, 0.5))
         world.run_locally(2.0, 15.0)
-        local = world._state.local
-        return world.position.tobytes(), len(local.pairs.first)
+        return world.position.tobytes(), len(world._state.local.pairs.first)
 
     first, again = ends(), ends()
     assert first == again
@@ -148,8 +147,7 @@ def test_all_that_touch_are_listed_and_few_besides() -> None:
         fresh = World()
         for shape, place, turn in zip(shapes, world.position, world.orientation, strict=True):
             fresh.add_body(shape, material, tuple(place), orientation=tuple(turn))
-        touching = {(int(one["body_a"]), int(one["body_b"])) for one in fresh.contacts()}
-        assert touching <= pairs
+        assert {(int(one["body_a"]), int(one["body_b"])) for one in fresh.contacts()} <= pairs
         reach, between = [shape.bounding_radius for shape in shapes], world.position[:, None] - world.position
         meeting += int((np.linalg.norm(between, axis=2) < np.add.outer(reach, reach)).sum() - len(shapes)) // 2
         listed += sum(second >= 0 for _, second in pairs)

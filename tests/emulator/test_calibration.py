@@ -88,8 +88,7 @@ def test_bands_hold_on_beds_left_out() -> None:
     held = np.array([one.band_90 for one in scores])
     assert ((held.mean(axis=0) > 0.85) & (held.mean(axis=0) < 0.95)).all()
     for one in scores:
-        counts = np.histogram(one.pit[:, 0], bins=10, range=(0.0, 1.0))[0]
-        assert stats.chisquare(counts).pvalue > 0.001
+        assert stats.chisquare(np.histogram(one.pit[:, 0], bins=10, range=(0.0, 1.0))[0]).pvalue > 0.001
 
 
 def test_intervals_from_refits_hold_the_truth() -> None:

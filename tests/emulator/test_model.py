@@ -130,8 +130,7 @@ def test_refits_differ_by_whole_groups() -> None:
         by_group = refit.weights.reshape(-1, 12)
         assert (by_group == by_group[0]).all()
         assert refit.weights.sum() == COUNT
-    slopes = [refit.law.location[2, 0] for refit in refits]
-    assert 0.0 < np.std(slopes) < abs(fitted().law.location[2, 0])
+    assert 0.0 < np.std([refit.law.location[2, 0] for refit in refits]) < abs(fitted().law.location[2, 0])
     again = fitted().refits(30, seed=2)[-1]
     np.testing.assert_array_equal(again.sample(X, 3, upper=UPPER), refits[-1].sample(X, 3, upper=UPPER))
 
@@ -142,8 +141,7 @@ def test_a_refit_with_weights_of_one_is_the_fit() -> None:
 
 
 def test_an_output_that_is_always_the_same_stays_so() -> None:
-    x = np.random.default_rng(0).random((30, 2))
-    model = emulator.fit(INPUTS, x, np.full(30, 7.0))
+    model = emulator.fit(INPUTS, np.random.default_rng(0).random((30, 2)), np.full(30, 7.0))
     np.testing.assert_allclose(model.sample(X, 5), 7.0, rtol=1e-12)
 
 
@@ -169,8 +167,7 @@ def test_a_seed_that_is_none_is_refused() -> None:
 
 def test_masked_outputs_are_runs_without_outputs() -> None:
     x, y, hidden = runs()["x"], np.linspace(0.0, 1.0, COUNT), np.arange(COUNT) % 6 == 0
-    masked = np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden)
-    model = emulator.fit(INPUTS, x, masked)
+    model = emulator.fit(INPUTS, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden))
     assert model.runs.has_outputs.tolist() == (~hidden).tolist()
     assert np.nanmax(model.sample(X, 50)) < 5.0
 

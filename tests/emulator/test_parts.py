@@ -24,8 +24,7 @@ def test_coordinates_and_outputs_are_each_others_inverse() -> None:
 
 
 def test_larger_coordinates_are_larger_outputs() -> None:
-    grid = np.linspace(-5.0, 5.0, 50)[:, None]
-    assert (np.diff(from_coordinate(grid, LOWER, UPPER), axis=0) > 0.0).all()
+    assert (np.diff(from_coordinate(np.linspace(-5.0, 5.0, 50)[:, None], LOWER, UPPER), axis=0) > 0.0).all()
 
 
 def test_no_coordinate_reaches_a_bound() -> None:

@@ -27,8 +27,7 @@ def line(x: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 def branching(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Two branches, the nearer to each other the smaller x, each with its own scatter."""
-    within = stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
-    return (1.5 + 0.5 * x[:, 0]) * np.sign(z) + 0.4 * within
+    return (1.5 + 0.5 * x[:, 0]) * np.sign(z) + 0.4 * stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
 
 
 def price(x: np.ndarray, z: np.ndarray) -> np.ndarray:

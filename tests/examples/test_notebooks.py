@@ -48,8 +48,7 @@ def test_a_notebook_is_made_of_cells_that_begin_with_a_title(path: Path) -> None
 
 
 def test_a_first_study_is_run_and_then_read(tmp_path: Path) -> None:
-    said = printed("first_study", tmp_path)
-    assert "24 of 24 landings left the surface." in said
+    assert "24 of 24 landings left the surface." in printed("first_study", tmp_path)
     assert (tmp_path / "runs/first_study/report/index.html").is_file()
     read = printed("reading_a_study", tmp_path)
     assert read.startswith("Table of 24 rows (run): ")

@@ -48,8 +48,7 @@ def test_journeys_have_attitudes_and_kernels(delivered: StudyResults, tmp_path: 
 
 
 def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(results: StudyResults) -> None:
-    found = RUNNER.invoke(app, ["export", str(results.folder), "--to", "plates", "--force"])
-    assert found.exit_code == 0
+    assert RUNNER.invoke(app, ["export", str(results.folder), "--to", "plates", "--force"]).exit_code == 0
     assert (results.folder / "export/body.plates.txt").is_file()
 
 

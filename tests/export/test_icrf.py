@@ -87,8 +87,7 @@ def test_between_states_an_ephemeris_of_spice_is_the_flight(furnished, delivered
     from lithobrake.export.frames import Frame
 
     axes = Frame.of(delivered, "icrf", None)
-    flown = axes.timed(delivered, Flown.of(delivered).journeys(delivered, [3]))
-    first = flown._rows(np.array([0])).at(410.0)
+    first = axes.timed(delivered, Flown.of(delivered).journeys(delivered, [3]))._rows(np.array([0])).at(410.0)
     state = axes.states(first, 410.0, first.position, first.velocity)[0]
     found = 1e3 * np.array(furnished.spkgeo(LANDER, furnished.str2et("2027-04-20T12:11:50"), "J2000", DIMORPHOS)[0])
     assert found == pytest.approx(state, abs=1e-5)
@@ -101,8 +100,7 @@ def entries(table: Table, names: Sequence[str], row: int) -> np.ndarray:
 
 def attitudes(path: Path) -> list[tuple[str, np.ndarray, list[str], np.ndarray]]:
     """Of each segment the frame, quaternions x, y, z, w, and what is said; its times [s] since the epoch."""
-    ndm = pytest.importorskip("ccsds_ndm")
-    message = ndm.Aem.from_file(str(path), "kvn")
+    message = pytest.importorskip("ccsds_ndm").Aem.from_file(str(path), "kvn")
     found = []
     for segment in message.segments:
         segment.validate()

@@ -33,8 +33,7 @@ def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResu
         cells = {file.index(east, north) for north, east in zip(latitude, longitude, strict=True)}
     assert {tuple(cell) for cell in np.argwhere(density > 0.0).tolist()} == cells
     radius = MapFrame.of(results).radius
-    edges = np.radians(np.linspace(90.0, -90.0, 91))
-    area = radius**2 * np.radians(2.0) * -np.diff(np.sin(edges))
+    area = radius**2 * np.radians(2.0) * -np.diff(np.sin(np.radians(np.linspace(90.0, -90.0, 91))))
     assert (density * area[:, None]).sum() == pytest.approx(1.0, rel=1e-6)
     # The frame is a sphere of this body, in degrees, and no place of the Earth.
     assert crs.is_geographic

@@ -158,8 +158,7 @@ def test_quadrilaterals_close_to_a_body_that_faces_outward(tmp_path: Path, endin
 
 
 def test_a_shape_kernel_is_read_in_kilometres(tmp_path: Path) -> None:
-    spice = pytest.importorskip("spiceypy")
-    write_kernel(spice, tmp_path / "rock.bds", 1)
+    write_kernel(pytest.importorskip("spiceypy"), tmp_path / "rock.bds", 1)
     vertices, faces = read_mesh(tmp_path / "rock.bds")
     assert vertices.max() == 1e3
     assert volume_of(vertices, faces) == pytest.approx(4.0 / 3.0 * 1e9)
@@ -168,8 +167,7 @@ def test_a_shape_kernel_is_read_in_kilometres(tmp_path: Path) -> None:
 
 
 def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
-    spice = pytest.importorskip("spiceypy")
-    write_kernel(spice, tmp_path / "two.bds", 2)
+    write_kernel(pytest.importorskip("spiceypy"), tmp_path / "two.bds", 2)
     with pytest.raises(ValueError, match="2 segments"):
         read_mesh(tmp_path / "two.bds")
     (tmp_path / "text.bds").write_text("no kernel\n" * 200)
@@ -179,8 +177,7 @@ def test_kernels_that_are_no_single_shape_are_refused(tmp_path: Path) -> None:
 
 def test_a_damaged_shape_kernel_is_refused_and_ends_no_process(tmp_path: Path) -> None:
     """SPICE aborts the process that reads one of zeros."""
-    spice = pytest.importorskip("spiceypy")
-    write_kernel(spice, tmp_path / "rock.bds", 1)
+    write_kernel(pytest.importorskip("spiceypy"), tmp_path / "rock.bds", 1)
     whole = (tmp_path / "rock.bds").read_bytes()
     random = np.random.default_rng(1)
     flipped = bytearray(whole)

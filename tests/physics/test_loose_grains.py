@@ -76,7 +76,6 @@ def test_a_force_that_stops_the_plate_is_its_energy_over_its_way() -> None:
     from plate_into_loose_grains import MASS, PLATE, mean_force
 
     depth = np.linspace(0.0, 0.3, 3001)
-    speed = np.sqrt(0.01 - 0.02 * depth)
-    way = np.stack([np.zeros_like(depth), depth, speed], axis=1)
+    way = np.stack([np.zeros_like(depth), depth, np.sqrt(0.01 - 0.02 * depth)], axis=1)
     assert 0.5 * PLATE < 0.3
     assert mean_force(way) == pytest.approx(0.01 * MASS, rel=1e-4)

@@ -45,8 +45,7 @@ def flown_share(count: int) -> float:
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
     site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
     job = Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
-    flown = fly_starts(job, Starts(left, velocity, site), "")
-    return float((flown.status == "impact").sum()) / count
+    return float((fly_starts(job, Starts(left, velocity, site), "").status == "impact").sum()) / count
 
 
 def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: StudyResults) -> None:
@@ -140,8 +139,7 @@ def test_samples_leave_outwards_with_the_speed_that_was_drawn_and_energy_allows(
 
 def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: StudyResults) -> None:
     model = results.emulator.model
-    soil = {name: law.median for name, law in model.runs.inputs.items()}
-    drawn = results.emulator.sample(soil, 50)
+    drawn = results.emulator.sample({name: law.median for name, law in model.runs.inputs.items()}, 50)
     assert (drawn.row_count, drawn.columns["speed_out"].units) == (50, "m/s")
     assert drawn.columns["grain.young_modulus"].units == "Pa"
     left = drawn["outcome"] == "clear"

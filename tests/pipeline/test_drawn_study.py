@@ -126,8 +126,7 @@ def test_landings_of_a_sequence_use_their_beds_and_tell_how_the_lander_turns(soi
 def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tmp_path: Path) -> None:
     shutil.copytree(soil, tmp_path / "study")
     study, out = tmp_path / "study" / "study.toml", tmp_path / "study" / "out"
-    first = open_study(out).median_landing
-    assert "run" not in first.attributes
+    assert "run" not in open_study(out).median_landing.attributes
     run_study(StudySource.read(study), out, until="telling_landing")
     runs, shown = DesignRuns.load(StudyFolder.only_read(out), "drawn"), open_study(out).median_landing
     speeds = np.sort(runs.output("speed_out")[runs.has_outputs])

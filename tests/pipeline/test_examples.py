@@ -47,8 +47,7 @@ def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
 
 
 def test_the_summary_says_when_it_was_made(plate: Path) -> None:
-    content = open_study(plate).summary
-    date = datetime.fromisoformat(content["provenance"]["date"])
+    date = datetime.fromisoformat(open_study(plate).summary["provenance"]["date"])
     assert date.utcoffset() == timedelta(0)
     assert abs(date.timestamp() - (plate / "summary.json").stat().st_mtime) < 60.0
     assert f"Study of {date:%Y-%m-%d, %H:%M} UTC" in (plate / "report" / "index.html").read_text(encoding="utf-8")

@@ -124,8 +124,7 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
 ) -> None:
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path, Said("going on to 50"), half_width=0.06)
-    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
-    assert first.run_count == 24
+    assert DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn").run_count == 24
     said = Said()
     assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
     assert any("drawn: 24 of 50 runs were known" in sentence for sentence in said.sentences)

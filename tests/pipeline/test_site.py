@@ -87,8 +87,7 @@ def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
 
 
 def test_the_body_may_be_a_shape_kernel_of_spice(tmp_path: Path) -> None:
-    spice = pytest.importorskip("spiceypy")
-    write_kernel(spice, tmp_path / "rock.bds", 1)
+    write_kernel(pytest.importorskip("spiceypy"), tmp_path / "rock.bds", 1)
     site = {"body": str(tmp_path / "rock.bds"), "mass": 2.6e12, "spin_period": 2e4}
     body = Site(changed(site=site)).body
     # An octahedron with corners at a kilometre: kernels have no other unit.
@@ -157,8 +156,7 @@ def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
     width = []
     for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
         sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}
-        start = Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites)
-        flown = fly_starts(job, start, "")
+        flown = fly_starts(job, Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites), "")
         found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left])
         width.append(found.upper - found.lower)
     assert width[1] == pytest.approx(width[0], rel=0.03)

@@ -156,8 +156,7 @@ def test_a_disk_that_fills_up_is_one_sentence_and_the_study_goes_on_when_there_i
     fixed: Path, small_disk: Path, tmp_path: Path
 ) -> None:
     study = write_study(tmp_path, {FRICTION: "friction = 0.225"})
-    said = said_by("test", study, "--out", small_disk / "out", "--workers", 1, code=2)
-    assert "make room" in said
+    assert "make room" in said_by("test", study, "--out", small_disk / "out", "--workers", 1, code=2)
     with sqlite3.connect(small_disk / "out" / "runs.sqlite") as database:
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     database.close()

@@ -66,8 +66,7 @@ def test_kepler_orbit_around_a_sphere(ball):
 
 def test_rotation_sign(ball):
     """Released at rest in the turning frame, a body falls behind the rotation: it drifts westward as it rises."""
-    far = Body(ball.shape, ball.mass, spin_period=1800.0)
-    end = fly(far, [150.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0)
+    end = fly(Body(ball.shape, ball.mass, spin_period=1800.0), [150.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0)
     assert end.position[0, 0] > 150.0
     assert end.longitude[0] < 0.0
     # In the inertial frame it starts eastwards with spin times radius: nearly a straight line so short a time.
@@ -144,15 +143,13 @@ def test_threads_and_company_do_not_change_a_bit(top, monkeypatch):
     two = fly(top, position[::-1], velocity[::-1], 3600.0, threads=2)
     assert np.array_equal(one.position, two.position[::-1])
     assert np.array_equal(one.time, two.time[::-1])
-    alone = fly(top, position[3], velocity[3], 3600.0)
-    assert np.array_equal(alone.position[0], one.position[3])
+    assert np.array_equal(fly(top, position[3], velocity[3], 3600.0).position[0], one.position[3])
 
 
 def test_starts_on_the_surface(top):
     """Slightly under, on and slightly above a facet, outwards: none is an impact before it has left the ground."""
     origin, axes = top.local_frame(60.0, 20.0, 0.0)
-    shifts = np.array([-1e-5, -1e-12, 0.0, 1e-12, 1e-5])
-    position = origin + shifts[:, None] * axes[2]
+    position = origin + np.array([-1e-5, -1e-12, 0.0, 1e-12, 1e-5])[:, None] * axes[2]
     velocity = np.tile(0.05 * (axes[2] + 0.5 * axes[0]), (5, 1))
     flights = fly(top, position, velocity, 6 * 3600.0)
     assert (flights.status == "impact").all()
@@ -263,7 +260,6 @@ def test_a_flight_of_too_many_steps_comes_to_an_end(ball, monkeypatch):
     short = fly(ball, start, rate, [1.0, 2.0])
     monkeypatch.setattr(FlightEnds, "of_count", nearly_spent)
     # One that ends before is as it was.
-    again = fly(ball, start, rate, [1.0, 2.0])
-    assert (again.position == short.position).all()
+    assert (fly(ball, start, rate, [1.0, 2.0]).position == short.position).all()
     with pytest.raises(FloatingPointError, match=r"flight 1 from .* it took 1000000 steps in .* s, the most"):
         fly(ball, start, rate, [1.0, 1e12])

@@ -213,8 +213,7 @@ def test_sphere_limit():
 def test_lanes_and_blocks_do_not_change_a_bit(block):
     points = np.random.default_rng(4).normal(size=(77, 3)) * 2.0
     together = block.acceleration(points)
-    alone = np.array([block.acceleration(point) for point in points])
-    assert np.array_equal(together, alone)
+    assert np.array_equal(together, np.array([block.acceleration(point) for point in points]))
 
 
 def test_orientation_of_a_shape_does_not_matter(block):

@@ -104,8 +104,7 @@ def test_gravity_is_that_of_the_whole_within_what_the_surface_moves() -> None:
 
 def test_flights_meet_the_ground_of_the_whole() -> None:
     body = Body(bumpy(1000), mass=3e11, spin_period=1e5)
-    start = body.shape.surface_point(20.0, 40.0, 5.0)
-    flights = fly(body, start, [0.0, 0.0, 0.0], 3600.0)
+    flights = fly(body, body.shape.surface_point(20.0, 40.0, 5.0), [0.0, 0.0, 0.0], 3600.0)
     assert flights.status[0] == "impact"
     assert body.shape.height(flights.position)[0] == pytest.approx(0.0, abs=1e-6)
     assert abs(body.shape.attracting.height(flights.position)[0]) > 1e-3

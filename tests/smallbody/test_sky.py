@@ -125,8 +125,7 @@ def test_a_flat_partner_hides_a_sun_that_is_not_too_high() -> None:
 
 
 def test_a_partner_on_the_other_side_or_behind_the_orbiter_hides_nothing() -> None:
-    screen = Screen(np.tile([-DISTANCE, 0.0, 0.0], (DIRECTIONS, 1)), 400.0, 400.0)
-    assert eclipsed(screen, 0.0) == 0.0
+    assert eclipsed(Screen(np.tile([-DISTANCE, 0.0, 0.0], (DIRECTIONS, 1)), 400.0, 400.0), 0.0) == 0.0
     up, far = np.array([[1.0, 0.0, 0.0]]), Screen(np.tile([DISTANCE, 0.0, 0.0], (2, 1)), 100.0, 100.0)
     along = np.tile([1.0, 0.0, 0.0], (1, 2, 1))
     assert seen_from(BALL, 100.5 * up, up, along, distance=[[500.0, 1500.0]], screen=far).tolist() == [[True, False]]

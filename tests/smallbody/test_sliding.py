@@ -140,8 +140,7 @@ def test_a_lander_rests_in_the_trough_between_facets_that_are_both_too_steep():
     # A belt drawn in: northern facets slope down to it, and so do the southern ones.
     radius = np.where(np.abs(vertices[:, 2]) < 1e-9, 60.0, 100.0)
     body = Body(Shape(radius[:, None] * vertices, faces), mass=1e10, spin_period=math.inf)
-    latitude = math.degrees(math.atan2(6.0, 60.0))
-    origin, _ = body.local_frame(latitude, 12.0)
+    origin, _ = body.local_frame(math.degrees(math.atan2(6.0, 60.0)), 12.0)
     end = slid(body, origin, np.zeros(3), 0.3, 1e7)
     assert end.rests[0]
     assert 1.0 < end.length[0] < 100.0
@@ -261,8 +260,7 @@ def test_rough_ground_turns_landers_back() -> None:
 
 
 def test_what_a_bounce_holds_stays_held() -> None:
-    dull = HardSurface(0.0, 1.0, 0.0, 0.01)
-    left = RoughGround(dull, 0.3)(impacts(500, 20.0), np.random.default_rng(2))
+    left = RoughGround(HardSurface(0.0, 1.0, 0.0, 0.01), 0.3)(impacts(500, 20.0), np.random.default_rng(2))
     assert left.captured.all()
 
 

@@ -126,8 +126,7 @@ def test_a_spin_about_the_middle_axis_turns_over() -> None:
     # 1, 2, 3 kg m2: the excess over the separatrix is 2 tilt^2, and the rate 1 / sqrt(3).
     spin = np.array([[0.0, 1.0, tilt]])
     complement = tilt**2 * 3.0 * 2.0 / (tilt**2 * 6.0 + 2.0)
-    rate = np.sqrt((2.0 + 6.0 * tilt**2) / 6.0)
-    half_period = 2.0 * ellipkm1(complement) / rate
+    half_period = 2.0 * ellipkm1(complement) / np.sqrt((2.0 + 6.0 * tilt**2) / 6.0)
     turned, after = tumble(np.diag([1.0, 2.0, 3.0]), [[1.0, 0.0, 0.0, 0.0]], spin, [half_period])
     in_body = rotation_matrices(turned)[0].T @ after[0]
     assert in_body == pytest.approx([0.0, -1.0, tilt], abs=1e-9)

@@ -133,8 +133,7 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     assert checked(given, tmp_path).delivery.states == str(tmp_path / "states.csv")
     said = refused(given, tmp_path, journey={"count": 3})
     assert "journey.count is 3 and delivery.states has 2 rows; allowed: at most as many journeys as rows" in said
-    more = {"half_width": 0.1, "largest_run_count": 24}
-    said = refused(given, tmp_path, design=more)
+    said = refused(given, tmp_path, design={"half_width": 0.1, "largest_run_count": 24})
     assert "design.largest_run_count is 24 and delivery.states has 2 rows" in said
     assert "other.csv cannot be read" in refused(given | {"states": "other.csv"}, tmp_path)
 
@@ -183,8 +182,7 @@ def test_an_attitude_is_whole_and_of_length_one(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"line 2: q_w to q_z have the length 0\.5"):
         read_states(path, "body_fixed", None, ())
     path.write_text(f"{titles}\n{lines[1]},0,1,0,0,1,0,0\n")
-    found = read_states(path, "body_fixed", None, ())
-    assert found.rates[0] == pytest.approx([np.pi / 180.0, 0.0, 0.0])
+    assert read_states(path, "body_fixed", None, ()).rates[0] == pytest.approx([np.pi / 180.0, 0.0, 0.0])
 
 
 OEM = """CCSDS_OEM_VERS = 2.0

@@ -153,8 +153,7 @@ def test_a_method_without_drawn_runs_is_refused() -> None:
 
 def test_a_study_keeps_its_conditions_by_name() -> None:
     conditions = {"fast": "speed_out > 0.1", "gone": "not returns"}
-    study = check_tables(TABLES | {"limit_states": conditions}, Path())
-    assert study.limit_states.conditions() == conditions
+    assert check_tables(TABLES | {"limit_states": conditions}, Path()).limit_states.conditions() == conditions
     assert check_tables(TABLES, Path()).limit_states.conditions() == {}
 
 

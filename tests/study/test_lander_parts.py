@@ -40,8 +40,7 @@ def test_reach_and_masses_are_those_of_the_engine() -> None:
     assert lander_radius(one.lander) == pytest.approx(body.reach, rel=1e-3)
     assert body.own_mass == pytest.approx(12.0 - 0.1 - 1000.0 * np.pi / 6.0 * 0.06**3)
     assert [part.shape.volume for part in body.parts[:2]] == pytest.approx([3e-4, 3e-4])
-    aside = body.parts[1].shape.vertices
-    np.testing.assert_allclose(np.ptp(aside, axis=0), [0.01, 1.5, 0.02], atol=1e-12)
+    np.testing.assert_allclose(np.ptp(body.parts[1].shape.vertices, axis=0), [0.01, 1.5, 0.02], atol=1e-12)
     assert body.parts[2].material.restitution == 0.1
     assert body.parts[0].material.restitution == body.material.restitution
 

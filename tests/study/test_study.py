@@ -469,8 +469,7 @@ def test_a_mesh_is_looked_at_without_loading_the_compiler(tmp_path: Path) -> Non
     text = (Path(__file__).parents[2] / "examples" / "ball_on_plate.toml").read_text()
     (tmp_path / "study.toml").write_text(f"{text}\n[site]\n{site}")
     command = [sys.executable, "-c", CHECK, str(tmp_path / "study.toml")]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "False\n"
 
 
 def test_a_lander_in_another_unit_is_asked_about(tmp_path: Path) -> None:

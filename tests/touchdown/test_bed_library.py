@@ -61,12 +61,10 @@ def test_the_key_holds_what_a_bed_follows_from_and_nothing_else(recipe, monkeypa
         recipe(material=replace(first.material, friction=0.6)), recipe(contact=ContactModel(steps_per_contact=26.0)),
         recipe(sizes=replace(first.sizes, upper=0.12)), recipe(sides="periodic"),
     ]  # fmt: skip
-    keys = {module.bed_key(one) for one in (first, *others)}
-    assert len(keys) == 9
+    assert len({module.bed_key(one) for one in (first, *others)}) == 9
     assert module.bed_key(recipe()) == module.bed_key(first)
     # How a landing is stepped changes no bed.
-    stepped = recipe(contact=replace(first.contact, stepping="local"))
-    assert module.bed_key(stepped) == module.bed_key(first)
+    assert module.bed_key(recipe(contact=replace(first.contact, stepping="local"))) == module.bed_key(first)
     before = module.bed_key(first)
     monkeypatch.setattr(module, "_code", lambda: ["edited"])
     assert module.bed_key(first) != before

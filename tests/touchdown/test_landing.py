@@ -66,8 +66,7 @@ def test_flat_throw_leaves_sideways(bed):
 
 
 def test_time_limit_is_an_outcome(bed):
-    outcome = land(bed, ball(), landing(time_limit=1e-3))
-    assert outcome.status == "time_limit"
+    assert land(bed, ball(), landing(time_limit=1e-3)).status == "time_limit"
 
 
 def test_a_landing_tells_how_far_it_is(bed):
@@ -90,8 +89,7 @@ def test_same_landing_same_bits(bed):
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (0.0, 0.0, 1e-5), (1e-4, 0.0, -4e-4)])
 def test_any_constant_acceleration_is_accepted(bed, gravity):
-    outcome = land(bed, ball(), landing(gravity=gravity))
-    assert outcome.status == "clear"
+    assert land(bed, ball(), landing(gravity=gravity)).status == "clear"
 
 
 def test_outgoing_velocity_is_told_along_the_incoming_one():
@@ -127,8 +125,7 @@ def test_a_frictionless_ball_leaves_with_the_spin_that_it_came_with_and_turned_b
 
 
 def test_recorded_landing_is_written(bed, tmp_path):
-    outcome = land(bed, ball(), landing(), frame_count=4)
-    outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
+    land(bed, ball(), landing(), frame_count=4).save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     with h5py.File(tmp_path / "landing.h5") as file:
         assert file.attrs["status"] == "clear"
         assert len(file["vertex_start"]) == 26
@@ -147,8 +144,7 @@ def test_the_pictures_change_nothing_of_a_landing(bed):
 
 
 def test_every_data_set_of_a_bed_and_of_a_landing_says_what_it_holds(bed, tmp_path):
-    outcome = land(bed, ball(), landing(), frame_count=1)
-    outcome.save_frames(tmp_path / "landing.h5", bed, ball(), landing())
+    land(bed, ball(), landing(), frame_count=1).save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     bed.save(tmp_path / "bed.h5")
     for name, count in (("landing.h5", 11), ("bed.h5", 14)):
         with h5py.File(tmp_path / name) as file:
@@ -203,8 +199,7 @@ def test_a_lander_mesh_has_a_unit_and_only_what_its_faces_use(tmp_path):
 
 
 def test_stl_is_read_as_text(tmp_path):
-    hull = read_hull_of_stl(tmp_path)
-    assert hull.volume == pytest.approx(1 / 6)
+    assert read_hull_of_stl(tmp_path).volume == pytest.approx(1 / 6)
 
 
 def read_hull_of_stl(folder):

@@ -93,8 +93,7 @@ def test_a_landing_is_the_same_wherever_the_ground_is_cut(ground: Bed) -> None:
     """With common steps: see tests/dem/test_period.py."""
     outcomes = []
     for shift in ((0.0, 0.0), (0.21, -0.17)):
-        moved = folded(ground.position + np.array([*shift, 0.0]), period_of(WIDTH))
-        bed = replace(ground, position=moved)
+        bed = replace(ground, position=folded(ground.position + np.array([*shift, 0.0]), period_of(WIDTH)))
         contact = ContactModel(steps_per_contact=25.0, stepping="global")
         outcomes.append(land(bed, LANDER, landing(place=shift, incidence=1.0, contact=contact)))
     one, other = outcomes
@@ -150,8 +149,7 @@ def test_only_the_floor_of_ground_on_a_slope_is_rough() -> None:
     def floor(sides: str, slope: float) -> Material:
         gravity = (1e-4 * math.sin(slope), 0.0, -1e-4 * math.cos(slope))
         nothing = [], np.zeros((0, 3)), np.zeros((0, 4))
-        made: Material = boxed_world(*nothing, WIDTH, ROCK, gravity, ContactModel(), sides).planes[0].material
-        return made
+        return boxed_world(*nothing, WIDTH, ROCK, gravity, ContactModel(), sides).planes[0].material
 
     assert floor("periodic", 0.0) == floor("walls", SLOPE) == ROCK
     assert floor("periodic", SLOPE) == replace(ROCK, friction=2.0 * math.tan(SLOPE), rough=True)

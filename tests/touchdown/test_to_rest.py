@@ -49,8 +49,7 @@ def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
 def test_it_leaves_for_a_hop_that_rises_higher_than_asked_and_no_other(ground: Bed) -> None:
     fast = land(ground, LANDER, slow(speed=0.1, incidence=0.2, hop_height=0.05))
     assert fast.status == "clear"
-    up = fast.outputs["velocity_out_z"]
-    assert 0.5 * up**2 / GRAVITY + ground.grain_diameter + 0.1 > 0.05
+    assert 0.5 * fast.outputs["velocity_out_z"] ** 2 / GRAVITY + ground.grain_diameter + 0.1 > 0.05
     low = land(ground, LANDER, slow(speed=0.1, incidence=0.2, hop_height=100.0))
     assert low.status == "captured"
     assert low.outputs["contacts"] > 1.0
@@ -58,8 +57,7 @@ def test_it_leaves_for_a_hop_that_rises_higher_than_asked_and_no_other(ground: B
 
 def test_where_gravity_points_outward_nothing_rests(ground: Bed) -> None:
     assert rest_time(LANDER, -1e-5) == math.inf
-    outcome = land(ground, LANDER, slow(gravity=(0.0, 0.0, 1e-5), speed=0.05))
-    assert outcome.status == "clear"
+    assert land(ground, LANDER, slow(gravity=(0.0, 0.0, 1e-5), speed=0.05)).status == "clear"
 
 
 def motion(position: tuple[float, float, float], angle: float = 0.0) -> BodyMotion:

@@ -88,8 +88,7 @@ def test_the_interval_of_a_median_is_that_of_beds_drawn_again() -> None:
 
     values = np.random.default_rng(5).permutation((np.arange(100) + 0.5) / 100.0)
     for each in (1, 3):
-        bed = np.repeat(np.arange(100), each)
-        found = number(landers(bed=bed, time_s=np.repeat(values, each)), "time_s")
+        found = number(landers(bed=np.repeat(np.arange(100), each), time_s=np.repeat(values, each)), "time_s")
         assert found["median_upper"] - found["median_lower"] == pytest.approx(2.0 * 1.645 * 0.05, rel=0.2)
         assert found["median_lower"] < 0.5 < found["median_upper"]
 

@@ -87,8 +87,7 @@ def test_landers_of_one_bed_count_less():
 def test_cells_have_equal_area_and_go_east_from_the_date_line():
     from samples import BANDS, SECTORS, cells
 
-    random = np.random.default_rng(1)
-    directions = random.standard_normal((24_000, 3))
+    directions = np.random.default_rng(1).standard_normal((24_000, 3))
     latitude = np.degrees(np.arcsin(directions[:, 2] / np.linalg.norm(directions, axis=1)))
     longitude = np.degrees(np.arctan2(directions[:, 1], directions[:, 0]))
     counts = np.bincount(cells(latitude, longitude), minlength=SECTORS * BANDS)

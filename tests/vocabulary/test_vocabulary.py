@@ -69,8 +69,7 @@ def test_masked_values_are_refused_or_count_as_nan() -> None:
     assert np.isnan(numbers_or_nan("y", masked)).tolist() == [False, True, False]
     whole = np.ma.masked_array([1, 1000], mask=[False, True])
     assert np.isnan(numbers_or_nan("y", whole)).tolist() == [False, True]
-    nothing_masked = np.ma.masked_array([1.0, 2.0])
-    assert type(numbers("x", nothing_masked)) is np.ndarray
+    assert type(numbers("x", np.ma.masked_array([1.0, 2.0]))) is np.ndarray
 
 
 @pytest.mark.parametrize("values", [[1j], ["a"], [[1.0], [1.0, 2.0]], [{}], [np.datetime64("2020-01-01")]])

@@ -188,8 +188,7 @@ def test_a_journey_of_a_study_makes_each_touchdown_again(
     assert outcome.outputs == pytest.approx(found.landings[last].outcome.outputs, rel=0.0, nan_ok=True)
     motion = journey.motion(frame_count=5)
     assert len(motion.bodies) == len(found.landings)
-    place = found.motion().bodies[last].position
-    assert (motion.bodies[last].position[0] == place[0]).all()
+    assert (motion.bodies[last].position[0] == found.motion().bodies[last].position[0]).all()
     with pytest.raises(ValueError, match=r"touchdown is 9; allowed: 0 to \d, those of journey 1"):
         journey.landing(9)
     with pytest.raises(ValueError, match=r"journey is 2; allowed: 0 to 1, the journeys of "):

@@ -73,8 +73,7 @@ def test_too_few_runs_say_nothing() -> None:
 def under_way(tmp_path: Path) -> Path:
     """The folder of a sequence of 60 runs of which 40 have ended, with runs beside it and one of another setting."""
     folder, keys = StudyFolder(tmp_path), [record(run).key for run in range(60)]
-    stages = {"bed": {"title": "bed", "key": "", "files": []}}
-    folder.begin(None, b"", stages, print)
+    folder.begin(None, b"", {"bed": {"title": "bed", "key": "", "files": []}}, print)
     folder.note_runs("drawn", keys)
     folder.note_runs("twins", ["twin"])
     with Ledger(folder / "runs.sqlite") as ledger:
@@ -92,16 +91,14 @@ def under_way(tmp_path: Path) -> Path:
 def test_status_says_them_while_runs_come_in(under_way: Path) -> None:
     said = CliRunner().invoke(app, ["status", str(under_way)])
     assert said.exit_code == 0, said.output
-    expected = running_estimates([record(run) for run in range(40)], {})
-    assert "\n".join(expected.lines()) in said.stdout
+    assert "\n".join(running_estimates([record(run) for run in range(40)], {}).lines()) in said.stdout
     assert "61 runs: 41 done, 0 running, 0 failed" in said.stdout
     assert "1 more runs in the ledger are of earlier settings of the study" in said.stdout
     assert said.stdout.splitlines() == study_status(under_way).lines()
 
 
 def test_status_gives_all_of_it_as_json(under_way: Path) -> None:
-    shown = CliRunner().invoke(app, ["status", str(under_way), "--json"])
-    content = json.loads(shown.stdout)
+    content = json.loads(CliRunner().invoke(app, ["status", str(under_way), "--json"]).stdout)
     assert content["folder"] == str(under_way)
     assert (content["at_work"], content["campaign_began"], content["unknown"]) == (None, None, None)
     runs = content["runs"]

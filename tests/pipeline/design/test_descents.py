@@ -68,15 +68,13 @@ TITLES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 
 def some_states(count: int = 8) -> np.ndarray:
     """Times and body-fixed states, [count, 7]."""
-    random = np.random.default_rng(1)
-    off = random.standard_normal((count, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
+    off = np.random.default_rng(1).standard_normal((count, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
     return np.column_stack([100.0 * np.arange(count), np.array([*POSITION, *VELOCITY]) + off])
 
 
 def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
     found = DrawnDesign(study(delivery=released(covariance=[[0.0] * 6] * 6))).descents
-    site = Site(study(delivery=released()))
-    alone = fly(site.body, POSITION, VELOCITY, 40000.0)
+    alone = fly(Site(study(delivery=released())).body, POSITION, VELOCITY, 40000.0)
     assert (found.flights.status == "impact").all()
     assert (found.flights.position == alone.position).all()
     assert (found.flights.velocity == alone.velocity).all()
@@ -86,8 +84,7 @@ def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
 def test_a_run_alone_is_the_same_as_among_others() -> None:
     design = DrawnDesign(study(delivery=released(position_std=5.0, velocity_std=1e-3)))
     assert [design.row(run) for run in range(8)] == design.rows
-    more = design.with_run_count(12)
-    assert more.rows[:8] == design.rows
+    assert design.with_run_count(12).rows[:8] == design.rows
     assert len({row["impact.speed"] for row in design.rows}) == 8
 
 
@@ -154,8 +151,7 @@ def test_the_spread_at_the_ground_is_that_of_the_linear_propagation(ball: Path) 
 
 
 def test_the_root_of_a_covariance_gives_it_back() -> None:
-    random = np.random.default_rng(2)
-    factor = random.standard_normal((6, 4)) * np.array([[30.0]] * 3 + [[0.007]] * 3)
+    factor = np.random.default_rng(2).standard_normal((6, 4)) * np.array([[30.0]] * 3 + [[0.007]] * 3)
     covariance = factor @ factor.T
     release = ReleaseSection(position=POSITION, velocity=VELOCITY, covariance=covariance.tolist())
     root = spread_root(release, np.array([0.0, 0.0, 1.0]))
@@ -277,8 +273,7 @@ def test_a_spin_of_a_lander_is_told_in_the_frame_of_its_bed(tmp_path: Path) -> N
     against = back - [0.0, 0.0, 2.0 * math.pi / SPIN_PERIOD]
     row = design.rows[0]
     assert np.linalg.norm([row[f"impact.spin_{axis}"] for axis in "xyz"]) == pytest.approx(np.linalg.norm(against))
-    outward = float(design.descents.axes[0, 2] @ against)
-    assert row["impact.spin_z"] == pytest.approx(outward)
+    assert row["impact.spin_z"] == pytest.approx(float(design.descents.axes[0, 2] @ against))
 
 
 def test_landers_that_never_touch_down_are_no_runs(tmp_path: Path) -> None:

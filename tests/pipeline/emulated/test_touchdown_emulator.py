@@ -64,8 +64,7 @@ def test_the_emulator_is_sampled_by_the_names_of_its_inputs(results: StudyResult
 
 
 def test_landers_by_the_emulator_end_as_those_by_landings_do(found: EmulatedJourneys, results: StudyResults) -> None:
-    ends = results.results.ends
-    assert ends is not None
+    assert results.results.ends is not None
     assert found.why is None
     assert found.count == COUNT
     assert found.agrees
@@ -176,8 +175,7 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
 def test_a_side_is_an_option_like_any_other(results: StudyResults) -> None:
     study = check_tables(journey_tables(aim={"grid": {"delivery.speed": [0.05]}, "sides": ["z", "x or y"]}), Path())
     assert study.aim.aims() == [{"delivery.speed": 0.05, "aim.sides": 0.0}, {"delivery.speed": 0.05, "aim.sides": 1.0}]
-    design = DrawnDesign(study)
-    begin = option_arrivals(design, Site(study))
+    begin = option_arrivals(DrawnDesign(study), Site(study))
     inputs = {name: begin.column(name) for name in (*ORIENTATION, "impact.azimuth_deg")}
     sides = sides_down(study.lander, seen(inputs)[0])
     half = len(sides) // 2

@@ -63,8 +63,7 @@ def test_a_study_that_is_edited_goes_on_in_its_folder(tmp_path: Path) -> None:
 
 
 def test_a_study_and_its_folder_move_together(tmp_path: Path) -> None:
-    study = write_study(tmp_path / "a" / "study.toml")
-    begun(study, tmp_path / "a" / "runs" / "study")
+    begun(write_study(tmp_path / "a" / "study.toml"), tmp_path / "a" / "runs" / "study")
     (tmp_path / "a").rename(tmp_path / "b")
     begun(write_study(tmp_path / "b" / "study.toml", "seed = 2"), tmp_path / "b" / "runs" / "study")
 

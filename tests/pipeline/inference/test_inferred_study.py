@@ -194,8 +194,7 @@ def test_without_an_emulator_it_says_what_to_run_first(study: Path, tmp_path: Pa
     command = f"make it with: lithobrake run {study} --out {tmp_path / 'out'}."
     assert any(line.startswith("Bounces: ") and line.endswith(command) for line in found.output.splitlines())
     assert not (tmp_path / "out").exists()
-    paper = write_ball(tmp_path / "paper.toml", {})
-    said = plan_study(paper, tmp_path / "out", infers=True).inference
+    said = plan_study(write_ball(tmp_path / "paper.toml", {}), tmp_path / "out", infers=True).inference
     assert 'needs design.method = "drawn"' in said.lines()[0]
 
 

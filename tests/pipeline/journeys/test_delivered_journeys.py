@@ -62,8 +62,7 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResults, np.nd
     """A study of states, of which two fly away, and these."""
     folder = tmp_path_factory.mktemp("flown")
     states = write_states(folder / "states.csv", away=(3, 9))
-    given = tables(delivery={"states": str(folder / "states.csv")})
-    run_without_emulator(given, folder / "out", report=True)
+    run_without_emulator(tables(delivery={"states": str(folder / "states.csv")}), folder / "out", report=True)
     return lithobrake.open_study(folder / "out"), states
 
 
@@ -84,8 +83,7 @@ def test_the_first_flight_leads_from_the_state_to_the_first_touchdown(flown: tup
     first = arcs.where(arcs["arc"] == 0.0)
     assert first["sample"].tolist() == list(range(COUNT))
     assert np.column_stack([first[f"position_{axis}"] for axis in "xyz"]).tolist() == states[:, 1:4].tolist()
-    begins = np.delete(first["begin_s"], [3, 9])
-    assert (begins < 0.0).all()
+    assert (np.delete(first["begin_s"], [3, 9]) < 0.0).all()
     assert (np.delete(first["end_s"], [3, 9]) == 0.0).all()
     impacts = touchdowns.where(touchdowns["touchdown"] == 0.0)
     own = Site(study_of(tables(delivery={"release": RELEASE}))).body
@@ -191,8 +189,7 @@ def test_draws_of_the_delivery_have_the_correlations_of_the_file() -> None:
             rank = stats.spearmanr(found[one], found[other]).statistic
             # A rank correlation of so many draws errs by at most 1 / sqrt(count); four times that.
             assert rank == pytest.approx(expected.get(frozenset((one, other)), 0.0), abs=4.0 / np.sqrt(count))
-    speed = np.sort(found["speed"])
-    assert np.abs(speed - np.linspace(0.04, 0.08, count)).max() < 0.002
+    assert np.abs(np.sort(found["speed"]) - np.linspace(0.04, 0.08, count)).max() < 0.002
 
 
 def test_correlations_change_only_what_they_name() -> None:
@@ -241,8 +238,7 @@ def test_errors_scatter_speed_and_direction_and_none_points_down() -> None:
     assert speed.mean() == pytest.approx(0.05, rel=0.01)
     assert speed.std() == pytest.approx(0.005, rel=0.05)
     assert np.degrees(np.arcsin(velocity[:, 2] / speed)).std() == pytest.approx(3.0, rel=0.05)
-    flat = Push(0.05, 1.0, direction_std_deg=10.0).velocities(north, up)
-    assert (flat[:, 2] > 0.0).all()
+    assert (Push(0.05, 1.0, direction_std_deg=10.0).velocities(north, up)[:, 2] > 0.0).all()
 
 
 def test_pushed_landers_are_followed_to_rest_in_the_next_study(journeys_folder: Path, tmp_path: Path) -> None:

@@ -104,8 +104,7 @@ def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
 
 def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyPage) -> None:
     ways, ends = data.paths
-    arcs = [end for end in ends if end == JourneyEnd.AT_REST]
-    assert len(ways) == len(ends) > len(arcs) > 0
+    assert len(ways) == len(ends) > len([end for end in ends if end == JourneyEnd.AT_REST]) > 0
     (view,) = end_views(data)
     on_ground = int(np.isfinite(data.journeys["latitude_deg"]).sum())
     assert f"where {on_ground} landers ended on the ground" in view.html

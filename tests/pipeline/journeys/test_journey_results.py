@@ -177,8 +177,7 @@ def test_status_counts_the_ends_of_the_journeys(journeys: StudyResults) -> None:
     assert found.runs.tally.total == touchdowns
     assert found.runs.others == 0
     assert "first touchdowns:" in found.runs.lines()
-    content = json.loads(json.dumps(found.to_json()))
-    assert content["runs"]["journeys"]["ends"][JourneyEnd.AT_REST] == 43
+    assert json.loads(json.dumps(found.to_json()))["runs"]["journeys"]["ends"][JourneyEnd.AT_REST] == 43
 
 
 def test_status_counts_what_the_ledger_tells_while_journeys_are_followed(
@@ -202,8 +201,7 @@ def test_status_counts_what_the_ledger_tells_while_journeys_are_followed(
 def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResults, tmp_path: Path) -> None:
     folder = tmp_path / "edited"
     shutil.copytree(journeys.folder, folder)
-    edited = journey_tables(delivery={"incidence_deg": 25.0})
-    made = run_without_emulator(edited, folder).touchdowns.row_count
+    made = run_without_emulator(journey_tables(delivery={"incidence_deg": 25.0}), folder).touchdowns.row_count
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs

@@ -111,8 +111,7 @@ def test_the_summary_has_ends_that_add_up_and_numbers_of_rest(made: Path) -> Non
     assert sum(one["share"] for one in ends.values()) == pytest.approx(1.0, abs=1e-12)
     assert all(one["lower"] <= one["share"] <= one["upper"] for one in ends.values())
     assert results["journeys"] == JOURNEYS
-    records = read_records(made / "runs.sqlite")
-    assert results["touchdowns"] == len(records)
+    assert results["touchdowns"] == len(read_records(made / "runs.sqlite"))
     found = rows(made, "journeys.csv")
     rests = found["end"] == "at_rest"
     time = results["rest"]["time_s"]["median"]
@@ -180,8 +179,7 @@ def test_attitudes_are_turned_from_frame_to_frame_and_back() -> None:
     ("turn", "side"), [((0.0, 0.0, 0.0), "-z"), ((180.0, 0.0, 0.0), "+z"), ((90.0, 0.0, 0.0), "-y")]
 )
 def test_the_side_that_is_down_is_the_one_along_the_plumb_line(turn: tuple[float, ...], side: str) -> None:
-    tilt = Rotation.from_euler("y", 10.0, degrees=True)
-    attitude = tilt * Rotation.from_euler("xyz", turn, degrees=True)
+    attitude = Rotation.from_euler("y", 10.0, degrees=True) * Rotation.from_euler("xyz", turn, degrees=True)
     found, angle = side_down(attitude, np.array([0.0, 0.0, -3e-5]))
     assert found == side
     assert math.degrees(angle) == pytest.approx(10.0)
@@ -260,8 +258,7 @@ def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path:
     results = lithobrake.run(
         journey_tables(site={"roughness_deg": 20.0}), tmp_path / "out", workers=1, model=bounce, report=False
     )
-    found = results.results.emulated
-    assert found.agrees
+    assert results.results.emulated.agrees
     assert results.results.ends["at_rest"].share > 0.5
 
 
@@ -270,8 +267,7 @@ def test_hard_ground_of_a_study_is_as_rough_as_its_site() -> None:
     drawn |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}}
     read = StudySource.of_tables(drawn).study
     hard = hard_surface(read)
-    rough = on_rough(read, hard)
-    assert rough == RoughGround(hard, math.radians(12.0))
+    assert on_rough(read, hard) == RoughGround(hard, math.radians(12.0))
     drawn["site"] = {"body": "dimorphos"}
     assert on_rough(StudySource.of_tables(drawn).study, hard) is hard
 

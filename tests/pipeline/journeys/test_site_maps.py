@@ -68,8 +68,7 @@ def test_landers_are_delivered_to_every_cell_as_the_study_delivers_them() -> Non
     up, ahead = begin.axes[:, 2], begin.axes[:, 0]
     north = np.array([0.0, 0.0, 1.0]) - up[:, 2:] * up
     north /= np.linalg.norm(north, axis=1, keepdims=True)
-    east = np.cross(north, up)
-    along = np.cos(heading)[:, None] * north + np.sin(heading)[:, None] * east
+    along = np.cos(heading)[:, None] * north + np.sin(heading)[:, None] * np.cross(north, up)
     # The pole laid into a facet is not quite the direction of growing latitude, least near the poles.
     assert (ahead * along).sum(axis=1).min() > 0.9
 
@@ -107,14 +106,12 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     assert last.ends.time_s.value == pytest.approx(60.0 * 0.5 * (LANDERS - 1))
     assert last.slope_deg.mean == pytest.approx(12.0)
     assert (last.slope_deg.low, last.slope_deg.high) == pytest.approx((1.2, 22.8))
-    whole = all_at_rest(landers, fitted)
-    assert whole.share == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
+    assert all_at_rest(landers, fitted).share == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
 
 
 def test_impacts_are_beyond_the_first_range_that_they_leave() -> None:
     ranges = {"impact.speed": (0.1, 0.2), "surface.gravity": (4e-5, 5e-5)}
-    nothing: Any = None
-    emulator = TouchdownEmulator(nothing, [], None, np.zeros(0), ranges, np.zeros((0, 3)), 0.0, 0.0)
+    emulator = TouchdownEmulator(None, [], None, np.zeros(0), ranges, np.zeros((0, 3)), 0.0, 0.0)
     found = emulator.beyond(
         {"impact.speed": np.array([0.15, 0.01, 0.3, 0.15]), "surface.gravity": np.array([4.5e-5, 5e-5, 1e-5, 1e-5])}
     )
@@ -153,8 +150,7 @@ def test_emulator_and_landings_are_compared_lander_by_lander(site_map: SiteMap, 
 def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     fitted = Refits(bed_count=12, run_count=100, why=None)
     refit, met = np.repeat(np.arange(REFIT_COUNT), 4), np.tile([True, True, False, False], REFIT_COUNT)
-    everyone = np.ones(len(met), dtype=bool)
-    plain = share_of_known(met, everyone, refit, fitted)
+    plain = share_of_known(met, np.ones(len(met), dtype=bool), refit, fitted)
     # One lander in four is unknown, and did not meet it as far as one sees.
     lacking = share_of_known(met, np.tile([True, True, True, False], REFIT_COUNT), refit, fitted)
     assert plain.share == 0.5

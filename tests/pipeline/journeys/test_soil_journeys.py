@@ -80,8 +80,7 @@ def flown(study: StudyResults, body: Body, arc: Row) -> Flights:
 
 def place(body: Body, row: Row) -> np.ndarray:
     """The place on the ground of a touchdown [m]."""
-    found: np.ndarray = body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
-    return found
+    return body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
 
 
 def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) -> None:

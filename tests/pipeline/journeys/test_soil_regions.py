@@ -160,8 +160,7 @@ def test_slopes_are_those_of_gravity_and_rotation(body_file: Path) -> None:
         return np.arctan2(w * np.sin(latitude) * np.cos(latitude), 1.0 - w * np.cos(latitude) ** 2)
 
     heights = np.linspace(-1.0, 1.0, 100_001)
-    steep = math.radians(20.0)
-    expected = float((slope(np.abs(np.arcsin(heights))) > steep).mean())
+    expected = float((slope(np.abs(np.arcsin(heights))) > math.radians(20.0)).mean())
     region = {"slope_deg": [20.0, 180.0], "grain": {"friction": 0.3}}
     found = soils(body_file, {"steep": region}, site={"spin_period": period}).area_shares()["steep"]
     assert 0.2 < expected < 0.6
@@ -174,15 +173,13 @@ def test_facets_are_those_of_the_file(body_file: Path, tmp_path: Path) -> None:
     shape = found.site.body.shape
     area = shape.facet_sizes**2
     assert found.area_shares()["ponds"] == pytest.approx(area[[7, 12, 13]].sum() / area.sum())
-    centres = shape.corners.mean(axis=1)[[7, 8, 13]]
-    assert found.at(centres) == ["ponds", ELSEWHERE, "ponds"]
+    assert found.at(shape.corners.mean(axis=1)[[7, 8, 13]]) == ["ponds", ELSEWHERE, "ponds"]
 
 
 def test_a_further_region_changes_no_draw(body_file: Path) -> None:
     alone = soils(body_file, {"strip": STRIP}).drawn(range(6))["soil.strip.grain.friction"]
     grain = {**STRIP["grain"], "cohesion_force": {"distribution": "log_uniform", "lower": 1e-6, "upper": 1e-5}}
-    both = soils(body_file, {"sink": SINK, "strip": {**STRIP, "grain": grain}})
-    drawn = both.drawn([5, 2])
+    drawn = soils(body_file, {"sink": SINK, "strip": {**STRIP, "grain": grain}}).drawn([5, 2])
     assert drawn["soil.strip.grain.friction"].tolist() == alone[[5, 2]].tolist()
     assert drawn["soil.sink.grain.restitution"].tolist() == [0.1, 0.1]
     assert len(set(alone.tolist())) == 6
@@ -203,8 +200,7 @@ def test_every_touchdown_is_on_the_soil_of_its_place(made: StudyResults, body_fi
     own = np.array([design.own_soil(number)["grain.friction"] for number in range(COUNT)])
     # One draw of a journey for the strip, wherever it was before, and one for all other ground.
     assert table["grain.friction"].tolist() == np.where(strip, in_strip[journey], own[journey]).tolist()
-    back = [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
-    assert back
+    assert [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
 
 
 def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_file: Path) -> None:
@@ -215,8 +211,7 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
         # Straight down to a place beside the pole, 170 degrees east.
         down = {"position": [-10.0, 1.7, pole * (RADIUS + 2.0)], "velocity": [0.0, 0.0, -0.03 * pole]}
         flown = given | {"delivery": given["delivery"] | {"release": down}}
-        study = with_site_gravity(StudySource.of_tables(flown).study)
-        design = DrawnDesign(study)
+        design = DrawnDesign(with_site_gravity(StudySource.of_tables(flown).study))
         assert [row["grain.restitution"] for row in design.rows] == [restitution] * 2
         assert [row["grain.friction"] for row in design.rows] == [design.own_soil(n)["grain.friction"] for n in (0, 1)]
 
@@ -235,8 +230,7 @@ def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
     # Elsewhere a lander bounces at its first touchdown at least.
     assert rest.rests.share <= 0.5
     assert any(line.startswith("By soil: sink (50 % of the surface)") for line in results.answer)
-    south = np.array([point for line in sink.outlines for point in line])
-    assert np.abs(south[:, 0]).max() < 1.0
+    assert np.abs(np.array([point for line in sink.outlines for point in line])[:, 0]).max() < 1.0
 
 
 def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:

@@ -111,13 +111,11 @@ def test_the_same_seed_gives_the_same_journeys(made: Path, tmp_path: Path) -> No
 def test_another_start_makes_the_journeys_of_before_outdated() -> None:
     others = ROTATION | {"yaw_deg": -30.0}, ROTATION | {"days": 3.0}, ROTATION | {"spin": [0.0, 1e-4, 0.0]}
     studies = [StudySource.of_tables(turning(site={"rotation": one})).study for one in (ROTATION, *others)]
-    kept = [json.dumps(journey_dependencies(study), default=str) for study in studies]
-    assert len(set(kept)) == 4
+    assert len({json.dumps(journey_dependencies(study), default=str) for study in studies}) == 4
 
 
 def test_a_time_of_arrival_may_be_given() -> None:
-    given = turning(site={"rotation_time": 5000.0})
-    site = Site(StudySource.of_tables(given).study)
+    site = Site(StudySource.of_tables(turning(site={"rotation_time": 5000.0})).study)
     assert (site.clock(site.sampled(5)) == 5000.0).all()
 
 

@@ -183,8 +183,7 @@ def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
     assert said.exit_code == 0, said.output
     assert "To make: 17 to 47 touchdowns, 10 000 samples, up to 50 flights, 200 journeys" in said.stdout
     assert "on 1 process, and the touchdowns, whose time is not known before some have been made" in said.stdout
-    shown = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--json"])
-    content = json.loads(shown.stdout)
+    content = json.loads(CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--json"]).stdout)
     assert [one["total"] for one in content["runs"]] == [17, 47]
     assert content["seconds"]["touchdowns"] is None
     assert content["warnings"] == list(plan_study(study, out).warnings)
@@ -368,8 +367,7 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     assert "By the resulting fraction: 8.7 at 100 %." in said
     assert "standard deviation 0.04 to 0.21 of the return fraction from landing to landing; mean correlation" in said
     assert plan.to_json()["half_width"]["own_run_count"] == 0
-    one_bed = drawn(bed={"bed_count": 1})
-    assert plan_for(one_bed, folder, 2).half_width is None
+    assert plan_for(drawn(bed={"bed_count": 1}), folder, 2).half_width is None
     assert plan_for(soft(), folder, 2).half_width is None
 
 
@@ -494,8 +492,7 @@ def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone()
 
 
 def test_a_touchdown_is_expected_to_take_the_steps_of_its_contacts() -> None:
-    study = soft(grain={"young_modulus": 1e6})
-    soil = soil_of(study)
+    soil = soil_of(soft(grain={"young_modulus": 1e6}))
     lander, landing = soil.landings[0]
     stiff = replace(landing, grain=replace(landing.grain, young_modulus=1e8))
     stiff_lander = replace(lander, material=replace(lander.material, young_modulus=1e8))
@@ -580,7 +577,6 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     ("down", "words"), [([True, False, False], ["Only 1 of 3 landers"]), ([True, True, False], [])]
 )
 def test_a_delivery_that_mostly_misses_the_ground_is_a_warning(down: list[bool], words: list[str]) -> None:
-    design = SimpleNamespace(descents=SimpleNamespace(touches_down=np.array(down)))
-    found = list(_missed(design))
+    found = list(_missed(SimpleNamespace(descents=SimpleNamespace(touches_down=np.array(down)))))
     assert len(found) == len(words)
     assert all(word in one for one, word in zip(found, words, strict=True))

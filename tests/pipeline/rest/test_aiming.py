@@ -48,8 +48,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 
 @pytest.fixture(scope="module")
 def found(results: StudyResults) -> dict[str, Any]:
-    table: dict[str, Any] = results.summary["results"]["aim"]
-    return table
+    return results.summary["results"]["aim"]
 
 
 def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyResults, found: dict[str, Any]) -> None:
@@ -63,8 +62,7 @@ def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyR
             assert share["share"] == pytest.approx(ends.count("settled") / len(ends))
             assert 0.0 <= share["lower"] <= share["share"] <= share["upper"] <= 1.0
             assert 0.0 <= share["share"] + aim[ground]["missing"] <= 1.0
-    late = found["aims"][3]["soil"]["time_p95"]
-    assert 0.0 < late["value"] < 86_400.0
+    assert 0.0 < found["aims"][3]["soil"]["time_p95"]["value"] < 86_400.0
     assert found["aims"][3]["hard"]["distance_p95"]["lower"] < found["aims"][3]["hard"]["distance_p95"]["value"]
 
 
@@ -92,8 +90,7 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
     assert f": {100 * best.own.share:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
     told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))
-    first = f"2 of {allowed} delivery options within "
-    assert told.startswith(first)
+    assert told.startswith(f"2 of {allowed} delivery options within ")
     assert " cannot be distinguished from the best, with 90 % confidence: impact.speed = 0.1, " in told
     told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=())))
     assert told.startswith(f"One of {allowed} delivery options within ")
@@ -104,8 +101,7 @@ def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResult
     assert to_json(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
     assert "ost landers come to rest with impact.speed = " in found["statement"]
-    page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
-    assert "Where to aim" in page
+    assert "Where to aim" in (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     assert [path.name for path in (results.folder / "report").glob("*_aim.png")]
 
 
@@ -147,8 +143,7 @@ def test_hard_ground_implies_itself() -> None:
     nothing, lander = np.zeros((200, 3)), np.arange(200)
     for friction in (np.inf, 0.1):
         impacts = Impacts(speed, incidence, nothing, np.full(200, -1e-4), lander)
-        left = HardSurface(0.6, 0.8, friction)(impacts, random).velocity
-        found = implied(speed, incidence, left)
+        found = implied(speed, incidence, HardSurface(0.6, 0.8, friction)(impacts, random).velocity)
         assert found["normal_restitution"] == pytest.approx(0.6)
         slides = found["tangential_restitution"] > 0.8 + 1e-9
         assert found["tangential_restitution"][~slides] == pytest.approx(0.8)

@@ -50,8 +50,7 @@ def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: Stud
     assert hard["settled"]["lower"] <= hard["settled"]["share"] <= hard["settled"]["upper"]
     assert (hard["level"], hard["why"]) == (0.9, None)
     assert "without soil, bed or emulator" in hard["of"]
-    several = journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"]
-    assert several.max() > 2
+    assert journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"].max() > 2
 
 
 def test_the_speed_of_samples_follows_that_of_the_arrival_and_never_passes_it(journeys: StudyResults) -> None:
@@ -71,11 +70,9 @@ def test_a_captured_lander_stays_where_the_ground_holds_it(journeys: StudyResult
 def test_the_table_of_restitution_has_what_runs_and_samples_say(journeys: StudyResults) -> None:
     table = RestitutionTable.read(journeys.folder / "restitution.csv")
     samples = journeys.samples
-    ended = np.isin(samples["outcome"], ["clear", "captured"])
-    assert table.samples.sum() == ended.sum()
+    assert table.samples.sum() == np.isin(samples["outcome"], ["clear", "captured"]).sum()
     assert table.runs.sum() == np.isin(journeys.runs["outcome"], ["clear", "captured"]).sum() > 40
-    stay = (table.captured * table.samples).sum()
-    assert stay == pytest.approx((samples["outcome"] == "captured").sum())
+    assert (table.captured * table.samples).sum() == pytest.approx((samples["outcome"] == "captured").sum())
     left = samples.where(samples["outcome"] == "clear")
     normal = left["velocity_out_z"] / (left["impact.speed"] * np.cos(np.radians(left["impact.incidence_deg"])))
     lowest, highest = (table.quantiles["normal_restitution"][:, :, place] for place in (0, -1))
@@ -172,5 +169,4 @@ def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound
         tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False, progress=Shown()
     )
     assert any("with more speed and spin than the impact energy allows" in sentence for sentence in said)
-    samples = results.samples.where(results.samples["outcome"] == "clear")
-    assert samples["speed_out"].max() > 0.05
+    assert results.samples.where(results.samples["outcome"] == "clear")["speed_out"].max() > 0.05

@@ -74,8 +74,7 @@ def impacts(speed: list[float], incidence_deg: list[float], lander: list[int]) -
 
 
 def test_the_expansion_answers_with_the_soil_of_the_lander_and_the_impact_that_came() -> None:
-    soil = bounce([0.2, 0.5, 0.7])
-    found = soil(impacts([0.1, 0.3], [40.0, 20.0], [2, 0]), np.random.default_rng(0))
+    found = bounce([0.2, 0.5, 0.7])(impacts([0.1, 0.3], [40.0, 20.0], [2, 0]), np.random.default_rng(0))
     along, up = np.cos([0.5, 1.0]), np.sin([0.5, 1.0])
     expected = np.array([0.05, 0.15])[:, None] * np.column_stack([np.zeros(2), -along, up])
     assert found.velocity == pytest.approx(expected, abs=1e-12)
@@ -113,8 +112,7 @@ def test_scatter_is_drawn_anew_in_proportion_to_the_speed_and_the_outcome_with_i
     assert sorted(set(np.round(fast, 9))) == [0.16, 0.24]
     assert slow == pytest.approx(fast / 4.0)
     assert 60 < (fast > 0.2).sum() < 140
-    one = impacts([0.4], [0.0], [0])
-    captured = bounce([0.5], scatter, "captured")(one, np.random.default_rng(1))
+    captured = bounce([0.5], scatter, "captured")(impacts([0.4], [0.0], [0]), np.random.default_rng(1))
     assert (captured.captured.all(), captured.outside.any()) == (True, False)
 
 
@@ -238,8 +236,7 @@ def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path:
     rest, flight = {"duration": 20000.0}, {"gravity": "exact"}
     study = changed(bed={"diameter": FINE}, site={"partner": False}, rest=rest, flight=flight)
     sites, first = captured_sites(study, 40.0)
-    slope = float(sites.body.slope(40.0, 0.0))
-    assert 0.05 < math.tan(slope) < 0.9
+    assert 0.05 < math.tan(float(sites.body.slope(40.0, 0.0))) < 0.9
     with ThreadPoolExecutor(1) as executor:
         job = Job(DrawnDesign(study), Site(study), {}, StudyFolder(tmp_path / "out"), executor, Silent())
         rough, smooth, unknown = (

@@ -98,8 +98,7 @@ def test_only_a_lander_that_is_clear_counts_as_leaving_whatever_else_is_told_of_
         )
         for answer in answers
     ]
-    design = DesignRuns.of(Runs(records, 0))
-    assert design.has_outputs.tolist() == [True, False, False]
+    assert DesignRuns.of(Runs(records, 0)).has_outputs.tolist() == [True, False, False]
 
 
 NO_BED = 0.0
