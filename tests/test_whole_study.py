@@ -19,10 +19,12 @@ from lithobrake.results.json_values import to_json
 from .command_line import lithobrake
 from .few_grains import few_grains
 
-STUDY = (
-    'title = "A few grains"'
-    + few_grains(45, width=0.5, lander_diameter=0.14)
-    + """[design]
+STUDY = f"""title = "A few grains"
+monte_carlo = {{ sample_count = 500 }}
+site = {{ mass = {{ distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }} }}
+flight = {{ gravity = "exact", flight_count = 10, duration = 20000.0 }}
+rest = {{ count = 20, duration = 20000.0 }}
+{few_grains(45, width=0.5, lander_diameter=0.14)}[design]
 method = "paper"
 screening_level = 1
 screening_degree = 1
@@ -30,19 +32,7 @@ refined_level = 1
 refined_degree = 1
 kept_outputs = ["speed_out"]
 test_count = 2
-[monte_carlo]
-sample_count = 500
-[site]
-mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
-[flight]
-gravity = "exact"
-flight_count = 10
-duration = 20000.0
-[rest]
-count = 20
-duration = 20000.0
 """
-)
 FILES = (
     "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
     "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html",

@@ -15,12 +15,12 @@ from lithobrake.study import read_study
 from ..few_grains import few_grains
 from .killed_studies import VICTIMS, end, kill, ledger, start, wait_for_stage
 
-STUDY = (
-    "seed = 2"
-    + few_grains(12, width=0.3, lander_diameter=0.1)
-    + """[campaign]
-retry_count = 20
-[design]
+STUDY = f"""seed = 2
+campaign = {{ retry_count = 20 }}
+monte_carlo = {{ sample_count = 500 }}
+flight = {{ flight_count = 10, duration = 20000.0 }}
+rest = {{ count = 10 }}
+{few_grains(12, width=0.3, lander_diameter=0.1)}[design]
 method = "paper"
 screening_level = 2
 screening_degree = 1
@@ -28,15 +28,7 @@ refined_level = 2
 refined_degree = 1
 kept_outputs = ["speed_out"]
 test_count = 6
-[monte_carlo]
-sample_count = 500
-[flight]
-flight_count = 10
-duration = 20000.0
-[rest]
-count = 10
 """
-)
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
 MOMENTS = (

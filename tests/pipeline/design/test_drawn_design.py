@@ -196,13 +196,9 @@ def study_of(text: str) -> Study:
     return check_tables(tomllib.loads(text), Path())
 
 
-def lander(words: str) -> Study:
-    """The study with another lander."""
-    return study_of(STUDY.replace('shape = "box"\nedges = [0.12, 0.1, 0.08]', words))
-
-
-BOX, PRISM = lander('shape = "box"\nedges = [0.12, 0.1, 0.08]'), lander('shape = "box"\nedges = [0.08, 0.14, 0.08]')
-BALL = lander('shape = "sphere"\ndiameter = 0.1')
+BOX = study_of(STUDY)
+PRISM = study_of(STUDY.replace("[0.12, 0.1, 0.08]", "[0.08, 0.14, 0.08]"))
+BALL = study_of(STUDY.replace('"box", edges = [0.12, 0.1, 0.08]', '"sphere", diameter = 0.1'))
 
 
 def test_terms_follow_the_shape_and_a_ball_has_none() -> None:

@@ -29,7 +29,7 @@ from .soil_journeys import STUDY
 # Touchdowns that the ledger has when something is killed; there are 30 in all.
 MOMENTS = (3, 9, 16)
 WORKERS = 2
-ROLLING = STUDY.replace("[site]\n", "[site.rotation]\nyaw_deg = 30.0\nroll_deg = 60.0\n[site]\n")
+ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ")
 TABLES = (*FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")

@@ -31,29 +31,19 @@ outputs = {{"velocity_out_x": x, "velocity_out_y": 0.0, "velocity_out_z": z, "sp
 Path("outputs.json").write_text(json.dumps({{"outputs": outputs}}))
 """
 STUDY = """
-[solver]
-command = "{python} program.py"
+solver = { command = "PYTHON program.py" }
+impact = { speed = { distribution = "uniform", lower = 0.1, upper = 0.2 }, incidence_deg = 30.0 }
+surface = { gravity = 5e-5 }
+bed = { grain_count = 100, width = [0.6, 0.6], diameter = { distribution = "constant", value = 0.08 } }
+grain = { density = 2500.0, young_modulus = 1e7, poisson_ratio = 0.25, restitution = 0.5, friction = 0.5 }
+monte_carlo = { sample_count = 20_000, scatter = true }
+flight = { flight_count = 10, duration = 3600.0 }
 [lander]
 shape = "sphere"
 diameter = 0.1
 mass = 1.0
-restitution = {{ distribution = "uniform", lower = 0.4, upper = 0.8 }}
-friction = {{ distribution = "log_normal", mean = -1.0, std = 0.1 }}
-[impact]
-speed = {{ distribution = "uniform", lower = 0.1, upper = 0.2 }}
-incidence_deg = 30.0
-[surface]
-gravity = 5e-5
-[bed]
-grain_count = 100
-width = [0.6, 0.6]
-diameter = {{ distribution = "constant", value = 0.08 }}
-[grain]
-density = 2500.0
-young_modulus = 1e7
-poisson_ratio = 0.25
-restitution = 0.5
-friction = 0.5
+restitution = { distribution = "uniform", lower = 0.4, upper = 0.8 }
+friction = { distribution = "log_normal", mean = -1.0, std = 0.1 }
 [design]
 method = "paper"
 points = "sobol_sequence"
@@ -64,12 +54,6 @@ refined_degree = 2
 replicate_count = 2
 kept_outputs = ["speed_out"]
 test_count = 8
-[monte_carlo]
-sample_count = 20_000
-scatter = true
-[flight]
-flight_count = 10
-duration = 3600.0
 """
 
 
@@ -122,7 +106,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A finished study of a program that scatters."""
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
-    (folder / "study.toml").write_text(STUDY.format(python=f"{sys.executable} -S"))
+    (folder / "study.toml").write_text(STUDY.replace("PYTHON", f"{sys.executable} -S"))
     ended = lithobrake("run", folder / "study.toml", "--out", folder / "out", "--workers", 2)
     assert ended.returncode == 0, ended.stderr
     return folder / "out"

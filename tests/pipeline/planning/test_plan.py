@@ -447,6 +447,11 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
 
 # A ball near 50 degrees north of Didymos, over all impacts to come: from bounce to bounce by the emulator.
 EVERY_IMPACT = """
+lander = { shape = "sphere", diameter = 0.14, mass = 0.3, restitution = 0.9 }
+surface = { gravity = 1e-4 }
+contact = { pair_rule = "mean" }
+design = { run_count = 144 }
+site = { latitude_deg = 50.0, heading_deg = 90.0 }
 [bed]
 grain_count = 110
 width = [0.7, 0.7]
@@ -459,23 +464,9 @@ young_modulus = 1e6
 poisson_ratio = 0.25
 restitution = { distribution = "uniform", lower = 0.3, upper = 0.8 }
 friction = 0.6
-[lander]
-shape = "sphere"
-diameter = 0.14
-mass = 0.3
-restitution = 0.9
 [impact]
 speed = { distribution = "uniform", lower = 0.005, upper = 0.4 }
 incidence_deg = { distribution = "uniform", lower = 0.0, upper = 88.0 }
-[surface]
-gravity = 1e-4
-[contact]
-pair_rule = "mean"
-[design]
-run_count = 144
-[site]
-latitude_deg = 50.0
-heading_deg = 90.0
 """
 
 
