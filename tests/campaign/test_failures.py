@@ -88,7 +88,7 @@ def tries(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("retry_count", [0, 1])
-def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_retries(
+def test_a_model_that_never_works_is_given_up_after_its_first_runs_and_retries(
     retry_count: int, tmp_path: Path
 ) -> None:
     model = models.WorksAbove(1000.0, tmp_path)
@@ -244,9 +244,7 @@ class KilledFirst(Worker):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
-def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_process_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(local_executor, "Worker", KilledFirst)
     monkeypatch.setattr(KilledFirst, "started", [])
     runs = campaign(tmp_path, models.parabola, workers=1)
@@ -282,11 +280,9 @@ if __name__ == "__main__":
 """
 
 
-def python(folder: Path, *words: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
+def python(place: Path, *words: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
     """What Python says in a folder."""
-    return subprocess.run(
-        [sys.executable, *words], cwd=folder, input=given, capture_output=True, text=True, check=False
-    )
+    return subprocess.run([sys.executable, *words], cwd=place, input=given, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("piped", [False, True])

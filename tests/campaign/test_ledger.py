@@ -94,9 +94,7 @@ def test_what_was_queued_and_never_ended_is_forgotten_by_the_next_campaign(tmp_p
     "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
     "wall_s = 9.0",
 ])  # fmt: skip
-def test_an_edited_row_is_named_left_out_and_made_again(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str
-) -> None:
+def test_an_edited_row_is_named_and_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path, models.parabola)
     before = {entry.key: entry for entry in read_records(path)}
@@ -116,7 +114,7 @@ def test_an_edited_row_is_named_left_out_and_made_again(
     }
 
 
-def test_a_ledger_without_hashes_is_taken_as_it_stands_and_gets_them(
+def test_a_ledger_without_hashes_is_taken_as_it_is_and_gets_them(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     path = tmp_path / "runs.sqlite"
@@ -272,9 +270,7 @@ def test_a_disk_that_is_full_is_one_sentence_and_spoils_nothing(tmp_path: Path) 
     path = tmp_path / "runs.sqlite"
     folder = str(Path(models.__file__).parent)
     code = f"import sys; sys.path.insert(0, {folder!r})\n{FULL_DISK}"
-    full = subprocess.run(
-        [sys.executable, "-c", code, str(path), "200000"], capture_output=True, text=True, check=False
-    )
+    full = subprocess.run([sys.executable, "-c", code, path, "200000"], capture_output=True, text=True, check=False)
     assert full.returncode == 1
     assert "OSError: " in full.stderr
     assert "runs.sqlite cannot be written (" in full.stderr

@@ -152,18 +152,14 @@ def test_new_names_body_lander_and_place(tmp_path: Path, monkeypatch: pytest.Mon
 @pytest.mark.parametrize(
     "name", ["", " ", ".", "..", "/", "folder/", ".toml", "folder/.toml", "a\nb", " a", "a\x1b[2J", "-x"]
 )
-def test_a_study_needs_a_name_that_can_be_written_and_pasted(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_study_needs_a_name_that_can_be_pasted(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "folder").mkdir()
     assert "allowed: a name, or a path that ends in one; write, say, bennu" in refused(["new", "--", name])
     assert [path.name for path in tmp_path.rglob("*")] == ["folder"]
 
 
-def test_the_name_of_a_study_with_blanks_is_quoted_where_it_is_to_be_pasted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_name_with_blanks_is_quoted_where_it_is_to_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert RUNNER.invoke(app, ["new", "two words"]).output.endswith("then: lithobrake run 'two words.toml'\n")
     assert "--out 'two words'" in refused(["view", "two words"])
@@ -279,9 +275,7 @@ def test_a_folder_that_is_no_study_is_one_sentence(command: str, tmp_path: Path)
 
 
 @pytest.mark.parametrize("out", ["study.toml", "study.toml/out"])
-def test_a_plan_refuses_a_file_in_place_of_the_folder(
-    out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_plan_refuses_a_file_in_place_of_a_folder(out: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     RUNNER.invoke(app, ["new", "study", "--full"])
     assert f"{out} cannot be written (study.toml is a file)" in refused(["plan", "study.toml", "--out", out])

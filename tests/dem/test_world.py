@@ -216,9 +216,7 @@ def test_many_bodies_ask_for_a_row_each():
         ValueError, match=r"add_bodies position has shape \(1, 3\); allowed are finite numbers in \(2, 3\)"
     ):
         World().add_bodies([Sphere(1.0)] * 2, ROCK, np.zeros((1, 3)), np.ones((2, 4)))
-    with pytest.raises(
-        ValueError, match=r"add_bodies orientation is \[0\.0, 0\.0, 0\.0, 0\.0\]; allowed is any finite"
-    ):
+    with pytest.raises(ValueError, match=r"add_bodies orientation is \[0.0, 0\.0, 0\.0, 0\.0\]; allowed is any finite"):
         World().add_bodies([Sphere(1.0)], ROCK, np.zeros((1, 3)), np.zeros((1, 4)))
 
 

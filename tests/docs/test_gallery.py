@@ -78,9 +78,7 @@ def oblique_map() -> ModuleType:
         ("time_limit", 0.2, "lost"),
     ],
 )  # fmt: skip
-def test_a_landing_is_told_by_its_outcome_and_its_way(
-    oblique_map: ModuleType, status: str, way: float, kind: str
-) -> None:
+def test_a_landing_is_told_by_outcome_and_way(oblique_map: ModuleType, status: str, way: float, kind: str) -> None:
     assert oblique_map.kind({"shape": "sphere", "status": status, "way": way}) == kind
 
 

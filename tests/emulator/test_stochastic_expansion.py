@@ -129,9 +129,7 @@ def test_bounds_are_never_crossed() -> None:
         assert 0.0 < values.min() < values.max() < 0.4
     assert fitted("positive").sample([[0.0, 0.9]], 100_000).min() > 0.0
     np.testing.assert_array_equal(fitted("bounded").density([[0.0]], [-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
-    np.testing.assert_allclose(
-        fitted("bounded").cdf([[0.0]], [-1.0, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14
-    )
+    np.testing.assert_allclose(fitted("bounded").cdf([[0.0]], [-1, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14)
     assert fitted("bounded").density([[0.0]], [1e-310]) == 0.0
 
 

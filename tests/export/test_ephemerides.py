@@ -43,7 +43,7 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
 
 
 @pytest.mark.parametrize("frame", ["inertial", "fixed"])
-def test_a_chosen_sample_has_a_segment_for_each_flight_over_its_bounces(
+def test_a_sample_has_a_segment_for_each_flight_of_its_bounces(
     bouncing: StudyResults, tmp_path: Path, frame: str
 ) -> None:
     """A flight begins where and when the one before it ends, whatever the axes; what changes is its velocity."""

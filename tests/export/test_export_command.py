@@ -61,9 +61,7 @@ def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(result
     ("vtkhdf", "bed_0.vtkhdf"),
     ("sheet", "landing.png"),
 ])  # fmt: skip
-def test_a_file_of_the_user_is_replaced_only_when_told_to(
-    results: StudyResults, tmp_path: Path, kind: str, name: str
-) -> None:
+def test_a_file_of_the_user_is_replaced_when_told(results: StudyResults, tmp_path: Path, kind: str, name: str) -> None:
     (tmp_path / name).write_text("mine")
     words = ["export", str(results.folder), "--to", "plates", "--to", kind, "--out", str(tmp_path)]
     found = RUNNER.invoke(app, words)
@@ -133,9 +131,7 @@ def exported(results: StudyResults, place: Path, *words: str) -> list[str]:
     return sorted(path.name for path in place.iterdir())
 
 
-def test_the_landing_shown_and_the_bed_are_written_with_all_their_frames(
-    soil_results: StudyResults, tmp_path: Path
-) -> None:
+def test_the_landing_shown_and_the_bed_are_written_with_all_frames(soil_results: StudyResults, tmp_path: Path) -> None:
     assert exported(soil_results, tmp_path, "--to", "vtkhdf") == ["bed_0.vtkhdf", "landing.vtkhdf"]
     for name, bodies in (("landing", soil_results.median_landing), ("bed_0", soil_results.bed_bodies())):
         with h5py.File(tmp_path / f"{name}.vtkhdf") as file:

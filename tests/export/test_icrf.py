@@ -169,7 +169,7 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
     ({"frame": "icrf", "epoch": EPOCH}, "leave epoch out"),
     ({"frame": "icrf", "samples": [99]}, "sample 99 has no flight"),
 ])  # fmt: skip
-def test_what_contradicts_the_study_is_refused(
+def test_contradictions_are_refused(
     delivered: StudyResults, tmp_path: Path, wrong: dict[str, object], words: str
 ) -> None:
     with pytest.raises(ValueError, match=words):
@@ -218,9 +218,7 @@ def at(parts: list[dict[str, Any]], name: str, time: float, count: int) -> np.nd
     return table[row, 1:]
 
 
-def test_each_lander_is_where_and_turned_as_the_tables_have_it(
-    delivered: StudyResults, packets: list[dict[str, Any]]
-) -> None:
+def test_each_lander_is_where_and_as_the_tables_have_it(delivered: StudyResults, packets: list[dict[str, Any]]) -> None:
     """Seven come to rest; the model of one fails in its second touchdown, of which nothing is shown."""
     arcs, journeys = delivered.arcs, delivered.journeys
     assert (journeys["end"] == "at_rest").sum() == 7

@@ -77,9 +77,7 @@ def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResu
     assert found["units"] == {"sample": "", "ground": "", "time_s": "s", "rebounds": "", "path_length": "m"}
 
 
-def test_places_of_rest_of_journeys_are_read_back_with_frame_nodata_and_units(
-    delivered: StudyResults, tmp_path: Path
-) -> None:
+def test_places_of_rest_of_journeys_have_frame_nodata_and_units(delivered: StudyResults, tmp_path: Path) -> None:
     """The cell, the point and the table have one place; a swap of latitude and longitude puts them apart."""
     geojson, rasterio = pytest.importorskip("geojson"), pytest.importorskip("rasterio")
     write_rest_geojson(delivered, tmp_path / "rest.geojson")

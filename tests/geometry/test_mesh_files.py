@@ -44,7 +44,7 @@ def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") 
     ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
     ("", PDS3_LABEL, ".lbl", 1e3),
 ])  # fmt: skip
-def test_the_unit_is_what_header_or_label_state(
+def test_the_unit_is_what_header_or_label_say(
     tmp_path: Path, header: str, label: str, ending: str, length: float
 ) -> None:
     vertices, _ = read_mesh(mesh(tmp_path, header, label, ending))
@@ -241,9 +241,7 @@ def test_a_label_of_another_file_is_no_mesh(tmp_path: Path, file: str) -> None:
     "header", ["# length_unit: km\n", "# LengthUnits: km\n", "# unit_length = km\n", "# units: km\n"]
 )
 @pytest.mark.parametrize("mark", ["", "\ufeff"])
-def test_a_unit_is_found_by_each_of_its_names_and_behind_a_byte_order_mark(
-    tmp_path: Path, header: str, mark: str
-) -> None:
+def test_a_unit_is_found_by_each_name_and_behind_a_byte_order_mark(tmp_path: Path, header: str, mark: str) -> None:
     (tmp_path / "rock.obj").write_text(f"{mark}{header}\n{OCTAHEDRON}", encoding="utf-8")
     assert read_mesh(tmp_path / "rock.obj")[0].max() == 1000.0
 
@@ -271,9 +269,7 @@ def test_a_volume_has_the_sign_of_its_facets() -> None:
     assert volume_of(CUBE + 7.0, FACES) == pytest.approx(mass_properties(CUBE + 7.0, FACES)[0], rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("shift", "inside"), [(0.0, True), (0.4999, True), (0.5001, False), (3.0, False), (1e6, False)]
-)
+@pytest.mark.parametrize(("shift", "inside"), [(0, True), (0.4999, True), (0.5001, False), (3.0, False), (1e6, False)])
 def test_a_surface_goes_round_the_origin_or_not(shift: float, inside: bool) -> None:
     for direction in np.eye(3):
         assert holds_origin(CUBE + shift * direction, FACES) == inside

@@ -187,9 +187,7 @@ def test_a_body_that_stands_still_in_its_frame_has_the_flights_of_one_without_a_
     body = paired()
     still = replace(body, rotation=rotation_history(body, 2.0 * DAY))
     origin, axes = body.local_frame([0.0, 10.0, -40.0, 70.0], [0.0, 90.0, 200.0, 300.0])
-    velocity = np.einsum(
-        "nij,nj->ni", axes, [[0.01, 0.0, 0.02], [0.0, 0.01, 0.03], [0.02, 0.01, 0.01], [0.0, 0.05, 0.1]]
-    )
+    velocity = np.einsum("nij,nj->ni", axes, [[0.01, 0, 0.02], [0, 0.01, 0.03], [0.02, 0.01, 0.01], [0, 0.05, 0.1]])
     one, other = (fly(each, origin, velocity, DAY, start_time=3600.0) for each in (body, still))
     assert (one.status == other.status).all()
     assert (one.facet == other.facet).all()
@@ -255,9 +253,7 @@ def test_flights_about_a_tumbling_body_are_those_among_the_stars(body, begin):
     stars = Stars(body, Rotation.from_euler("ZYX", list(angles.values()), degrees=True), spin)
     origin, axes = body.local_frame([3.0, 40.0, -20.0], [5.0, 100.0, 190.0])
     origin = origin + 0.5 * axes[:, 2]
-    velocity = np.einsum(
-        "nij,nj->ni", axes.transpose(0, 2, 1), [[0.01, 0.0, 0.012], [0.0, 0.012, 0.01], [-0.01, 0.0, 0.02]]
-    )
+    velocity = np.einsum("nij,nj->ni", axes.transpose(0, 2, 1), [[0.01, 0, 0.012], [0, 0.012, 0.01], [-0.01, 0, 0.02]])
     flown = fly(tumbling, origin, velocity, 9000.0, start_time=begin, tolerance=1e-9)
     assert (flown.facet >= 0).sum() >= 2
     for row in range(3):

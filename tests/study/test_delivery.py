@@ -151,9 +151,7 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     (("time_s", "<xml>"), "is XML"),
     ((",vz_m_s", ""), "the column vz_m_s is missing"),
 ])  # fmt: skip
-def test_tables_that_cannot_be_read_are_refused_with_their_line(
-    change: tuple[str, str], words: str, tmp_path: Path
-) -> None:
+def test_tables_that_cannot_be_read_are_told_their_line(change: tuple[str, str], words: str, tmp_path: Path) -> None:
     path = tmp_path / "states.csv"
     path.write_text(STATES.replace(*change))
     with pytest.raises(ValueError, match=r"states\.csv") as error:

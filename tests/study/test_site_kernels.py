@@ -105,7 +105,7 @@ def test_a_kernel_of_zeros_is_refused_and_ends_no_process(folder: Path) -> None:
         study(folder, kernels=["zeros.ek"])
 
 
-def test_without_the_library_the_study_is_refused_with_how_to_install_it(
+def test_without_the_library_it_is_refused_with_how_to_install_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "spiceypy", None)

@@ -140,9 +140,7 @@ def followed(journeys_file: Path) -> tuple[OneJourney, list[str]]:
     return follow_one(study, landing_inputs(study, number=NUMBER), told.append), told
 
 
-def test_it_has_the_bits_of_the_journey_in_the_study(
-    results: StudyResults, followed: tuple[OneJourney, list[str]]
-) -> None:
+def test_it_has_the_bits_of_that_of_the_study(results: StudyResults, followed: tuple[OneJourney, list[str]]) -> None:
     found, _ = followed
     records = {record.key: record for record in read_records(results.folder / "runs.sqlite")}
     assert len(found.landings) > 1
@@ -176,9 +174,7 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
     assert re.search(r"side [+-][xyz] is down, tilted by [\d.]+ deg\.$", track.end_words)
 
 
-def test_a_journey_of_a_study_makes_each_touchdown_again(
-    results: StudyResults, followed: tuple[OneJourney, list[str]]
-) -> None:
+def test_a_journey_makes_each_touchdown_again(results: StudyResults, followed: tuple[OneJourney, list[str]]) -> None:
     journey, (found, _) = results.journey(NUMBER), followed
     assert journey.track.lines() == found.track.lines()
     # It breaks its lines to fit a screen.

@@ -108,9 +108,7 @@ def test_the_folder_of_another_study_of_the_same_name_is_refused_until_its_file_
 
 
 @pytest.mark.parametrize("keys", ['{"format_version": 1, "files": {}, "wall_s": {}}', "", "[3]"])
-def test_a_folder_of_the_first_format_or_with_damaged_keys_goes_on_with_its_study_file(
-    keys: str, tmp_path: Path
-) -> None:
+def test_a_folder_of_the_first_format_or_with_bad_keys_goes_on_with_its_study_file(keys: str, tmp_path: Path) -> None:
     study = write_study(tmp_path / "a" / "study.toml")
     begun(study, tmp_path / "out")
     (tmp_path / "out" / "keys.json").write_text(keys)

@@ -116,9 +116,7 @@ def test_bounces_that_share_a_bed_say_so(folder: Path, tmp_path: Path) -> None:
     )
 
 
-def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_name_and_version(
-    folder: Path, tmp_path: Path
-) -> None:
+def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_version(folder: Path, tmp_path: Path) -> None:
     old = tmp_path / "old"
     shutil.copytree(folder, old)
     content = json.loads((old / "emulator.json").read_text(encoding="utf-8"))
@@ -171,7 +169,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_with_an_emulator_it_says_how_many_bounces_would_halve_what_is_unknown(
+def test_with_an_emulator_it_says_how_many_bounces_halve_the_unknown(
     study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made, planned = list[ExpectedInference](), InferredStudy.plan

@@ -255,7 +255,7 @@ def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulat
     assert shares[1] > shares[0] > shares[2]
 
 
-def test_the_page_says_that_it_is_one_touchdown_and_of_how_many(
+def test_the_page_says_it_is_one_touchdown_of_how_many(
     page: Path, explored: dict[str, Any], journeys: StudyResults
 ) -> None:
     lines = visible_text(page.read_text(encoding="utf-8")).splitlines()

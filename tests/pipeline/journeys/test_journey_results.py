@@ -180,9 +180,7 @@ def test_status_counts_the_ends_of_the_journeys(journeys: StudyResults) -> None:
     assert json.loads(json.dumps(found.to_json()))["runs"]["journeys"]["ends"][JourneyEnd.AT_REST] == 43
 
 
-def test_status_counts_what_the_ledger_tells_while_journeys_are_followed(
-    journeys: StudyResults, tmp_path: Path
-) -> None:
+def test_status_counts_what_the_ledger_has_while_journeys_are_followed(journeys: StudyResults, tmp_path: Path) -> None:
     folder = tmp_path / "half"
     shutil.copytree(journeys.folder, folder)
     for name in TABLES:

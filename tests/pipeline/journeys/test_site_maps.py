@@ -118,9 +118,7 @@ def test_impacts_are_beyond_the_first_range_that_they_leave() -> None:
     assert found.tolist() == ["", "", "impact.speed", "surface.gravity"]
 
 
-def test_an_answered_cell_has_what_the_journeys_of_the_study_have_there(
-    site_map: SiteMap, journeys: StudyResults
-) -> None:
+def test_a_cell_has_what_the_journeys_of_the_study_have_there(site_map: SiteMap, journeys: StudyResults) -> None:
     own = int(EqualAreaCells.of(CELLS).cell_of([10.0], [-60.0])[0])
     ends, rests = site_map.cells[own].ends, journeys.journeys["end"] == "at_rest"
     assert ends.at_rest.upper is not None

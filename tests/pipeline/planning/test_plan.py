@@ -220,7 +220,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
     ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
 ])  # fmt: skip
-def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
+def test_what_a_run_refuses_a_plan_refuses_in_the_same_words(
     changes: dict[str, str], said: str, tmp_path: Path
 ) -> None:
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n")
@@ -324,9 +324,7 @@ def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> N
     assert "to avoid reflections and waves of the lander's own images" in said[1]
 
 
-def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_beds_of_folder_and_library_are_not_to_be_poured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study, kept = drawn(), set[int]()
 
     def is_stored(recipe: Any) -> bool:
@@ -509,7 +507,7 @@ def record(wall_s: float) -> Record:
     return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
 
 
-def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
+def test_other_work_on_the_cores_raises_upper_ends_by_its_factor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, cores = StudyFolder.only_read(tmp_path / "out"), available_cores()

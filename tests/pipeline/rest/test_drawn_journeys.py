@@ -92,9 +92,7 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
     ({"bed": {"bed_count": 1}}, "All runs landed on one bed."),
     ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs landed at one impact point."),
 ], ids=["one bed", "one place"])  # fmt: skip
-def test_one_bed_or_one_place_gives_no_interval_anywhere(
-    changes: dict[str, dict[str, Any]], words: str, tmp_path: Path
-) -> None:
+def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any]], words: str, tmp_path: Path) -> None:
     results = made(tmp_path / "out", SyntheticLander(), **changes)
     found = results.summary["results"]
     returns = found["returns"]
