@@ -1,30 +1,50 @@
-"""Journeys from Python, in the files of other programs, by commands; and what decides their ends."""
+"""Journeys from Python, in the files of other programs, by commands, on their page; and what decides their ends."""
 
+import dataclasses
 import json
 import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
+from lithobrake.emulator import law_tables
 from lithobrake.export import ExportOptions, export_study
 from lithobrake.export.flown import Flown
 from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
 from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.emulated.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
 from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.runs.energy_bound import energy_bound
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
-from lithobrake.results import StudyResults
+from lithobrake.report import write_report
+from lithobrake.report.content import Content, PageTable
+from lithobrake.report.figures.ground_map import GroundMap, round_length
+from lithobrake.report.live.body_view import end_views
+from lithobrake.report.page_data import JourneyPage, page_results
+from lithobrake.report.pages.journey_page import journey_content
+from lithobrake.report.words import journey_captions as words
+from lithobrake.results import ExplorerTables, StudyResults
+from lithobrake.results.journey_results import EndShare
 from lithobrake.study import StudySource, check_tables, read_study
+from lithobrake.vocabulary.fate_colours import END_COLOURS
 from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
 from ...command_line import lithobrake
+from ...report.browser import browser_page, needs_browser
+from ...report.page_scripts import answer_of, explorer_data, needs_node
+from ...report.page_text import visible_text
 from .bouncing_lander import FAILS, LEAVES, STUCK, bounce, journey_tables, run_without_emulator
 
 
@@ -233,3 +253,260 @@ def test_runs_have_columns_of_journey_and_touchdown(journeys_folder: Path) -> No
     lines = shown.stdout.splitlines()
     assert "touch-" in lines[0]
     assert lines[1].split()[:3] == ["wall", "journey", "down"]
+
+
+@pytest.fixture
+def data(journeys: StudyResults) -> JourneyPage:
+    found = page_results(journeys)
+    assert isinstance(found, JourneyPage)
+    return found
+
+
+def tables_of(content: Content) -> dict[str, PageTable]:
+    return {table.title: table for section in content.sections for table in section.tables}
+
+
+def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPage, journeys_folder: Path) -> None:
+    page = write_report(journeys_folder).read_text(encoding="utf-8")
+    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST]
+    assert content.answer.startswith(with_interval(at_rest, level=None if at_rest.lower is None else LEVEL))
+    assert len(content.tiles) == 5
+    assert content.tiles[0].words.startswith("at rest, ")
+    assert float(content.tiles[2].value) == pytest.approx(
+        data.at_rest.time_s.median.value / words.time_unit(data)[0], rel=0.05
+    )
+    header = page[: page.index("</header>")]
+    assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
+    contents = ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
+    assert re.findall(r"<h2>([^<]+)</h2>", page) == contents
+
+
+def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:
+    table = tables_of(journey_content(data))["How the journeys ended"]
+    assert sum(float(row[2].split(" ")[0]) for row in table.rows) == pytest.approx(100.0, abs=1.0)
+
+
+def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
+    content = journey_content(data)
+    names = [plot.name for plot in content.plots]
+    assert names[:6] == ["ends", "outcomes", "attitude", "times", "counts", "end_variance"]
+    others = [plot for plot in content.plots[6:] if plot.name != "bed"]
+    assert others
+    assert [plot.name for plot in others if "first touchdown" not in f"{plot.title} {plot.sentence}".lower()] == []
+    appendix = next(section for section in content.sections if section.title == "Appendix")
+    titles = {table.title for table in appendix.tables}
+    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {
+        "Beds", "Sampled inputs",
+    }  # fmt: skip
+
+
+def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None:
+    none = np.full(data.journeys.row_count, JourneyEnd.ESCAPED.value)
+    columns = dict(data.journeys.columns)
+    columns["end"] = dataclasses.replace(columns["end"], values=none)
+    nothing = dataclasses.replace(data.at_rest.time_s.median, value=None, lower=None, upper=None)
+    empty = dataclasses.replace(data.at_rest.time_s, median=nothing, q95=nothing)
+    rest = dataclasses.replace(
+        data.at_rest, time_s=empty, contacts=empty, distance_m=empty, tilt_deg=empty, faces={}, regions=()
+    )
+    ends = {end.value: EndShare(0, 0.0, 0.0, 0.2) for end in JourneyEnd}
+    ends[JourneyEnd.ESCAPED] = EndShare(48, 1.0, 0.8, 1.0)
+    table = type(data.journeys)(data.journeys.row, columns)
+    content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
+    assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
+    assert [tile.value for tile in content.tiles].count("0") == 4
+
+
+@pytest.mark.parametrize(("most", "length"), [(7.3, 5.0), (5.0, 5.0), (1.99, 1.0), (0.3, 0.2), (250.0, 200.0)])
+def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
+    assert round_length(most) == pytest.approx(length, rel=1e-12)
+
+
+def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyPage) -> None:
+    ways, ends = data.paths
+    assert len(ways) == len(ends) > len([end for end in ends if end == JourneyEnd.AT_REST]) > 0
+    (view,) = end_views(data)
+    on_ground = int(np.isfinite(data.journeys["latitude_deg"]).sum())
+    assert f"where {on_ground} landers ended on the ground" in view.html
+    assert f"--key: {END_COLOURS[JourneyEnd.AT_REST]}" in view.html
+    # A lander with several flights is one way, of so many flights.
+    flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
+    assert sum(flights) == len(ways)
+    assert len(flights) == len(np.unique(data.path_times[1]))
+
+
+@needs_browser
+def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp_path: Path) -> None:
+    path = write_report(journeys_folder)
+    with browser_page(tmp_path) as page:
+        page.open(path, 1280)
+        assert 2 <= page.sheets() <= 3
+        assert page.complaints == []
+
+
+NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, journeys: StudyResults) -> None:
+    axes = Figure().subplots()
+    assert getattr(journeys.plot, name)(ax=axes) is axes
+    assert axes.has_data()
+    # The half of a body has a title in place of axes.
+    assert axes.get_xlabel() or (name == "map" and axes.get_title())
+    assert f"{name}()" in repr(journeys.plot)
+
+
+def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.ends(Figure().subplots())
+    found = journeys.results.ends
+    bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
+    for end, share in found.items():
+        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share)
+
+
+def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
+    axes = journeys.plot.map(Figure().subplots())
+    at_rest = journeys.journeys.where(journeys.journeys["end"] == "at_rest")
+    drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
+    site = journeys.results.site
+    ground = GroundMap(site.latitude_deg, site.longitude_deg, float(np.linalg.norm(site.place_m)))
+    for east, north in zip(*ground.places(at_rest["latitude_deg"], at_rest["longitude_deg"]), strict=True):
+        assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: StudyResults) -> None:
+    axes = journeys.plot.distances(Figure().subplots())
+    marks = [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "o"]
+    rest = journeys.results.rest.distance_m
+    assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]
+
+
+def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.sides(Figure().subplots())
+    widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
+    assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
+        {name: 100 * one.share for name, one in journeys.results.rest.faces.items()}
+    )
+
+
+SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
+BEGIN = "const { facts } = given, law = new Law(unpack(given.law), facts);"
+REST = "const shares = (found) => [found.returns, found.known].map((list) => list.reduce((all, one) => all + one, 0));"
+SHARE = "document.querySelector('#explorer .share').textContent"
+PHONE = 390
+
+
+@pytest.fixture
+def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
+    # A function has no beds.
+    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
+
+
+@pytest.fixture
+def explorer(journeys: StudyResults) -> ExplorerTables:
+    found = journeys.touchdown_explorer
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def page(journeys_folder: Path) -> Path:
+    return write_report(journeys_folder)
+
+
+@pytest.fixture
+def explored(page: Path) -> dict[str, Any]:
+    return explorer_data(page.read_text(encoding="utf-8"))
+
+
+def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: ExplorerTables) -> None:
+    assert explorer.input_names == model.inputs
+    # A prism: its axis, upright, leaning and along the travel.
+    terms = tuple(f"attitude.{term}_z" for term in ("upright", "lean", "along"))
+    assert explorer.input_names[-7:] == (*OF_TOUCHDOWN, *terms)
+    assert explorer.attitude.input_names == explorer.input_names[-3:]
+    assert [len(downs) for downs in explorer.attitude.sides.values()] == [4, 2]
+    assert explorer.group_count == len(set(model.bed))
+    for name, table in law_tables(model.refits).items():
+        assert np.array_equal(explorer.tables[name], table), name
+
+
+@needs_node
+def test_the_energy_bound_is_that_of_the_longest_way_and_the_median_spin(
+    model: TouchdownEmulator, explored: dict[str, Any], journeys: StudyResults
+) -> None:
+    spin = np.median(np.linalg.norm([journeys.touchdowns[f"impact.spin_{axis}"] for axis in "xyz"], axis=0))
+    assert spin > 0.0
+    moved = dict(zip(OF_TOUCHDOWN, (0.05, 20.0, 4e-5, 9.0), strict=True))
+    values = moved | {"impact.spin_x": 0.0, "impact.spin_y": spin, "impact.spin_z": 0.0}
+    at = {name: np.array([value]) for name, value in values.items()}
+    bound = energy_bound(model.design, model.bed_height, at, 1, model.across)
+    given = explored | {"values": [*(0.0 for _ in model.inputs[:-7]), *moved.values(), 0.0, 0.0, 0.0]}
+    found = answer_of(SCRIPTS, f"{BEGIN} return law.energyBoundAt(given.values);", given)
+    assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=1e-12)
+
+
+@needs_node
+def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulator, explored: dict[str, Any]) -> None:
+    place = model.inputs.index(OF_TOUCHDOWN[0])
+    program = f"""{BEGIN} {REST}
+      const explorer = new Explorer(law, null, facts), ranges = facts.inputs.map(() => [0, 1]);
+      return [[0, 1], [0, 0.3], [0.9, 1]].map((range) => {{
+        ranges[given.place] = range;
+        return shares(explorer.at(ranges));
+      }});"""
+    found = answer_of(SCRIPTS, program, explored | {"place": place})
+    captured = model.refits[0].outcome_names.index("captured")
+    laws = model.refits[0].runs.inputs.values()
+    shares = []
+    for (low, high), (rest, known) in zip([(0.0, 1.0), (0.0, 0.3), (0.9, 1.0)], found, strict=True):
+        assert known == len(model.refits) * 500
+        u = np.random.default_rng(4).random((4000, len(model.inputs)))
+        u[:, place] = low + (high - low) * u[:, place]
+        x = np.column_stack([law.ppf(column) for law, column in zip(laws, u.T, strict=True)])
+        # Attitudes are uniform over rotations.
+        x[:, -3:] = np.column_stack(list(model.attitude_of(Rotation.random(4000, rng=5)).values()))
+        shares.append(float(np.mean([one.outcome_probability(x)[:, captured].mean() for one in model.refits])))
+        # All refits share the 500 points of the inputs, and the 4000 are a plain sample.
+        error = np.sqrt(shares[-1] * (1.0 - shares[-1]) * (1.0 / 500 + 1.0 / 4000))
+        assert abs(rest / known - shares[-1]) < 3.0 * error
+    assert shares[1] > shares[0] > shares[2]
+
+
+def test_the_page_says_it_is_one_touchdown_of_how_many(
+    page: Path, explored: dict[str, Any], journeys: StudyResults
+) -> None:
+    lines = visible_text(page.read_text(encoding="utf-8")).splitlines()
+    words = next(line for line in lines if line.startswith("Any touchdown of a journey"))
+    fitted = int(np.sum(journeys.touchdowns["outcome"] != "failed"))
+    assert fitted < journeys.touchdowns.row_count
+    assert f"fitted to {fitted} touchdowns on 12 beds" in words
+    slope = journeys.touchdowns["surface.slope_deg"]
+    assert f"slope from {slope.min():.2g} to {slope.max():.2g} deg" in words
+    assert explored["flown"] is None
+    assert {one["words"] for one in explored["facts"]["inputs"]} >= {"impact speed", "incidence at impact", "gravity"}
+    assert [one["unit"] for one in explored["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s²", "deg", "", "", ""]
+
+
+@needs_browser
+def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmulator, tmp_path: Path) -> None:
+    number = 2 * model.inputs.index(OF_TOUCHDOWN[0]) + 1
+    with browser_page(tmp_path) as browser:
+        browser.open(page, PHONE)
+        assert browser.value("document.documentElement.scrollWidth") == PHONE
+        assert browser.value("document.querySelectorAll('#explorer figure').length") == 3
+        before = browser.value(SHARE)
+        browser.value(
+            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = 0.3;"
+            "end.dispatchEvent(new Event('input')); })()"
+        )
+        after = browser.value(
+            "new Promise((done) => { const look = () => "
+            f"{SHARE} !== {before!r} ? done({SHARE}) : setTimeout(look, 50); look(); }})"
+        )
+        assert browser.complaints == []
+    for said in (before, after):
+        assert " % come to rest at this touchdown (90 % interval of the emulator: " in said
+    assert float(after.split(" ")[0]) > float(before.split(" ")[0])
