@@ -94,12 +94,10 @@ class Truth:
         spin = 0.7 * (a - CENTRES[0]) / SPREADS[0] + 0.7 * rng.standard_normal(len(x))
         return np.column_stack(
             [
-                SPEED_LIMIT * special.expit(a),
-                ELEVATION_LIMIT * special.expit(b),
-                self._azimuth(u, rng),
+                SPEED_LIMIT * special.expit(a), ELEVATION_LIMIT * special.expit(b), self._azimuth(u, rng),
                 np.exp(SPREADS[2] * spin),
             ]
-        )
+        )  # fmt: skip
 
     def _place(self, second_branch: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Draw the latent of the place [n], mean 0 and variance 1 whatever the chances of the second branch [n]."""

@@ -40,25 +40,17 @@ UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
 
 # The range of the friction has the median of the template to the last bit, which is what the beds have.
 REMADE = [
-    ({"bed": {"grain_count": 151}}, "bed"),
-    ({"surface": {"gravity": 4e-5}}, "bed"),
-    ({"impact": {"speed": 0.25}}, "landing"),
-    ({"contact": {"pair_rule": "mean"}}, "bed"),
+    ({"bed": {"grain_count": 151}}, "bed"), ({"surface": {"gravity": 4e-5}}, "bed"),
+    ({"impact": {"speed": 0.25}}, "landing"), ({"contact": {"pair_rule": "mean"}}, "bed"),
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
-    ({"design": {"screening_level": 3}}, "screening_runs"),
-    ({"design": {"fit": "best"}}, "screen"),
+    ({"design": {"screening_level": 3}}, "screening_runs"), ({"design": {"fit": "best"}}, "screen"),
     ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
-    ({"design": {"kept_share": 0.8}}, "refined_runs"),
-    ({"design": {"test_count": 11}}, "test_runs"),
-    ({"monte_carlo": {"sample_count": 200}}, "sample"),
-    ({"monte_carlo": {"scatter": True}}, "sample"),
-    ({"site": {"heading_deg": 10.0}}, "fly"),
-    ({"flight": {"flight_count": 7}}, "fly"),
-    ({"site": {"partner": False}}, "fly"),
-    ({"lander": {"mass": 3.0}}, "landing"),
-    ({"site": {"east_error": 10.0}}, "fly"),
-    ({"rest": {"friction": 0.5}}, "rest"),
-]
+    ({"design": {"kept_share": 0.8}}, "refined_runs"), ({"design": {"test_count": 11}}, "test_runs"),
+    ({"monte_carlo": {"sample_count": 200}}, "sample"), ({"monte_carlo": {"scatter": True}}, "sample"),
+    ({"site": {"heading_deg": 10.0}}, "fly"), ({"flight": {"flight_count": 7}}, "fly"),
+    ({"site": {"partner": False}}, "fly"), ({"lander": {"mass": 3.0}}, "landing"),
+    ({"site": {"east_error": 10.0}}, "fly"), ({"rest": {"friction": 0.5}}, "rest"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])

@@ -43,12 +43,8 @@ def test_a_row_has_all_that_is_known_of_a_run(tmp_path: Path) -> None:
     entries = {entry.inputs["a"]: entry for entry in read_records(tmp_path / "runs.sqlite")}
     one, two = entries[1.0], entries[2.0]
     assert (one.status, one.outcome, one.outputs, one.version, one.attempts) == (
-        "done",
-        "clear",
-        {"height": 1.5},
-        "7",
-        1,
-    )
+        "done", "clear", {"height": 1.5}, "7", 1,
+    )  # fmt: skip
     assert (two.status, two.outcome, two.reason) == (
         "failed", None, "FloatingPointError: the overlap grew without bound"
     )  # fmt: skip

@@ -248,12 +248,10 @@ def effects(x):
     """One effect an input, of mean 0 and variance 1: bent, saturating, or cut where friction stops sliding."""
     u = np.column_stack([entry.cdf(x[:, k]) for k, entry in enumerate(INPUTS.values())])
     shapes = [
-        (np.tanh(3.0 * u[:, 0] - 1.0), lambda t: np.tanh(3.0 * t - 1.0)),
-        (u[:, 1], lambda t: t),
-        (u[:, 2] ** 2, lambda t: t**2),
-        (np.sin(1.5 * u[:, 3]), lambda t: np.sin(1.5 * t)),
+        (np.tanh(3.0 * u[:, 0] - 1.0), lambda t: np.tanh(3.0 * t - 1.0)), (u[:, 1], lambda t: t),
+        (u[:, 2] ** 2, lambda t: t**2), (np.sin(1.5 * u[:, 3]), lambda t: np.sin(1.5 * t)),
         (np.minimum(u[:, 4], 0.6), lambda t: np.minimum(t, 0.6)),
-    ]
+    ]  # fmt: skip
     middles = (np.arange(10_000) + 0.5) / 10_000
     return np.column_stack([(value - f(middles).mean()) / f(middles).std() for value, f in shapes])
 

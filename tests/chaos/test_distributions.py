@@ -24,17 +24,14 @@ from lithobrake.chaos.distribution_registry import KINDS
 from lithobrake.study.quantity import DISTRIBUTIONS
 
 PAIRS = [
-    (Uniform(2.0, 5.0), stats.uniform(2.0, 3.0)),
-    (LogUniform(1e-3, 1e4), stats.loguniform(1e-3, 1e4)),
-    (Normal(-2.0, 0.5), stats.norm(-2.0, 0.5)),
-    (LogNormal(1.0, 0.3), stats.lognorm(0.3, scale=np.exp(1.0))),
+    (Uniform(2.0, 5.0), stats.uniform(2.0, 3.0)), (LogUniform(1e-3, 1e4), stats.loguniform(1e-3, 1e4)),
+    (Normal(-2.0, 0.5), stats.norm(-2.0, 0.5)), (LogNormal(1.0, 0.3), stats.lognorm(0.3, scale=np.exp(1.0))),
     (TruncatedNormal(1.0, 2.0, 0.0, 9.0), stats.truncnorm(-0.5, 4.0, 1.0, 2.0)),
     (TruncatedNormal(0.0, 1.0, 8.0, np.inf), stats.truncnorm(8.0, np.inf)),
     (TruncatedNormal(0.0, 1.0, -np.inf, -8.0), stats.truncnorm(-np.inf, -8.0)),
-    (Beta(2.0, 5.0, -1.0, 3.0), stats.beta(2.0, 5.0, -1.0, 4.0)),
-    (Gamma(3.0, 0.2), stats.gamma(3.0, scale=0.2)),
+    (Beta(2.0, 5.0, -1.0, 3.0), stats.beta(2.0, 5.0, -1.0, 4.0)), (Gamma(3.0, 0.2), stats.gamma(3.0, scale=0.2)),
     (Exponential(4.0), stats.expon(scale=0.25)),
-]
+]  # fmt: skip
 U = np.array([1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1.0 - 1e-9])
 
 

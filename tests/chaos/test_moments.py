@@ -217,12 +217,9 @@ def test_openturns_gives_the_same_coefficients(fitted):
     families = [openturns.StandardDistributionPolynomialFactory(joint.getMarginal(k)) for k in range(3)]
     basis = openturns.OrthogonalProductPolynomialFactory(families, enumeration)
     algorithm = openturns.FunctionalChaosAlgorithm(
-        openturns.Sample(x.tolist()),
-        openturns.Sample(y[:, None].tolist()),
-        joint,
-        openturns.FixedStrategy(basis, len(multi_index_set(3, 4))),
-        openturns.LeastSquaresStrategy(),
-    )
+        openturns.Sample(x.tolist()), openturns.Sample(y[:, None].tolist()), joint,
+        openturns.FixedStrategy(basis, len(multi_index_set(3, 4))), openturns.LeastSquaresStrategy(),
+    )  # fmt: skip
     algorithm.run()
     result = algorithm.getResult()
     theirs = {tuple(enumeration(index)): result.getCoefficients()[k, 0] for k, index in enumerate(result.getIndices())}

@@ -414,11 +414,9 @@ def test_a_landing_replaces_a_file_only_when_told_to(tmp_path: Path, kind: str) 
 def test_runs_are_listed_with_how_fast_they_left(folder: Path) -> None:
     lines = RUNNER.invoke(app, ["runs", str(folder)]).stdout.splitlines()
     assert [line.split() for line in lines] == [
-        ["rebound"],
-        ["wall", "speed"],
-        ["key", "status", "[s]", "outcome", "or", "reason"],
+        ["rebound"], ["wall", "speed"], ["key", "status", "[s]", "outcome", "or", "reason"],
         ["first", "done", "0.1", "clear"],
-    ]
+    ]  # fmt: skip
 
 
 DETAIL = "61 runs: 22 done, 2 running, 1 failed, 2.1 runs/s, 19 s left\nspeed_out  0.2 +- 0.01"

@@ -28,13 +28,11 @@ def study_with_flights() -> dict[str, Any]:
     tables["flight"] = {"flight_count": 16, "duration": 7200.0, "gravity": "exact"}
     tables["rest"] = {"count": 10}
     tables["site"] = {
-        "body": "dimorphos",
-        "latitude_deg": 20.0,
-        "longitude_deg": 60.0,
+        "body": "dimorphos", "latitude_deg": 20.0, "longitude_deg": 60.0,
         "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
         "north_error": {"distribution": "normal", "mean": 0.0, "std": 5.0},
         "mass": {"distribution": "uniform", "lower": 4.2e9, "upper": 4.4e9},
-    }
+    }  # fmt: skip
     tables["impact"] |= {"speed": 0.06}
     return tables
 

@@ -94,10 +94,8 @@ def test_spun_face_stops_at_the_rate_of_its_friction():
 def test_dropped_cube_keeps_its_energy(tilt):
     """e = 1, mu = 0: kinetic and elastic energy before and after agree to 1e-3."""
     axis, angle = {
-        "face": ((1, 0, 0), 0.0),
-        "edge": ((1, 0, 0), math.pi / 4),
-        "corner": ((1, -1, 0), math.atan(2**0.5)),
-    }[tilt]
+        "face": ((1, 0, 0), 0.0), "edge": ((1, 0, 0), math.pi / 4), "corner": ((1, -1, 0), math.atan(2**0.5)),
+    }[tilt]  # fmt: skip
     unit = np.array(axis) / np.linalg.norm(axis)
     turn = (math.cos(angle / 2), *(math.sin(angle / 2) * unit))
     world = on_plane(

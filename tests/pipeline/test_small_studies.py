@@ -220,25 +220,20 @@ def test_a_progress_that_shows_nothing_is_refused_before_anything_is_written(tmp
 
 FEW = FEW_RUNS | FEW_SAMPLES
 FEW |= {
-    "screening_degree = 2": "screening_degree = 1\nfit = 'omp'",
-    "refined_level = 3": "refined_level = 2",
-    "test_count = 10": "test_count = 6",
-    "sample_count = 10_000": "sample_count = 200\nscatter = true",
+    "screening_degree = 2": "screening_degree = 1\nfit = 'omp'", "refined_level = 3": "refined_level = 2",
+    "test_count = 10": "test_count = 6", "sample_count = 10_000": "sample_count = 200\nscatter = true",
     "duration = 7200.0": "duration = 600.0",
-}
+}  # fmt: skip
 # What was done of how much, by stage and piece of work.
 Told = dict[str, dict[str, list[tuple[float, float]]]]
 # Which pieces of work each stage tells of, in their order.
 WORKS = {
-    "screening runs": ["screening runs"],
-    "screening": ["screening fit, outputs"],
-    "refined runs": ["refined runs"],
-    "refinement": ["refined fit, outputs"],
-    "test runs": ["test kept runs", "test all runs"],
+    "screening runs": ["screening runs"], "screening": ["screening fit, outputs"], "refined runs": ["refined runs"],
+    "refinement": ["refined fit, outputs"], "test runs": ["test kept runs", "test all runs"],
     "scores": ["scores with their intervals"],
     "flights": ["gravity table", "checks of flights", "flights", "ways of flights", "flights without scatter"],
     "bounces until rest": ["bounces, hard ground"],
-}
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")

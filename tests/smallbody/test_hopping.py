@@ -206,20 +206,12 @@ def even(lower: float, upper: float) -> np.ndarray:
 
 
 TABLE = RestitutionTable(
-    np.array([0.0, 0.1, 0.2]),
-    np.array([0.0, 90.0]),
-    {
-        "normal_restitution": even(0.2, 0.6) * [[[1.0]], [[0.5]]],
-        "tangential_restitution": even(0.5, 0.9),
-        "azimuth_deg": even(-30.0, 30.0),
-        "friction": even(0.1, 0.3),
-    },
-    np.array([[0.8], [0.0]]),
-    np.array([[0.0], [0.25]]),
-    np.array([[400], [300]]),
-    np.array([[12], [10]]),
+    np.array([0.0, 0.1, 0.2]), np.array([0.0, 90.0]),
+    {"normal_restitution": even(0.2, 0.6) * [[[1.0]], [[0.5]]], "tangential_restitution": even(0.5, 0.9),
+     "azimuth_deg": even(-30.0, 30.0), "friction": even(0.1, 0.3)},
+    np.array([[0.8], [0.0]]), np.array([[0.0], [0.25]]), np.array([[400], [300]]), np.array([[12], [10]]),
     rest_height=0.0,
-)
+)  # fmt: skip
 
 
 def alike_impacts(speed: float, count: int = 20_000) -> Impacts:

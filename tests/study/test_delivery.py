@@ -15,9 +15,7 @@ from lithobrake.study.study import Study
 from ..small_ground import SMALL_GROUND
 
 TABLES: dict[str, Any] = {
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
-    "journey": {"count": 2},
+    **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0}, "journey": {"count": 2},
     "site": {"body": "dimorphos"},
 }  # fmt: skip
 AIM = {"latitude_deg": 10.0, "longitude_deg": 20.0}

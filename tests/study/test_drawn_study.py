@@ -111,28 +111,23 @@ def test_tables_that_are_none_are_refused_as_ever() -> None:
 
 
 REFUSED_CONDITIONS: list[tuple[str, str]] = [
-    ("speed > 1", "speed is no output; did you mean speed_out?"),
-    ("speed_out", "speed_out is a number: compare it"),
+    ("speed > 1", "speed is no output; did you mean speed_out?"), ("speed_out", "speed_out is a number: compare it"),
     ("returns > 1", "returns is true or false, and no number"),
     ("retuns", "retuns is no name here; did you mean returns?"),
-    ("speed_out == 0.1", "outputs are compared by <, <=, >, >="),
-    ("1 < 2", "compares numbers alone"),
+    ("speed_out == 0.1", "outputs are compared by <, <=, >, >="), ("1 < 2", "compares numbers alone"),
     ("speed_out > 1e999", "neither an output nor a finite number"),
     ("speed_out > 1j", "neither an output nor a finite number"),
-    ("speed_out + 1 > 2", "neither an output nor a finite number"),
-    ("speed_out > true", "true is no output"),
-    ("__import__('os').remove('x')", "is no condition"),
-    ("(speed_out > 1", "it cannot be read"),
+    ("speed_out + 1 > 2", "neither an output nor a finite number"), ("speed_out > true", "true is no output"),
+    ("__import__('os').remove('x')", "is no condition"), ("(speed_out > 1", "it cannot be read"),
     ("returns\0", "it cannot be read"),
     ("speed_out > 0.1 # and not returns", "it has a comment (#) or a line break: write a condition on one line"),
-    ("# returns", "it has a comment (#)"),
-    ("(speed_out > 0.1\nand returns)", "it has a comment (#) or a line break"),
+    ("# returns", "it has a comment (#)"), ("(speed_out > 0.1\nand returns)", "it has a comment (#) or a line break"),
     ("(speed_out > 0.1\u2028and returns)", "or a line break"),
     ("-" * 400 + "1 > speed_out", f"{'-' * 400}1 is neither an output nor a finite number"),
     ("-" * 400 + "speed_out", "-speed_out is no condition"),
     ("~" * 400 + "returns and returns", "~returns is no condition"),
     (" and ".join(["returns"] * 100), "it has 1195 characters"),
-]
+]  # fmt: skip
 
 
 def refusal(limit_states: object, **tables: dict[str, Any]) -> str:

@@ -50,12 +50,8 @@ def table(kind: str, **parameters: float) -> dict[str, Any]:
 def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
     study = check_tables(TABLES, Path())
     assert list(uncertain(study.touchdown_values())) == [
-        "grain.young_modulus",
-        "grain.poisson_ratio",
-        "grain.restitution",
-        "grain.friction",
-        "lander.restitution",
-    ]
+        "grain.young_modulus", "grain.poisson_ratio", "grain.restitution", "grain.friction", "lander.restitution",
+    ]  # fmt: skip
 
 
 SHORT = short_study(known_body("Dimorphos"), known_lander("2U"), (10.0, -60.0))
@@ -89,10 +85,8 @@ def test_every_body_by_name_takes_a_mesh(body: KnownBody, tmp_path: Path) -> Non
     (tmp_path / "study.toml").write_text(short_study(body, known_lander("3u"), (0.0, 0.0), "ball.obj"))
     study = read_study(tmp_path / "study.toml")
     assert (study.site.name, study.site.mass, study.site.spin_period) == (
-        body.name,
-        body.mass,
-        pytest.approx(body.spin_period, rel=1e-7),
-    )
+        body.name, body.mass, pytest.approx(body.spin_period, rel=1e-7),
+    )  # fmt: skip
 
 
 def test_escape_speed_of_bennu_is_that_of_its_mass_and_radius() -> None:
@@ -289,9 +283,7 @@ ACCEPTED = [
      "site.mass": table("gamma", shape=9.0, scale=6e10)},
     {"design.replicate_count": 3, "impact.orientation": "random"},
     {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
-    {"grain.restitution": 1.0},
-    {"bed.grain_count": 100.0},
-    {"lander.inertia": [0.001, 0.002, 0.003]},
+    {"grain.restitution": 1.0}, {"bed.grain_count": 100.0}, {"lander.inertia": [0.001, 0.002, 0.003]},
     {"lander.mass": 1e6, "solver.command": "python3", "impact.speed": 900.0},
     {"site.north_error": table("normal", mean=0.0, std=50.0), "site.east_error": 590.0},
     {"impact.incidence_deg": table("truncated_normal", mean=30.0, std=5.0, lower=10.0, upper=50.0)},

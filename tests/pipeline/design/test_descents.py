@@ -29,12 +29,9 @@ from ...small_ground import SMALL_GROUND
 from ...smallbody.meshes import sphere_mesh
 
 TABLES: dict[str, Any] = {
-    "seed": 5,
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "seed": 5, **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "delivery": {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"},
-    "journey": {"count": 8, "duration": 40000.0},
-    "site": {"body": "dimorphos", "partner": False, "mass": 4.3e9},
+    "journey": {"count": 8, "duration": 40000.0}, "site": {"body": "dimorphos", "partner": False, "mass": 4.3e9},
     "flight": {"gravity": "exact"},
 }  # fmt: skip
 # Above the trailing side of Dimorphos, some 3 cm/s towards it.

@@ -27,17 +27,12 @@ from .bouncing_lander import bounce, journey_tables, run_without_emulator
 
 JOURNEYS = 24
 TABLES: dict[str, Any] = {
-    "seed": 3,
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
-    "delivery": {
-        "latitude_deg": 30.0, "longitude_deg": 200.0,
-        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
-        "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
-        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
-    },
-    "journey": {"count": JOURNEYS, "duration": 40000.0, "emulated_count": 0},
-    "site": {"body": "dimorphos"},
+    "seed": 3, **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "delivery": {"latitude_deg": 30.0, "longitude_deg": 200.0,
+                 "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
+                 "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
+                 "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}},
+    "journey": {"count": JOURNEYS, "duration": 40000.0, "emulated_count": 0}, "site": {"body": "dimorphos"},
 }  # fmt: skip
 HARD = HardSurface(0.5, 0.7, math.inf, 0.05)
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")

@@ -43,17 +43,12 @@ STRIP = {
     "grain": {"friction": {"distribution": "uniform", "lower": 0.2, "upper": 0.3}},
 }
 TABLES: dict[str, Any] = {
-    "seed": 3,
-    **SMALL_GROUND,
-    "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
-    "delivery": {
-        "latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
-        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
-        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
-        "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0},
-    },
-    "journey": {"count": COUNT, "duration": 20000.0},
-    "flight": {"gravity": "exact"},
+    "seed": 3, **SMALL_GROUND, "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
+    "delivery": {"latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
+                 "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
+                 "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
+                 "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0}},
+    "journey": {"count": COUNT, "duration": 20000.0}, "flight": {"gravity": "exact"},
 }  # fmt: skip
 
 

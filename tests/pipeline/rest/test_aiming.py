@@ -108,10 +108,8 @@ def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResult
 def test_ways_over_the_ground_are_arcs_and_none_where_the_end_is_not_on_it() -> None:
     body, site = didymos(), {"latitude_deg": np.zeros(3), "longitude_deg": np.zeros(3)}
     ends: list[list[Any]] = [
-        ["", 0, "settled", 0.0, 0.0, 90.0],
-        ["", 1, "escaped", 0.0, "", ""],
-        ["", 2, "", 0.0, 0.0, 0],
-    ]
+        ["", 0, "settled", 0.0, 0.0, 90.0], ["", 1, "escaped", 0.0, "", ""], ["", 2, "", 0.0, 0.0, 0],
+    ]  # fmt: skip
     radius = float(np.linalg.norm(body.shape.surface_point(0.0, 0.0)))
     assert _distances(body, site, ends) == pytest.approx([0.5 * np.pi * radius, np.nan, 0.0], nan_ok=True)
 

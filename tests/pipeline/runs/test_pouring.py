@@ -153,11 +153,9 @@ def start(folder: Path) -> "subprocess.Popen[str]":
     ]  # fmt: skip
     # What runs in the background of a shell ignores the signal, and so would what it starts.
     return subprocess.Popen(
-        list(map(str, words)),
-        stderr=subprocess.PIPE,
-        text=True,
+        list(map(str, words)), stderr=subprocess.PIPE, text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
