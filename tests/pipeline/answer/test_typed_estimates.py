@@ -35,20 +35,10 @@ def test_a_fraction_has_every_field_of_its_estimate() -> None:
 def test_parts_of_a_variance_have_share_and_bounds() -> None:
     inputs, x = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}, RANDOM.random((120, 2))
     found = variance_shares(inputs, x, x[:, 0] + 0.1 * RANDOM.standard_normal(120), BED, soil=["a"])
-    assert found is not None
     table = to_json(typed.variance_parts(found, "the landings"))
     assert list(table) == [
-        "soil",
-        "soil_doubled",
-        "terms",
-        "soil_by_input",
-        "arrival",
-        "attitude",
-        "bed",
-        "place",
-        "chaos",
-        "of",
-    ]
+        "soil", "soil_doubled", "terms", "soil_by_input", "arrival", "attitude", "bed", "place", "chaos", "of",
+    ]  # fmt: skip
     assert table["soil"] == {"share": found.soil.value, "lower": found.soil.lower, "upper": found.soil.upper}
     assert (list(table["soil_by_input"]), table["chaos"]) == (["a"], None)
 
