@@ -25,15 +25,12 @@ from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import PLACE, acceleration, draw, in_words_of_the_study, medians
 from lithobrake.vocabulary.quantities import ARC, ORIENTATION, OUTPUTS
 
-from .paper_tables import paper_tables
+from .paper_tables import paper_tables, with_keys
 
 
 def changed(**sections: dict[str, Any]) -> Study:
     """The template with some keys changed."""
-    tables = paper_tables()
-    for section, keys in sections.items():
-        tables.setdefault(section, {}).update(keys)
-    return with_site_gravity(check_tables(tables, Path()))
+    return with_site_gravity(check_tables(with_keys(paper_tables(), sections), Path()))
 
 
 UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}

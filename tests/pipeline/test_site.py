@@ -24,16 +24,14 @@ from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
 from ..geometry.test_mesh_files import PRODUCT, mesh, write_kernel
+from ..paper_tables import with_keys
 from ..synthetic_landings import WEAK
 from .synthetic_lander import outputs_of, synthetic_tables
 
 
 def changed(**sections: dict[str, Any]) -> Study:
     """The template with some keys changed."""
-    tables = tomllib.loads(template())
-    for section, keys in sections.items():
-        tables.setdefault(section, {}).update(keys)
-    return check_tables(tables, Path())
+    return check_tables(with_keys(tomllib.loads(template()), sections), Path())
 
 
 @pytest.mark.parametrize("latitude", [0.0, 60.0, 90.0])

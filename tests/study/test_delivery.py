@@ -12,7 +12,7 @@ from lithobrake.study.delivered_states import read_states
 from lithobrake.study.reader import check_tables
 from lithobrake.study.study import Study
 
-from ..small_ground import SMALL_GROUND
+from ..paper_tables import SMALL_GROUND, with_keys
 
 TABLES: dict[str, Any] = {
     **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0}, "journey": {"count": 2},
@@ -28,10 +28,7 @@ STATES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,0,200,0,0,-0.05,0\n1,0,210,
 
 
 def checked(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> Study:
-    tables = deepcopy(TABLES) | {"delivery": delivery}
-    for name, table in changes.items():
-        tables[name] = tables.get(name, {}) | table
-    return check_tables(tables, folder)
+    return check_tables(with_keys(deepcopy(TABLES) | {"delivery": delivery}, changes), folder)
 
 
 def refused(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> str:

@@ -17,6 +17,7 @@ from lithobrake.campaign import Record, read_records
 from lithobrake.cli import app
 from lithobrake.pipeline import OneJourney, follow_one, land_one, landing_inputs, rare_failure, run_study
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import StudyResults, open_study
@@ -281,14 +282,11 @@ class StoppedError(Exception):
     """Raised in the middle of the landings."""
 
 
-class Stopping:
+class Stopping(Silent):
     """Shows nothing, and stops after some looks at the landings."""
 
     def __init__(self, looks: int) -> None:
         self.looks, self.said = looks, []
-
-    def begin(self, title: str, number: int, count: int) -> None:
-        """Show nothing."""
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Count a look at the landings."""

@@ -25,7 +25,7 @@ from lithobrake.study.source import StudySource
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus
 
-from ...small_ground import SMALL_GROUND
+from ...paper_tables import SMALL_GROUND, with_keys
 from ...smallbody.meshes import sphere_mesh
 
 TABLES: dict[str, Any] = {
@@ -44,10 +44,7 @@ RADIUS, HEIGHT, DOWN, MASS = 80.0, 40.0, 0.02, 4.0e9
 
 
 def study(**changes: dict[str, Any]) -> Study:
-    tables = deepcopy(TABLES)
-    for name, table in changes.items():
-        tables.setdefault(name, {}).update(table)
-    return StudySource.of_tables(tables).study
+    return StudySource.of_tables(with_keys(deepcopy(TABLES), changes)).study
 
 
 def released(**release: Any) -> dict[str, Any]:

@@ -12,6 +12,8 @@ import lithobrake
 from lithobrake.emulator import training
 from lithobrake.results import StudyResults
 
+from ...paper_tables import with_keys
+
 # Journeys that end otherwise than at rest, by what their touchdown of this number does.
 FAILS, STUCK, LEAVES = {5: 1}, {11: 1}, {17: 0, 29: 0, 41: 0}
 # Below this speed a lander stays where it is [m/s].
@@ -38,10 +40,7 @@ TABLES: dict[str, dict[str, Any]] = {
 
 def journey_tables(**changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study of a CubeSat on Dimorphos; changes: by table and key."""
-    tables: dict[str, Any] = {"title": "Journeys in small", "seed": 2, **deepcopy(TABLES)}
-    for name, table in changes.items():
-        tables.setdefault(name, {}).update(table)
-    return tables
+    return with_keys({"title": "Journeys in small", "seed": 2, **deepcopy(TABLES)}, changes)
 
 
 def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from lithobrake.smallbody import fly
 from lithobrake.study.source import StudySource
 from lithobrake.study.study import Study
 
+from ...paper_tables import with_keys
 from .bouncing_lander import journey_tables, run_without_emulator
 
 COUNT = 24
@@ -39,9 +40,7 @@ def tables(**changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study whose landers are flown to the ground."""
     found = journey_tables(journey={"count": COUNT})
     found["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"}
-    for name, table in changes.items():
-        found[name] = found.get(name, {}) | table
-    return found
+    return with_keys(found, changes)
 
 
 def study_of(given: dict[str, Any]) -> Study:

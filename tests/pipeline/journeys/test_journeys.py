@@ -22,7 +22,7 @@ from lithobrake.study.source import StudySource
 from lithobrake.study.touchdown_model import acceleration
 from lithobrake.vocabulary.quantities import ORIENTATION
 
-from ...small_ground import SMALL_GROUND
+from ...paper_tables import SMALL_GROUND, with_keys
 from .bouncing_lander import bounce, journey_tables, run_without_emulator
 
 JOURNEYS = 24
@@ -56,8 +56,7 @@ def hard_ground(values: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def run(folder: Path, **changes: dict[str, Any]) -> Any:
-    tables = TABLES | {name: TABLES.get(name, {}) | keys for name, keys in changes.items()}
-    return run_without_emulator(tables, folder, hard_ground)
+    return run_without_emulator(with_keys(TABLES, changes), folder, hard_ground)
 
 
 def rows(folder: Path, name: str) -> dict[str, np.ndarray]:

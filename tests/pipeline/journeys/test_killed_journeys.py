@@ -15,6 +15,7 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import Ledger, RunStatus, read_records
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.journeys.journey_tables import FILES
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
@@ -91,23 +92,17 @@ def test_journeys_that_are_killed_end_with_the_same_bits(calm: Path, begun: Path
     assert_same(begun, calm)
 
 
-class Loses:
+class Loses(Silent):
     """Shows nothing, and kills a worker of the cluster once the ledger has some touchdowns."""
 
     def __init__(self, cluster: Cluster, out: Path) -> None:
         self.worker, self.out = cluster.processes["first"], out
-
-    def begin(self, title: str, number: int, count: int) -> None:
-        """Show nothing."""
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Kill the worker, if it is time."""
         if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= MOMENTS[1]:
             self.worker.kill()
             self.worker.wait()
-
-    def say(self, sentence: str) -> None:
-        """Tell nothing."""
 
 
 def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: Path, begun: Path) -> None:

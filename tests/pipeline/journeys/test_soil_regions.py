@@ -29,7 +29,7 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
-from ...small_ground import SMALL_GROUND
+from ...paper_tables import SMALL_GROUND, with_keys
 from ...smallbody.meshes import sphere_mesh
 
 RADIUS, DENSITY, FREQUENCY = 80.0, 2000.0, 8
@@ -82,12 +82,9 @@ def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def tables(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study on that ball, which turns slowly."""
-    found = deepcopy(TABLES)
     mass = DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3
-    found["site"] = {"body": str(body), "mass": mass, "spin_period": 1e7}
-    for name, table in changes.items():
-        found.setdefault(name, {}).update(table)
-    return found | ({"soil": soil} if soil else {})
+    found = deepcopy(TABLES) | {"site": {"body": str(body), "mass": mass, "spin_period": 1e7}}
+    return with_keys(found, changes) | ({"soil": soil} if soil else {})
 
 
 def read(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> Study:

@@ -37,6 +37,7 @@ from lithobrake.study import StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.study.touchdown_model import acceleration
 
+from ...paper_tables import with_keys
 from ...smallbody.meshes import sphere_mesh
 from .bouncing_lander import journey_tables, run_without_emulator
 from .test_journeys import HARD, TABLES, hard_ground, hard_velocity, rows
@@ -49,7 +50,7 @@ def turning(**changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study on hard ground whose body tumbles."""
     given = TABLES | {"site": {"body": "dimorphos", "rotation": ROTATION}}
     given["journey"] = TABLES["journey"] | {"emulated_count": 30}
-    return given | {name: given.get(name, {}) | keys for name, keys in changes.items()}
+    return with_keys(given, changes)
 
 
 def turning_cubesat(**changes: dict[str, Any]) -> dict[str, Any]:

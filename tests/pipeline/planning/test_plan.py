@@ -39,6 +39,7 @@ from lithobrake.results import open_study
 from lithobrake.study import Study, StudyError, StudySource, check_tables, load_tables, read_study
 from lithobrake.vocabulary.quantities import OUTPUTS
 
+from ...paper_tables import with_keys
 from ..ball_studies import BALL, FEW_RUNS, write_ball
 
 HERE = Path(__file__).parents[3]
@@ -58,16 +59,13 @@ def idle_cores(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def soft(**changes: dict[str, Any]) -> Study:
     """The study of one place with these keys of its sections changed."""
-    tables = load_tables(SCENARIOS / "one_place.toml")
-    for section, keys in changes.items():
-        tables[section] = tables.get(section, {}) | keys
-    return check_tables(tables, SCENARIOS)
+    return check_tables(with_keys(load_tables(SCENARIOS / "one_place.toml"), changes), SCENARIOS)
 
 
 def journeys(roughness_deg: float) -> Study:
     """The quick study on ground of this roughness."""
-    tables = load_tables(SCENARIOS / "quick.toml")
-    return check_tables(tables | {"site": tables["site"] | {"roughness_deg": roughness_deg}}, SCENARIOS)
+    tables = with_keys(load_tables(SCENARIOS / "quick.toml"), {"site": {"roughness_deg": roughness_deg}})
+    return check_tables(tables, SCENARIOS)
 
 
 def plan_for(study: Study, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False) -> Plan:
@@ -265,9 +263,8 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     tables = load_tables(SCENARIOS / "first_bounce.toml")
     tables["design"] = SEQUENCE | (design or {})
     tables["impact"] = {key: value for key, value in tables["impact"].items() if key != "place"}
-    for section, keys in ({"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}} | changes).items():
-        tables[section] = tables.get(section, {}) | keys
-    return check_tables(tables, SCENARIOS)
+    region = {"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}}
+    return check_tables(with_keys(tables, region | changes), SCENARIOS)
 
 
 @pytest.mark.parametrize(("changes", "said"), [

@@ -9,6 +9,7 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline.answer.run_shares import PARTS
+from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json
 from lithobrake.smallbody import RestitutionTable
@@ -156,9 +157,7 @@ def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: 
 def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound(tmp_path: Path) -> None:
     said: list[str] = []
 
-    class Shown:
-        def begin(self, title: str, number: int, count: int) -> None: ...
-        def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None: ...
+    class Shown(Silent):
         def say(self, sentence: str) -> None:
             said.append(sentence)
 

@@ -36,7 +36,7 @@ from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import ARC, OUTPUTS
 
-from ...paper_tables import paper_tables
+from ...paper_tables import paper_tables, with_keys
 
 ROOT = Path(__file__).parents[3]
 # Grains so small that nothing is known of how they hold a lander.
@@ -136,10 +136,7 @@ def test_a_spin_straight_up_has_a_level_axis() -> None:
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    tables = paper_tables()
-    for section, keys in sections.items():
-        tables.setdefault(section, {}).update(keys)
-    return check_tables(tables, Path())
+    return check_tables(with_keys(paper_tables(), sections), Path())
 
 
 def test_the_soil_is_asked_where_speed_and_incidence_are_uncertain() -> None:
