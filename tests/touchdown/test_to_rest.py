@@ -320,7 +320,7 @@ def test_the_surface_is_the_same_wherever_the_ground_is_cut(ground: Bed) -> None
 
 
 def test_a_landing_is_the_same_wherever_the_ground_is_cut(ground: Bed) -> None:
-    """With common steps: see tests/dem/test_period.py."""
+    """With common steps: see tests/dem/test_world.py."""
     outcomes = []
     for shift in ((0.0, 0.0), (0.21, -0.17)):
         bed = replace(ground, position=folded(ground.position + np.array([*shift, 0.0]), period_of(WIDTH)))
