@@ -139,8 +139,7 @@ def test_ci_is_executable() -> None:
 
 
 def test_version_is_the_same_everywhere() -> None:
-    metadata = tomllib.loads((ROOT / "pyproject.toml").read_text())
-    assert metadata["project"]["version"] == lithobrake.__version__
+    assert tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"] == lithobrake.__version__
     assert f"version: {lithobrake.__version__}\n" in (ROOT / "CITATION.cff").read_text()
     assert f"## {lithobrake.__version__} " in (ROOT / "CHANGELOG.md").read_text()
 

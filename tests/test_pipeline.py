@@ -289,14 +289,12 @@ def test_the_partner_stands_where_the_sample_says() -> None:
     body = Site(study).body
     angle = body.orbit.angle + body.orbit.rate * Site(study).clock(site)[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
-    open_ended = starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
-    assert np.ptp(open_ended) > 180.0
+    assert np.ptp(starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]) > 180.0
     assert Site(changed(site={"partner": False})).body.partner is None
 
 
 def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
-    study = changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0})
-    site = Site(study)
+    site = Site(changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0}))
     body, (origin, _) = site.body, site.frames(site.columns(1))
     aim, axes = body.local_frame(20.0, 10.0)
     moved = axes @ (origin[0] - aim)

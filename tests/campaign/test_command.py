@@ -77,8 +77,7 @@ def test_a_program_that_fails_is_a_failed_run_with_its_reason(do: str, reason: s
 
 
 def test_a_text_that_begins_with_a_mark_of_its_encoding_is_read(tmp_path: Path) -> None:
-    runs = campaign(tmp_path, "leave('\\ufeff{\"height\": 7}')")
-    assert runs.outputs(["height"])[:, 0].tolist() == [2.0, 7.0]
+    assert campaign(tmp_path, "leave('\\ufeff{\"height\": 7}')").outputs(["height"])[:, 0].tolist() == [2.0, 7.0]
 
 
 def test_a_program_over_its_wall_limit_is_ended_with_all_that_it_started(tmp_path: Path) -> None:
@@ -162,8 +161,7 @@ json.dump({"height": 1.0}, open("outputs.json", "w"))
 
 
 def test_a_program_that_prints_without_end_fills_no_disk_and_its_last_words_are_the_reason(tmp_path: Path) -> None:
-    model = Command(shlex.join([sys.executable, "-c", PRINTS_MUCH]), tmp_path / "solver")
-    result = run_model(model, {"a": 1.0}, 1)
+    result = run_model(Command(shlex.join([sys.executable, "-c", PRINTS_MUCH]), tmp_path / "solver"), {"a": 1.0}, 1)
     assert "exit code 3" in result["reason"]
     assert result["reason"].endswith("it diverged")
     (log,) = (tmp_path / "solver").glob("*/log.txt")

@@ -98,8 +98,7 @@ def test_a_model_that_never_works_is_given_up_after_its_first_runs_and_retries(
         campaign(tmp_path, model, x=MANY, workers=1, options=RunOptions(retry_count=retry_count))
     # Beside the ten only what was under way meanwhile: two at most.
     assert 10 * (retry_count + 1) <= tries(tmp_path) <= 12 * (retry_count + 1)
-    failed = [entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]
-    assert 10 <= len(failed) <= 12
+    assert 10 <= len([entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]) <= 12
     # Nothing of it counts: mended, the same command makes all runs.
     assert campaign(tmp_path, models.WorksAbove(-1.0, tmp_path), x=MANY).outcomes == ["clear"] * 82
 

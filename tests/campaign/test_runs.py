@@ -49,8 +49,7 @@ def campaign(path: Path, model: Callable[..., Any], executor: Executor, x: np.nd
 
 def test_rows_come_back_in_order_and_a_repeated_row_is_one_run(tmp_path: Path) -> None:
     here = HereExecutor()
-    runs = campaign(tmp_path, models.parabola, here)
-    assert runs.outputs(["height"])[:, 0].tolist() == [1.5, 4.5, 9.5, 1.5]
+    assert campaign(tmp_path, models.parabola, here).outputs(["height"])[:, 0].tolist() == [1.5, 4.5, 9.5, 1.5]
     assert here.call_count == 3
 
 

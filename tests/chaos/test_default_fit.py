@@ -122,8 +122,7 @@ def test_default_works_on_every_kind_of_input_and_on_a_grid():
 
 def test_exact_polynomial_is_found_exactly():
     x = sobol(FIVE, 100, seed=1)
-    surrogate = fit(FIVE, x, x[:, 0] ** 2 * x[:, 1] - x[:, 3])
-    assert share(surrogate, lambda t: t[:, 0] ** 2 * t[:, 1] - t[:, 3]) < 1e-10
+    assert share(fit(FIVE, x, x[:, 0] ** 2 * x[:, 1] - x[:, 3]), lambda t: t[:, 0] ** 2 * t[:, 1] - t[:, 3]) < 1e-10
 
 
 def test_few_points_are_no_obstacle():

@@ -89,8 +89,7 @@ def test_limits_become_exactly_plus_and_minus_one():
 
 
 def test_empirical_quantiles_are_its_samples():
-    entry = Empirical([5.0, 1.0, 3.0])
-    assert entry.ppf(np.array([0.0, 0.1, 0.5, 0.9, 1.0])).tolist() == [1.0, 1.0, 3.0, 5.0, 5.0]
+    assert Empirical([5.0, 1.0, 3.0]).ppf(np.array([0.0, 0.1, 0.5, 0.9, 1.0])).tolist() == [1.0, 1.0, 3.0, 5.0, 5.0]
 
 
 @pytest.mark.parametrize("make", [

@@ -150,8 +150,7 @@ def test_part_works_without_numba(tmp_path):
 
 def test_index_sets_can_be_limited():
     x = sobol_sequence(INPUTS, 60)
-    limited = fit(INPUTS, x, x[:, 0] ** 3, degree=4, max_degrees=[4, 1])
-    assert limited.multi_indices.max(axis=0).tolist() == [4, 1]
+    assert fit(INPUTS, x, x[:, 0] ** 3, degree=4, max_degrees=[4, 1]).multi_indices.max(axis=0).tolist() == [4, 1]
     hyperbolic = fit(INPUTS, x, x[:, 0] ** 3, degree=4, q_norm=0.5)
     # Nine powers of one input and the product, whose norm is (1 + 1)**2 = 4.
     assert hyperbolic.term_count == 10
@@ -228,8 +227,7 @@ def test_a_file_of_format_version_1_is_read():
     assert surrogate.inputs["grade"] == Empirical([1.0, 2.0, 4.0])
     # The file holds v = speed**2 + log10(modulus) and w = size * grade.
     x = np.array([[0.5, 1e7, 1.0, 2.0], [0.2, 3e6, 2.5, 4.0]])
-    expected = np.column_stack([x[:, 0] ** 2 + np.log10(x[:, 1]), x[:, 2] * x[:, 3]])
-    assert np.allclose(surrogate(x), expected, rtol=1e-9)
+    assert np.allclose(surrogate(x), np.column_stack([x[:, 0] ** 2 + np.log10(x[:, 1]), x[:, 2] * x[:, 3]]), rtol=1e-9)
     # Uniform(0.1, 0.9)**2 and log-uniform over two decades: means 0.91 / 3 and 7.
     assert surrogate.mean[0] == pytest.approx(0.91 / 3.0 + 7.0, rel=1e-9)
     assert surrogate.residuals.shape == (3, 2)

@@ -206,8 +206,7 @@ def flock(spread: float) -> World:
     places = np.stack(np.meshgrid(*3 * [np.arange(6)], indexing="ij"), axis=-1).reshape(-1, 3)
     for place in places:
         radius = float(generator.choice([0.02, 0.03, 0.04]))
-        velocity = generator.normal(scale=spread, size=3)
-        world.add_body(Sphere(radius), ROCK, 0.1 * place + (0.0, 0.0, 0.05), velocity)
+        world.add_body(Sphere(radius), ROCK, 0.1 * place + (0.0, 0.0, 0.05), generator.normal(scale=spread, size=3))
     world.add_body(Box((0.6, 0.6, 0.05)), ROCK, (0.25, 0.25, 0.8), (0.0, 0.0, -0.5))
     return world
 

@@ -74,8 +74,7 @@ def test_six_rows_stand_there_two_of_which_disagree() -> None:
 
 @pytest.mark.parametrize(("page", "cells"), ROWS)
 def test_numbers_of_a_row_stand_on_its_page(page: str, cells: str) -> None:
-    here = cells.split("|")[-2]
-    assert set(NUMBER.findall(here)) <= set(NUMBER.findall((ROOT / page).read_text(encoding="utf-8")))
+    assert set(NUMBER.findall(cells.split("|")[-2])) <= set(NUMBER.findall((ROOT / page).read_text(encoding="utf-8")))
 
 
 def test_the_count_of_agreements_is_that_of_the_page() -> None:
@@ -129,8 +128,7 @@ def test_equations_of_a_page_have_no_command_that_is_left_as_it_is(page: Any, ho
 
 def test_a_figure_leads_to_its_file_and_a_picture_in_a_line_does_not(hooks: dict[str, Any]) -> None:
     picture = '<img alt="a map" src="../map.png" />'
-    figure = hooks["on_page_content"](f"<p>{picture}</p>")
-    assert figure == f'<p class="figure"><a href="../map.png">{picture}</a></p>'
+    assert hooks["on_page_content"](f"<p>{picture}</p>") == f'<p class="figure"><a href="../map.png">{picture}</a></p>'
     assert hooks["on_page_content"](f"<p>see {picture}</p>") == f"<p>see {picture}</p>"
 
 

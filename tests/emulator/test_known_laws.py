@@ -81,8 +81,7 @@ def test_branches_that_cross_are_as_near_as_a_published_expansion_makes_them() -
     truth, levels = drawn(points, 2000, np.random.default_rng(8)), (np.arange(500) + 0.5) / 500
     for seed in range(4):
         x = latin_hypercube(inputs, 400, seed=seed)
-        model = emulator.fit(inputs, x, drawn(x, 1, np.random.default_rng(seed)))
-        found = model.sample(points, 2000)[:, :, 0]
+        found = emulator.fit(inputs, x, drawn(x, 1, np.random.default_rng(seed))).sample(points, 2000)[:, :, 0]
         gaps = np.quantile(found, levels, axis=1) - np.quantile(truth, levels, axis=1)
         errors.append(np.mean(gaps**2) / truth.var())
     assert np.median(errors) < 0.03

@@ -376,8 +376,7 @@ def test_density_quantiles_and_draws_are_of_one_law(name: str) -> None:
     assert integrate.trapezoid(y * density, y) == pytest.approx(model.mean(x)[0], rel=1e-4)
     levels = [0.001, 0.3, 0.5, 0.99]
     np.testing.assert_allclose(model.cdf(x, model.quantile(x, levels)), [levels], rtol=1e-8)
-    draws = model.sample(x, 4000, seed=2)[0]
-    assert stats.kstest(draws, lambda values: model.cdf(x, values)[0]).pvalue > 0.01
+    assert stats.kstest(model.sample(x, 4000, seed=2)[0], lambda values: model.cdf(x, values)[0]).pvalue > 0.01
 
 
 @pytest.mark.parametrize("name", FITS)

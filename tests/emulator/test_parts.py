@@ -229,5 +229,4 @@ def test_scores_of_equal_members_are_those_of_scoringrules() -> None:
     theirs = sr.crps_ensemble(OBSERVED[:, 0], values, estimator="nrg", backend="numpy")
     np.testing.assert_allclose(crps(values, alike, OBSERVED[:, 0]), theirs, rtol=1e-10)
     joint = sr.es_ensemble(OBSERVED, np.broadcast_to(MEMBERS, (5, 40, 3)), estimator="nrg", backend="numpy")
-    ours = energy_scores(MEMBERS, alike[None], np.ones((5, 3)), OBSERVED)[0]
-    np.testing.assert_allclose(ours, joint, rtol=1e-10)
+    np.testing.assert_allclose(energy_scores(MEMBERS, alike[None], np.ones((5, 3)), OBSERVED)[0], joint, rtol=1e-10)

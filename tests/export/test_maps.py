@@ -151,8 +151,7 @@ def test_plates_make_a_shape_kernel_with_the_same_shape(results: StudyResults, t
 
 def test_a_plate_table_is_read_as_a_shape_again(results: StudyResults, tmp_path: Path) -> None:
     write_plates(results, tmp_path / "body.tab")
-    shape = Shape.read(tmp_path / "body.tab", "km")
-    assert shape.volume == pytest.approx(dimorphos().shape.volume, rel=1e-14)
+    assert Shape.read(tmp_path / "body.tab", "km").volume == pytest.approx(dimorphos().shape.volume, rel=1e-14)
 
 
 def test_facets_of_both_tables_are_those_of_the_shape_in_its_order(results: StudyResults, tmp_path: Path) -> None:
@@ -192,8 +191,7 @@ def test_impacts_lie_on_the_facets_that_the_flights_name(results: StudyResults, 
     assert table["impact_count"].sum() == np.isfinite(flights["facet"]).sum()
     assert table["impact_speed"][facet] == pytest.approx(flights["impact_speed"][on_it].mean())
     assert np.isnan(table["impact_speed"][table["impact_count"] == 0]).all()
-    share = (table["impact_density"] * table["area"]).sum()
-    assert share == pytest.approx(np.isfinite(flights["facet"]).mean())
+    assert (table["impact_density"] * table["area"]).sum() == pytest.approx(np.isfinite(flights["facet"]).mean())
 
 
 def test_slopes_are_those_of_the_body(results: StudyResults, tmp_path: Path) -> None:

@@ -91,8 +91,7 @@ def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
     assert len(steps) >= 2
     assert steps[-1].endswith("asks for +- 6: that is enough")
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
-    caught = (np.array(runs.outcomes) == "captured").astype(float)
-    assert (half_width_of(caught, runs.inputs["bed"]) or 1.0) <= 0.06
+    assert (half_width_of((np.array(runs.outcomes) == "captured").astype(float), runs.inputs["bed"]) or 1.0) <= 0.06
 
 
 def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:

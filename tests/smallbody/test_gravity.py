@@ -192,8 +192,7 @@ def test_series_takes_over_without_a_step_and_holds_far_out(shapes, file):
     assert np.linalg.norm(inside - outside, axis=1).max() < 5e-11 * np.linalg.norm(inside, axis=1).max()
     for radii in (1e3, 1e6):
         distance = radii * series.radius
-        potential = body.potential(shape.centroid + distance * directions)
-        assert np.abs(potential * distance - 1.0).max() < 1.0 / radii**2
+        assert np.abs(body.potential(shape.centroid + distance * directions) * distance - 1.0).max() < 1.0 / radii**2
     # The moment of degree 0 is the volume, those of degree 1 vanish about the centroid.
     assert series.real[0, 0] * series.radius**3 == pytest.approx(shape.volume, rel=1e-13)
     assert np.abs(series.real[1]).max() < 1e-14
@@ -215,8 +214,7 @@ def test_sphere_limit():
 
 def test_lanes_and_blocks_do_not_change_a_bit(block):
     points = np.random.default_rng(4).normal(size=(77, 3)) * 2.0
-    together = block.acceleration(points)
-    assert np.array_equal(together, np.array([block.acceleration(point) for point in points]))
+    assert np.array_equal(block.acceleration(points), np.array([block.acceleration(point) for point in points]))
 
 
 def test_orientation_of_a_shape_does_not_matter(block):

@@ -187,8 +187,7 @@ def test_between_flights_a_lander_may_slide():
     """What is captured on steep ground begins its first flight after it has slid off the ground."""
     body = didymos(partner=False)
     origin, axes = body.local_frame(0.0, 0.0, 270.0)
-    launch = Launch(origin, 0.15 * axes[0])
-    end = hop(body, launch, HardSurface(0.6), 1e5, friction=0.6, gravity="exact", arc_landers=1)
+    end = hop(body, Launch(origin, 0.15 * axes[0]), HardSurface(0.6), 1e5, friction=0.6, gravity="exact", arc_landers=1)
     gaps = end.arcs.begin[1:] - end.arcs.end[:-1]
     assert (gaps >= 0.0).all()
     assert gaps.sum() + end.arcs.begin[0] == pytest.approx(end.slid_time[0])
@@ -241,8 +240,7 @@ def test_an_impact_beyond_the_table_is_that_of_the_next_cell_and_some_stay() -> 
 
 
 def test_a_rebound_that_hardly_rises_is_the_end() -> None:
-    lazy = dataclasses.replace(TABLE, rest_height=1.0)
-    assert lazy(alike_impacts(1e-3), np.random.default_rng(3)).captured.all()
+    assert dataclasses.replace(TABLE, rest_height=1.0)(alike_impacts(1e-3), np.random.default_rng(3)).captured.all()
 
 
 def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -486,8 +484,7 @@ def test_an_elastic_bounce_is_mirrored_by_the_ground_that_is_met() -> None:
     assert left.spin == pytest.approx(incoming(COUNT, 0.0).spin, abs=1e-12)
     zenith = np.arccos(left.velocity[:, 2] / 0.05)
     square = math.tan(roughness) ** 2
-    law = stats.kstest(zenith, lambda angle: 1.0 - np.exp(-(np.tan(0.5 * angle) ** 2) / square))
-    assert law.statistic < FARTHEST
+    assert stats.kstest(zenith, lambda angle: 1.0 - np.exp(-(np.tan(0.5 * angle) ** 2) / square)).statistic < FARTHEST
     assert not (left.captured | left.outside).any()
 
 

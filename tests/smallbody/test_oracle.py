@@ -22,8 +22,7 @@ def asked(body: Body, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def bodies() -> list[Body]:
-    cube = Shape(cube_vertices(100.0) + 20.0, CUBE_FACES)
-    return [Body(cube, mass=2e9, spin_period=1e4), didymos(partner=False)]
+    return [Body(Shape(cube_vertices(100.0) + 20.0, CUBE_FACES), mass=2e9, spin_period=1e4), didymos(partner=False)]
 
 
 @pytest.mark.parametrize("body", bodies(), ids=lambda body: body.name)

@@ -179,8 +179,7 @@ def test_about_a_ball_no_flight_depends_on_how_it_turns():
     frame = np.einsum("nij,nj->ni", turning.rotation.at(end).axes, flown[1].position)
     assert frame == pytest.approx(flown[0].position, abs=1.0)
     aloft = [fly(one, position, velocity, 300.0, frame="inertial", start_time=begin) for one in (ball, turning)]
-    there = turning.rotation.at(np.full(3, begin + 300.0))
-    place, rate = there.states_into_frame(aloft[1].position, aloft[1].velocity)
+    place, rate = turning.rotation.at(np.full(3, begin + 300.0)).states_into_frame(aloft[1].position, aloft[1].velocity)
     assert place == pytest.approx(aloft[0].position, abs=1e-2)
     assert rate == pytest.approx(aloft[0].velocity, abs=1e-4)
 
@@ -314,8 +313,7 @@ def test_a_lander_keeps_its_spin_among_the_stars_and_turns_with_the_ground_where
     assert after @ flight.spin[0] == pytest.approx(before @ spin, abs=1e-10)
     rest = hop(body, launch, HardSurface(0.0), 20_000.0, gravity="exact")
     assert rest.status == "settled"
-    ground = body.rotation.at(begin + rest.time).whole_spin(body.spin_rate)[0]
-    assert rest.spin == pytest.approx(ground, abs=1e-12)
+    assert rest.spin == pytest.approx(body.rotation.at(begin + rest.time).whole_spin(body.spin_rate)[0], abs=1e-12)
 
 
 # What is refused.

@@ -67,8 +67,7 @@ YEAR = timedelta(days=365.2568983 * 2.0**1.5)
 
 def test_the_sun_goes_to_and_fro_over_a_circle_by_the_tilt_of_the_pole() -> None:
     """With the pole of ICRF: from 0 by -arcsin(sin(obliquity) sin(angle)), to the other side of the body's place."""
-    dates = [EPOCH + YEAR * part for part in (0.0, 0.125, 0.25, 0.75)]
-    found = latitudes_over(CIRCLE, 0.0, 90.0, dates)["sun"]
+    found = latitudes_over(CIRCLE, 0.0, 90.0, [EPOCH + YEAR * part for part in (0.0, 0.125, 0.25, 0.75)])["sun"]
     angles = 2.0 * np.pi * np.array([0.0, 0.125, 0.25, 0.75])
     assert found == pytest.approx(-np.degrees(np.arcsin(np.sin(OBLIQUITY) * np.sin(angles))), abs=1e-4)
 

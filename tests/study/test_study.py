@@ -354,8 +354,7 @@ def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
 
 
 def test_all_problems_are_said_at_once() -> None:
-    wrong = {"lander.mass": -1.0, "grain.density": "heavy", "impact.sped": 3, "bed.width": [1.0]}
-    assert len(problems(wrong)) == 4
+    assert len(problems({"lander.mass": -1.0, "grain.density": "heavy", "impact.sped": 3, "bed.width": [1.0]})) == 4
 
 
 def test_a_list_with_a_wrong_entry_is_told_once() -> None:

@@ -288,8 +288,7 @@ def test_a_damaged_bed_is_poured_anew_with_a_word(library, recipe, bed, tmp_path
     (library / name).write_bytes(damage(whole))
     with caplog.at_level(logging.WARNING):
         assert stored_or_poured(recipe(), tmp_path / "second.h5", lambda: bed)
-    told = f"{library / name} is damaged, or was not written with this user's key: it is made again."
-    assert told in caplog.messages
+    assert f"{library / name} is damaged, or was not written with this user's key: it is made again." in caplog.messages
     assert (library / name).read_bytes()[:-32] == (tmp_path / "second.h5").read_bytes()
     assert not stored_or_poured(recipe(), tmp_path / "third.h5", never)
 

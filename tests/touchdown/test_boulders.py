@@ -146,8 +146,7 @@ def test_a_boulder_goes_where_its_top_is_to_be_and_never_floats() -> None:
 def test_grains_fill_what_a_boulder_leaves() -> None:
     """A cube of 1 m on 4 m2, half of it in the grains: 4 h = V / 0.6 + h, with its top 1 - h above the surface."""
     volume = SOLID_FRACTION * 1.5
-    surface = surface_among([Box((1.0, 1.0, 1.0))], np.array([-0.5]), volume, 4.0)
-    assert surface == pytest.approx(0.5, abs=1e-5)
+    assert surface_among([Box((1.0, 1.0, 1.0))], np.array([-0.5]), volume, 4.0) == pytest.approx(0.5, abs=1e-5)
     # The same height without it takes more grains.
     assert surface_among([], np.zeros(0), SOLID_FRACTION * 2.0, 4.0) == pytest.approx(0.5)
 

@@ -214,8 +214,7 @@ def test_a_part_that_touches_first_turns_the_lander(bed):
     tip_down = (np.cos(0.5), 0.0, np.sin(0.5), 0.0)
     spun = []
     for parts in ((), (Part(BAR, SKIN),)):
-        lander = with_parts(parts=parts)
-        outcome = land(bed, lander, slanted(orientation=tip_down, spin=(0.0, 0.0, 0.0), incidence=0.0))
+        outcome = land(bed, with_parts(parts=parts), slanted(orientation=tip_down, spin=(0.0, 0.0, 0.0), incidence=0.0))
         assert outcome.status in {"clear", "captured", "left_sideways", "time_limit"}
         spun.append(np.array(outcome.orientation))
     assert abs(spun[0] @ spun[1]) < 1.0 - 1e-4
@@ -304,8 +303,7 @@ def test_rain_touches_no_image(recipe: Any) -> None:
     grains = [make_grain(generator, 14, 0.1) for _ in range(30)]
     position, _ = rain(generator, grains, period, period)
     reach = np.array([grain.bounding_radius for grain in grains])
-    way = folded(position[:, None] - position, period_of(period))
-    gap = np.linalg.norm(way, axis=2) - reach[:, None] - reach
+    gap = np.linalg.norm(folded(position[:, None] - position, period_of(period)), axis=2) - reach[:, None] - reach
     assert gap[np.triu_indices(30, 1)].min() > -1e-12
 
 
@@ -337,8 +335,7 @@ def test_a_flat_throw_stays_on_the_ground_and_says_how_far_it_came(ground: Bed, 
     flat = landing(grain=dull, incidence=1.35, speed=0.8, place=(0.1, 0.0), gravity=(0.0, 0.0, -0.3))
     # How far one comes depends on the grain that it meets first.
     thrown = [land(ground, LANDER, replace(flat, place=(0.1, y)), frame_count=20) for y in (0.0, 0.1, 0.2, 0.3)]
-    captured = [one for one in thrown if one.status == "captured"]
-    outcome = max(captured, key=lambda one: one.outputs["periods_travelled"])
+    outcome = max((one for one in thrown if one.status == "captured"), key=lambda one: one.outputs["periods_travelled"])
     assert set(outcome.outputs) == {*OUTPUTS, "periods_travelled"}
     path = np.linalg.norm(np.diff(outcome.frames["position"][:, -1, :2], axis=0), axis=1).sum()
     # The path until the last touch is a part of the whole one.

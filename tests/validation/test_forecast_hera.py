@@ -32,8 +32,7 @@ def cloud(count: int, axes: np.ndarray, direction: list[float], spread: tuple[fl
     unit = np.array(direction) / np.linalg.norm(direction)
     place = unit / np.linalg.norm(unit / axes)
     normal = place / axes**2
-    across = np.linalg.svd(normal[None])[2][1:]
-    return place + (np.random.default_rng(seed).normal(size=(count, 2)) * spread) @ across
+    return place + (np.random.default_rng(seed).normal(size=(count, 2)) * spread) @ np.linalg.svd(normal[None])[2][1:]
 
 
 def test_the_ground_of_a_spheroid_has_its_closed_form() -> None:
@@ -164,8 +163,7 @@ def test_a_forecast_made_again_is_compared_number_by_number() -> None:
     moved = comparison(document(0.85, "1"), document(0.88, "2"))
     assert moved[0] == "code: 1 before, 2 after"
     assert "juventas, soil: share at_rest: 0.85 (0.8 to 0.9) before, 0.88 after: within" in moved
-    far = comparison(document(0.85, "1"), document(0.95, "1"))
-    assert far[-1].endswith("1 outside: juventas, soil: share at_rest")
+    assert comparison(document(0.85, "1"), document(0.95, "1"))[-1].endswith("1 outside: juventas, soil: share at_rest")
 
 
 def test_times_of_a_variant_are_compared_lander_by_lander() -> None:

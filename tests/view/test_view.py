@@ -190,8 +190,7 @@ def test_lines_tell_every_touchdown_and_the_end() -> None:
 
 
 def test_a_lander_that_escapes_has_no_place_and_its_last_line_says_so() -> None:
-    nowhere = dict.fromkeys(("latitude_deg", "longitude_deg", "distance", "face", "tilt_deg"), "")
-    gone = track(end="escaped", **nowhere)
+    gone = track(end="escaped", **dict.fromkeys(("latitude_deg", "longitude_deg", "distance", "face", "tilt_deg"), ""))
     gone = replace(gone, touchdowns=gone.touchdowns[:2])
     assert gone.lines()[-2].endswith("escaped")
     assert gone.lines()[-1] == "Escaped 83.3 min after delivery, after 4 contacts in 2 touchdowns."

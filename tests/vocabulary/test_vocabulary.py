@@ -67,8 +67,7 @@ def test_masked_values_are_refused_or_count_as_nan() -> None:
     with pytest.raises(ValueError, match=r"x has 1 masked values"):
         numbers("x", masked)
     assert np.isnan(numbers_or_nan("y", masked)).tolist() == [False, True, False]
-    whole = np.ma.masked_array([1, 1000], mask=[False, True])
-    assert np.isnan(numbers_or_nan("y", whole)).tolist() == [False, True]
+    assert np.isnan(numbers_or_nan("y", np.ma.masked_array([1, 1000], mask=[False, True]))).tolist() == [False, True]
     assert type(numbers("x", np.ma.masked_array([1.0, 2.0]))) is np.ndarray
 
 

@@ -62,8 +62,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
     assert "m/s    speed after the touchdown" in shown.stdout
     with h5py.File(motion) as file:
         assert file["frames/position"].shape[1:] == (31, 3)
-    asked = CliRunner().invoke(app, ["land", str(study_file), "--set", "impact.speed=0.3", "--json"])
-    told = json.loads(asked.stdout)
+    told = json.loads(CliRunner().invoke(app, ["land", str(study_file), "--set", "impact.speed=0.3", "--json"]).stdout)
     assert told["outcome"] == "clear"
     assert told["inputs"]["impact.speed"] == 0.3
     assert 0.0 < told["outputs"]["speed_out"] < 0.3
@@ -154,8 +153,7 @@ def test_it_has_the_bits_of_that_of_the_study(results: StudyResults, followed: t
     for touchdown, made in zip(found.journey.touchdowns, found.landings, strict=True):
         record = records[touchdown["key"]]
         assert made.values == record.inputs
-        outputs = {name: value for name, value in made.outcome.outputs.items() if not np.isnan(value)}
-        assert outputs == record.outputs
+        assert {name: value for name, value in made.outcome.outputs.items() if not np.isnan(value)} == record.outputs
     row = {name: results.journeys[name][NUMBER] for name in results.journeys}
     assert {name: cell for name, cell in found.track.row.items() if cell != ""} == {
         name: cell for name, cell in row.items() if found.track.row[name] != ""

@@ -63,8 +63,7 @@ def released(**release: Any) -> dict[str, Any]:
 
 
 def write_table(path: Path, table: np.ndarray, titles: str) -> str:
-    lines = [titles, *(",".join(f"{value:.17g}" for value in row) for row in table)]
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join([titles, *(",".join(f"{value:.17g}" for value in row) for row in table)]) + "\n")
     return str(path)
 
 
@@ -182,8 +181,7 @@ def test_axes_of_icrf_go_through_pole_and_meridian() -> None:
         right_ascension, declination = POLE["pole_right_ascension_deg"], POLE["pole_declination_deg"]
         # The usual three turns of the frame: about z, x, z.
         turns = [90.0 + right_ascension, 90.0 - declination, angle]
-        expected = Rotation.from_euler("ZXZ", turns, degrees=True).inv().as_matrix()
-        assert rotation == pytest.approx(expected, abs=1e-12)
+        assert rotation == pytest.approx(Rotation.from_euler("ZXZ", turns, degrees=True).inv().as_matrix(), abs=1e-12)
 
 
 def to_icrf(table: np.ndarray) -> np.ndarray:
@@ -396,20 +394,17 @@ def test_what_is_given_is_not_drawn_and_leaves_the_rest_as_it_was() -> None:
     held = {"azimuth_deg": 30.0, "place": {"x": 0.01, "y": 0.02}, "orientation": [2, 0, 0, 0]}
     rows = DrawnDesign(drawn(40, impact=held)).rows
     assert np.array_equal(columns(free, "bed", *SOIL), columns(rows, "bed", *SOIL))
-    expected = [0.01, 0.02, 30.0, 1.0, 0.0, 0.0, 0.0]
-    assert np.array_equal(columns(rows, *ARRIVAL[1:]), np.tile(expected, (40, 1)))
+    assert np.array_equal(columns(rows, *ARRIVAL[1:]), np.tile([0.01, 0.02, 30.0, 1.0, 0.0, 0.0, 0.0], (40, 1)))
 
 
 def test_an_uncertain_place_or_azimuth_is_an_input_like_any_other() -> None:
-    law = {"distribution": "uniform", "lower": 0.0, "upper": 10.0}
-    rows = DrawnDesign(drawn(64, impact={"azimuth_deg": law})).rows
+    rows = DrawnDesign(drawn(64, impact={"azimuth_deg": {"distribution": "uniform", "lower": 0.0, "upper": 10.0}})).rows
     assert np.array_equal(np.sort(np.floor(columns(rows, "impact.azimuth_deg")[:, 0] * 6.4)), np.arange(64))
 
 
 def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
     rows = DrawnDesign(drawn(64, impact={"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0})).rows
-    tilt = np.degrees(2.0 * np.arccos(columns(rows, ORIENTATION[0])[:, 0]))
-    assert 9.0 < tilt.max() <= 10.0
+    assert 9.0 < np.degrees(2.0 * np.arccos(columns(rows, ORIENTATION[0])[:, 0])).max() <= 10.0
     assert np.all(columns(rows, ORIENTATION[3]) == 0.0)
 
 

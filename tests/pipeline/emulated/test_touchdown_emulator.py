@@ -143,10 +143,8 @@ def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResu
 def test_the_emulator_of_touchdowns_is_served(results: StudyResults, monkeypatch: pytest.MonkeyPatch) -> None:
     # A function has no beds, and study.toml does not name it.
     monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
-    models = {one.name: one for one in served_models(results.folder / "study.toml", results.folder)}
-    served = models["emulator"]
-    ground = ("surface.gravity", "surface.slope_deg")
-    assert served.inputs[-4:] == ("impact.speed", "impact.incidence_deg", *ground)
+    served = {one.name: one for one in served_models(results.folder / "study.toml", results.folder)}["emulator"]
+    assert served.inputs[-4:] == ("impact.speed", "impact.incidence_deg", "surface.gravity", "surface.slope_deg")
     point = [float(np.median(results.touchdowns[name])) for name in served.inputs]
     drawn = [served.evaluate(point, {"seed": seed}) for seed in range(40)]
     assert drawn[0] == served.evaluate(point, {"seed": 0})

@@ -75,10 +75,8 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
     assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser found")
-    headline = open_study(home / "out").summary["results"]["headline"]
-    assert len(said_by("report", home).splitlines()) == len(headline) + 1
-    changed = {path.name for path, content in before.items() if path.read_bytes() != content}
-    assert changed <= {".lock", "keys.json"}
+    assert len(said_by("report", home).splitlines()) == len(open_study(home / "out").summary["results"]["headline"]) + 1
+    assert {path.name for path, content in before.items() if path.read_bytes() != content} <= {".lock", "keys.json"}
     assert said_by("status", home).splitlines() == lines
 
 

@@ -96,8 +96,7 @@ def test_the_first_flight_leads_from_the_state_to_the_first_touchdown(flown: tup
     down = np.delete(np.arange(COUNT), [3, 9])
     again = fly(own, states[down, 1:4], states[down, 4:], 172800.0, gravity="table", start_time=first["clock_s"][down])
     assert np.column_stack([impacts[f"position_{axis}"] for axis in "xyz"]).tolist() == again.position.tolist()
-    velocity = np.column_stack([impacts[f"velocity_{axis}"] for axis in "xyz"])
-    assert np.abs(velocity - again.velocity).max() < 1e-12
+    assert np.abs(np.column_stack([impacts[f"velocity_{axis}"] for axis in "xyz"]) - again.velocity).max() < 1e-12
     assert impacts["impact.speed"] == pytest.approx(again.impact_speed)
 
 
@@ -205,8 +204,7 @@ def test_correlations_change_only_what_they_name() -> None:
     for key in ("north_error", "east_error", "heading_deg", "incidence_deg"):
         assert (before[key] == after[key]).all()
     assert (before["speed"] != after["speed"]).all()
-    own = {name for name in apart.rows[0] if apart.rows[0][name] != together.rows[0][name]}
-    assert own == {"impact.speed"}
+    assert {name for name in apart.rows[0] if apart.rows[0][name] != together.rows[0][name]} == {"impact.speed"}
     assert [together.row(run) for run in (0, 7)] == [together.rows[0], together.rows[7]]
     assert together.with_run_count(COUNT + 5).rows[:COUNT] == together.rows
 

@@ -277,8 +277,7 @@ def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPa
     )
     header = page[: page.index("</header>")]
     assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
-    contents = ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
-    assert re.findall(r"<h2>([^<]+)</h2>", page) == contents
+    assert re.findall(r"<h2>([^<]+)</h2>", page) == ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
 
 
 def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:

@@ -138,8 +138,7 @@ def test_bounds_have_the_areas_of_a_sphere(body_file: Path) -> None:
 
 def test_places_lie_where_their_latitudes_and_longitudes_say(body_file: Path) -> None:
     found = soils(body_file, {"far": {"longitude_deg": [170.0, -170.0], "grain": {"friction": 0.3}}})
-    longitude = np.array([169.0, 171.0, 180.0, -171.0, -169.0, 0.0])
-    points = found.site.body.shape.surface_point(np.zeros(6), longitude)
+    points = found.site.body.shape.surface_point(np.zeros(6), np.array([169.0, 171.0, 180.0, -171.0, -169.0, 0.0]))
     assert found.at(points) == [ELSEWHERE, "far", "far", "far", ELSEWHERE, ELSEWHERE]
 
 
@@ -151,8 +150,7 @@ def test_slopes_are_those_of_gravity_and_rotation(body_file: Path) -> None:
     def slope(latitude: np.ndarray) -> np.ndarray:
         return np.arctan2(w * np.sin(latitude) * np.cos(latitude), 1.0 - w * np.cos(latitude) ** 2)
 
-    heights = np.linspace(-1.0, 1.0, 100_001)
-    expected = float((slope(np.abs(np.arcsin(heights))) > math.radians(20.0)).mean())
+    expected = float((slope(np.abs(np.arcsin(np.linspace(-1.0, 1.0, 100_001)))) > math.radians(20.0)).mean())
     region = {"slope_deg": [20.0, 180.0], "grain": {"friction": 0.3}}
     found = soils(body_file, {"steep": region}, site={"spin_period": period}).area_shares()["steep"]
     assert 0.2 < expected < 0.6

@@ -288,8 +288,7 @@ def test_the_whole_law_of_the_explorer_is_that_of_the_samples(results: StudyResu
     left = samples["outcome"] == "clear"
     speed = samples["speed_out"][left]
     # The study has the chance of so many samples and flights; the refits of the page widen a share by less.
-    flown = share["sample_count"]
-    chance = [math.sqrt(0.25 / flown), math.sqrt(0.25 / len(left)), speed.std() / math.sqrt(left.sum())]
+    chance = [math.sqrt(0.25 / share["sample_count"]), math.sqrt(0.25 / len(left)), speed.std() / math.sqrt(left.sum())]
     expected = np.array([share["returns"]["share"], left.mean(), speed.mean()])
     assert np.all(np.abs(np.array(found) - expected) < 3.0 * np.array(chance) + 0.01 * expected)
 

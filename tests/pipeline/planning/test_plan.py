@@ -367,8 +367,7 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
 
 
 def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: Path) -> None:
-    study = with_site_gravity(read_study(SCENARIOS / "quick.toml"))
-    plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
+    plan = plan_for(with_site_gravity(read_study(SCENARIOS / "quick.toml")), StudyFolder.only_read(tmp_path / "out"), 2)
     found, beds = plan.half_width, plan.runs_a_bed
     assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
     # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at 0.95 is 1.714.

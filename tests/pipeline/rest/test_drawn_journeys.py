@@ -123,8 +123,7 @@ def test_a_journey_has_a_flight_for_each_rebound(journeys: StudyResults) -> None
 
 def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: Path) -> None:
     limits = {"away": "escaped", "back": "returns", "caught": "captured"}
-    lander = SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat"))
-    results = made(tmp_path / "out", lander, limit_states=limits)
+    results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")), limit_states=limits)
     found = results.summary["results"]
     runs, returns, shares = found["runs"], found["returns"], found["shares"]
     lost = runs["outcomes"]["left_sideways"]

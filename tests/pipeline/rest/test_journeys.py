@@ -53,8 +53,7 @@ def rebound(x: np.ndarray) -> np.ndarray:
     """Outputs [count, 6] that are polynomials of the inputs: half the speed, higher up the less the friction, to the
     right of the incoming direction."""
     friction, speed, incidence = x.T
-    nothing = np.zeros_like(speed)
-    return np.column_stack([0.5 * speed, 1.2 - friction, 2.0 * speed, nothing, -speed, incidence])
+    return np.column_stack([0.5 * speed, 1.2 - friction, 2.0 * speed, np.zeros_like(speed), -speed, incidence])
 
 
 def bounce(friction: list[float], scatter: Scatter | None = None, outcome: str = "clear") -> SoilBounce:
@@ -294,5 +293,4 @@ def test_what_comes_too_slowly_to_leave_is_captured_where_the_soil_has_no_answer
     assert found.velocity[0] == pytest.approx([0.99 * limit * math.sin(math.radians(60.0)), 0.0, 0.0])
     turning = replace(hits, spin=np.tile([0.0, limit / 0.05, 0.0], (3, 1)))
     assert not ground(turning, np.random.default_rng(0)).captured.any()
-    outward = replace(hits, effective_acceleration=np.full(3, 1e-5))
-    assert not ground(outward, np.random.default_rng(0)).captured.any()
+    assert not ground(replace(hits, effective_acceleration=np.full(3, 1e-5)), np.random.default_rng(0)).captured.any()
