@@ -82,8 +82,7 @@ def test_the_wheel_says_what_it_is(release: Path) -> None:
         (path,) = (name for name in names if name.endswith("METADATA"))
         said = Parser().parsestr(file.read(path).decode())
     assert (said["Name"], said["Version"]) == ("lithobrake", lithobrake.__version__)
-    assert said["License-Expression"] == "BSD-3-Clause"
-    assert said["Requires-Python"] == ">=3.11"
+    assert (said["License-Expression"], said["Requires-Python"]) == ("BSD-3-Clause", ">=3.11")
     classifiers = said.get_all("Classifier")
     assert {f"Programming Language :: Python :: 3.{minor}" for minor in (11, 12, 13)} <= set(classifiers)
     assert "Intended Audience :: Science/Research" in classifiers

@@ -171,8 +171,7 @@ def made_samples(*outcomes: str) -> Samples:
 def test_the_first_samples_that_leave_fly_each_from_its_own_site() -> None:
     study = changed(flight={"flight_count": 2}, site={"latitude_deg": UNIFORM})
     one = starts(Site(study), made_samples("clear", "captured", "clear", "clear"))
-    assert one.sample.tolist() == [0, 2]
-    assert one.velocity == pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2))
+    assert (one.sample.tolist(), one.velocity) == ([0, 2], pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2)))
     assert ((one.site["latitude_deg"] > 0.1) & (one.site["latitude_deg"] < 0.3)).all()
     more = starts(
         Site(changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM})), made_samples(*["clear"] * 4)
@@ -225,8 +224,7 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
     found = return_fraction(study, table, 40)
     assert (found.lower, found.upper, found.next_bed, found.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why
-    assert found.from_ == "4 samples of an expansion fitted to 40 landings on 1 bed"
-    assert found.missing == 0.0
+    assert (found.from_, found.missing) == ("4 samples of an expansion fitted to 40 landings on 1 bed", 0.0)
     assert found.if_missing == (1.0, 1.0)
 
 

@@ -208,8 +208,7 @@ def test_what_a_tally_tells(tmp_path: Path) -> None:
     state = ledger_tally(read_records(tmp_path / "runs.sqlite"), began="2000-01-01T00:00:00+00:00")
     assert (state.total, state.done, state.failed, state.running, state.reused) == (3, 2, 1, 0, 0)
     assert state.spreads["height"].mean == 5.5
-    assert state.spreads["height"].std == pytest.approx(np.std([1.5, 9.5], ddof=1))
-    assert state.time_left == 0.0
+    assert (state.spreads["height"].std, state.time_left) == (pytest.approx(np.std([1.5, 9.5], ddof=1)), 0.0)
     assert state.sentence().startswith("3 runs: 2 done, 0 running, 1 failed, ")
 
 

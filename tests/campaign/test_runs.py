@@ -87,8 +87,7 @@ def test_a_run_that_raises_is_recorded_with_its_reason(tmp_path: Path) -> None:
 
 def test_a_captured_lander_is_an_outcome_with_its_other_outputs(tmp_path: Path) -> None:
     runs = campaign(tmp_path, models.captured_below_two, HereExecutor())
-    assert runs.outcomes == ["captured", "clear", "clear", "captured"]
-    assert runs.records[0].status == "done"
+    assert (runs.outcomes, runs.records[0].status) == (["captured", "clear", "clear", "captured"], "done")
     assert runs.outputs(["depth", "height"])[0].tolist() == pytest.approx([0.1, np.nan], nan_ok=True)
 
 

@@ -149,8 +149,7 @@ def test_missing_runs_are_dropped_and_counted_other_nan_refused():
     holes = np.column_stack([ishigami(x), x[:, 0]]).copy()
     holes[[3, 10]] = np.nan
     surrogate = fit(ISHIGAMI, x, holes, degree=3)
-    assert surrogate.dropped_count == 2
-    assert surrogate.report["train_count"] == len(x) - 2
+    assert (surrogate.dropped_count, surrogate.report["train_count"]) == (2, len(x) - 2)
     holes[20, 0] = np.nan
     with pytest.raises(ValueError, match="NaN"):
         fit(ISHIGAMI, x, holes, degree=3)
@@ -276,8 +275,7 @@ def test_an_output_whose_mean_is_off_it_by_rounding_is_constant(method):
     values = np.full(5, 0.013)
     assert values.mean() != 0.013
     surrogate = fit(inputs, smolyak(inputs, 2), values, None, method)
-    assert surrogate.mean == pytest.approx(0.013, rel=1e-15)
-    assert surrogate.variance == 0.0
+    assert (surrogate.mean, surrogate.variance) == (pytest.approx(0.013, rel=1e-15), 0.0)
 
 
 def test_sum_of_independent_inputs_adds_cumulants():

@@ -136,8 +136,7 @@ def test_new_names_body_lander_and_place(tmp_path: Path, monkeypatch: pytest.Mon
     arguments = ["--body", "BENNU", "--lander", "mascot", "--at", "-20,300", "--shape", "bennu.obj"]
     assert RUNNER.invoke(app, ["new", "visit", *arguments]).exit_code == 0
     tables = tomllib.loads((tmp_path / "visit.toml").read_text())
-    assert tables["title"] == "MASCOT on Bennu"
-    assert tables["lander"]["mass"] == 10.0
+    assert (tables["title"], tables["lander"]["mass"]) == ("MASCOT on Bennu", 10.0)
     assert (tables["delivery"]["latitude_deg"], tables["delivery"]["longitude_deg"]) == (-20.0, 300.0)
     assert (tables["site"]["body"], tables["site"]["mass"]) == ("bennu.obj", 7.329e10)
     assert "the package has no shape of Bennu; give a closed mesh" in refused(["new", "x", "--body", "bennu"])

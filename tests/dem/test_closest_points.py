@@ -95,8 +95,7 @@ def test_box_is_exact():
     assert box.volume == pytest.approx(6.0, rel=1e-12)
     assert np.allclose(box.centroid, 0.0, atol=1e-15)
     assert np.allclose(box.inertia_per_density, np.diag([6.5, 5.0, 2.5]), rtol=1e-12, atol=1e-12)
-    assert len(box.polyhedron.face_normals) == 6
-    assert len(box.polyhedron.edges) == 12
+    assert (len(box.polyhedron.face_normals), len(box.polyhedron.edges)) == (6, 12)
 
 
 def test_tetrahedron_is_exact():

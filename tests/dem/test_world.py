@@ -472,8 +472,7 @@ def test_own_steps_find_neighbours_in_cells_as_among_all(monkeypatch: pytest.Mon
     assert one[2] == 1
     assert (many[0][:, :2] < -0.05).any(axis=0).all()
     # Pairs listed in another order are looked at in another order where they are due at once.
-    assert many[0] == pytest.approx(one[0], abs=1e-9)
-    assert many[1] == pytest.approx(one[1], abs=1e-8)
+    assert (many[0], many[1]) == (pytest.approx(one[0], abs=1e-9), pytest.approx(one[1], abs=1e-8))
 
 
 @pytest.mark.parametrize("period", [(1.0,), (1.0, 0.0), (1.0, math.inf), (math.nan, 1.0), (-1.0, 1.0)])

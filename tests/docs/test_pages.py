@@ -68,8 +68,7 @@ NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
 def test_six_rows_stand_there_two_of_which_disagree() -> None:
     verdicts = [cells.split("|")[-1].strip() for _, cells in ROWS]
-    assert len(verdicts) == 6
-    assert verdicts.count("no") == 2
+    assert (len(verdicts), verdicts.count("no")) == (6, 2)
 
 
 @pytest.mark.parametrize(("page", "cells"), ROWS)

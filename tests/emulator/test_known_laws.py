@@ -125,8 +125,7 @@ def fitted(slope: float, noise: float, count: int, seed: int) -> emulator.Emulat
 def test_indices_are_those_of_the_polynomial() -> None:
     found = fitted(slope=1.0, noise=0.0, count=200, seed=0).mean_law()
     # Variances of a, b / 3 and their product: 1/3, 1/9 and 1/3.
-    assert found.mean[0] == pytest.approx(1.0, abs=1e-9)
-    assert found.variance[0] == pytest.approx(7.0 / 9.0, rel=1e-6)
+    assert (found.mean[0], found.variance[0]) == (pytest.approx(1.0, abs=1e-9), pytest.approx(7.0 / 9.0, rel=1e-6))
     np.testing.assert_allclose(found.sobol_first[:, 0], [3.0 / 7.0, 1.0 / 7.0, 0.0], atol=1e-6)
     np.testing.assert_allclose(found.sobol_total[:, 0], [6.0 / 7.0, 4.0 / 7.0, 0.0], atol=1e-6)
 

@@ -266,10 +266,8 @@ def test_the_file_is_plain_json_that_says_what_it_is(tmp_path: Path) -> None:
         raise AssertionError(f"{constant} is no JSON")
 
     content = json.loads((tmp_path / "model.json").read_text(), parse_constant=refuse)
-    assert content["format"] == "lithobrake emulator"
-    assert content["format_version"] == 1
-    assert content["output_names"] == ["speed", "spin", "label"]
-    assert content["upper"] == [[2.0, None, None]]
+    assert (content["format"], content["format_version"]) == ("lithobrake emulator", 1)
+    assert (content["output_names"], content["upper"]) == (["speed", "spin", "label"], [[2.0, None, None]])
 
 
 @pytest.mark.parametrize(

@@ -41,8 +41,7 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
     sample, epoch = int(results.flights["sample"][3]), "2026-11-22T12:00:00"
     write_ephemerides(results, tmp_path, samples=[sample], frame=frame, epoch=epoch)
     (flight,) = oem.OrbitEphemerisMessage.open(tmp_path / f"flight_{sample}.oem").segments
-    assert flight.metadata["OBJECT_NAME"] == f"SAMPLE_{sample}"
-    assert flight.metadata["CENTER_NAME"] == "DIMORPHOS"
+    assert (flight.metadata["OBJECT_NAME"], flight.metadata["CENTER_NAME"]) == (f"SAMPLE_{sample}", "DIMORPHOS")
     assert flight.metadata["REF_FRAME"] == f"DIMORPHOS_{frame.upper()}"
     end = seconds(flight, epoch)[-1]
     assert end == pytest.approx(results.flights["time_s"][3], abs=1e-6)

@@ -47,8 +47,7 @@ def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResu
     # The frame is a sphere of this body, in degrees, and no place of the Earth.
     assert crs.is_geographic
     found = crs.to_dict()
-    assert found["proj"] == "longlat"
-    assert found["R"] == pytest.approx(radius)
+    assert (found["proj"], found["R"]) == ("longlat", pytest.approx(radius))
     assert "planetocentric, east positive" in crs.to_wkt()
     assert tags["UNIT"] == "1/m2"
 
@@ -177,8 +176,7 @@ def test_facets_of_both_tables_are_those_of_the_shape_in_its_order(results: Stud
         ):
             assert [float(row[title]) for row in rows] == table[name].tolist()
         latitude, longitude = shape.latitude_longitude(shape.corners.mean(axis=1))
-        assert table["latitude_deg"] == pytest.approx(latitude)
-        assert table["longitude_deg"] == pytest.approx(longitude)
+        assert (table["latitude_deg"], table["longitude_deg"]) == (pytest.approx(latitude), pytest.approx(longitude))
 
 
 def test_impacts_lie_on_the_facets_that_the_flights_name(results: StudyResults, tmp_path: Path) -> None:

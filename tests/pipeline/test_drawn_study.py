@@ -51,8 +51,7 @@ def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, D
     assert runs["drawn"].keys[:12] == first.keys
     assert not set(runs["drawn"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
     table = open_study(folder / "out").runs
-    assert len(table["key"]) == 40
-    assert sorted(set(table["design"])) == sorted(designs)
+    assert (len(table["key"]), sorted(set(table["design"]))) == (40, sorted(designs))
 
 
 def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, str]) -> None:

@@ -79,5 +79,4 @@ def test_a_study_killed_at_a_random_moment_of_each_stage_ends_with_the_same_bits
         for name in names if stage not in ("summary", "report") else ():
             assert (killed / name).read_bytes() == (calm / name).read_bytes(), name
     summaries = [open_study(out).summary for out in (killed, calm)]
-    assert summaries[0]["results"] == summaries[1]["results"]
-    assert summaries[0]["study"] == summaries[1]["study"]
+    assert (summaries[0]["results"], summaries[0]["study"]) == (summaries[1]["results"], summaries[1]["study"])

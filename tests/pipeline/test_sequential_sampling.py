@@ -105,8 +105,7 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     study = source(half_width=0.06).study
     only_read = StudyFolder.only_read(folder)
     design = grown(DrawnDesign(study), only_read)
-    assert len(design.rows) == runs.run_count
-    assert design.keys == runs.keys
+    assert (len(design.rows), design.keys) == (runs.run_count, runs.keys)
     assert design.study.with_run_count(24) == study.with_run_count(24)
     plan = plan_of(design, Site(study), "ball", only_read, 2)
     # What follows the runs was not asked for.

@@ -36,8 +36,7 @@ def test_obj_with_units_polygons_and_negative_indices(tmp_path):
         "f 1//1 4//1 3//1 2//1\nf 5/1 6/2 7/3 8/4\nf -8 -7 -3 -4\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
     )
     shape = Shape.read(path, unit="km")
-    assert shape.volume == pytest.approx(8e9)
-    assert len(shape.faces) == 12
+    assert (shape.volume, len(shape.faces)) == (pytest.approx(8e9), 12)
 
 
 @pytest.mark.parametrize("binary", [True, False])
@@ -51,8 +50,7 @@ def test_stl_merges_corners(tmp_path, binary):
         loops = ["facet normal 0 0 0 outer loop\n" + "\n".join(f"vertex {x} {y} {z}" for x, y, z in c) for c in corners]
         path.write_text("solid cube\n" + "\nendloop endfacet\n".join(loops) + "\nendsolid\n")
     shape = Shape.read(path)
-    assert len(shape.vertices) == 8
-    assert shape.volume == pytest.approx(8.0)
+    assert (len(shape.vertices), shape.volume) == (8, pytest.approx(8.0))
 
 
 @pytest.mark.parametrize("numbered", [True, False])
@@ -191,8 +189,7 @@ def test_height_and_inside_agree(shapes):
 ])  # fmt: skip
 def test_real_shapes(shapes, file, facets, volume):
     shape = Shape.read(shapes / file)
-    assert len(shape.faces) == facets
-    assert shape.volume == pytest.approx(volume, rel=3e-5)
+    assert (len(shape.faces), shape.volume) == (facets, pytest.approx(volume, rel=3e-5))
 
 
 def test_built_in_bodies_have_the_published_extents():

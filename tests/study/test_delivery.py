@@ -160,10 +160,8 @@ def test_units_stand_in_the_titles(tmp_path: Path) -> None:
     path = tmp_path / "states.csv"
     path.write_text("# of another tool\n\nvx_cm_s,vy_mm_s,vz_m_s,time_h,x_km,y_m,z_m\n1,2,3,0.5,4,5,6\n")
     found = read_states(path, "body_fixed", None, ())
-    assert found.time.tolist() == [1800.0]
-    assert found.position.tolist() == [[4000.0, 5.0, 6.0]]
-    assert found.velocity[0] == pytest.approx([0.01, 0.002, 3.0])
-    assert found.source == ["states.csv, line 4"]
+    assert (found.time.tolist(), found.position.tolist()) == ([1800.0], [[4000.0, 5.0, 6.0]])
+    assert (found.velocity[0], found.source) == (pytest.approx([0.01, 0.002, 3.0]), ["states.csv, line 4"])
 
 
 def test_an_attitude_is_whole_and_of_length_one(tmp_path: Path) -> None:
@@ -216,8 +214,7 @@ def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
     path = tmp_path / "states.oem"
     path.write_text(OEM)
     found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
-    assert found.time.tolist() == [0.5, 10.0]
-    assert found.position[0].tolist() == [0.0, 200.0, 0.0]
+    assert (found.time.tolist(), found.position[0].tolist()) == ([0.5, 10.0], [0.0, 200.0, 0.0])
     assert read_states(path, "icrf", None, ()).time.tolist() == [0.0, 9.5]
 
 
@@ -275,8 +272,7 @@ def test_uncertain_properties_of_parts_are_inputs_by_their_keys() -> None:
     assert values["lander.part.foot.restitution"] == pytest.approx(0.2)
     values |= {"lander.part.foot.restitution": 0.15, "lander.centre_of_mass.y": 0.05}
     made = lander(one, values)
-    assert made.parts[0].material.restitution == 0.15
-    assert made.body.centre_of_mass[1] == 0.05
+    assert (made.parts[0].material.restitution, made.body.centre_of_mass[1]) == (0.15, 0.05)
 
 
 def test_numbers_of_a_run_stand_in_the_tables_of_parts() -> None:
@@ -284,8 +280,7 @@ def test_numbers_of_a_run_stand_in_the_tables_of_parts() -> None:
     given = {"lander.part.foot.restitution": 0.4, "lander.centre_of_mass.y": 0.03}
     orientation = {f"impact.orientation.{part}": float(part == "w") for part in "wxyz"}
     fixed = fixed_study(one, {**medians(one), **orientation, **given})
-    assert fixed.lander.part["foot"].restitution == 0.4
-    assert fixed.lander.centre_of_mass.y == 0.03
+    assert (fixed.lander.part["foot"].restitution, fixed.lander.centre_of_mass.y) == (0.4, 0.03)
     for key in ("lander.part.foot", "lander.part.hand.restitution", "lander.part.foot.speed"):
         with pytest.raises(StudyError, match=key):
             fixed_study(one, {**medians(one), **orientation, key: 0.4})

@@ -32,8 +32,7 @@ def test_sizes_follow_their_distribution():
     share = (0.1**-2.5 - 0.2**-2.5) / (0.1**-2.5 - 0.4**-2.5)
     assert (power < 0.2).mean() == pytest.approx(share, abs=1e-4)
     normal = GrainSizes(distribution="normal", lower=0.05, upper=0.15, mean=0.1, std=0.01).draw(uniforms)
-    assert normal.mean() == pytest.approx(0.1, abs=1e-5)
-    assert normal.std() == pytest.approx(0.01, rel=1e-3)
+    assert (normal.mean(), normal.std()) == (pytest.approx(0.1, abs=1e-5), pytest.approx(0.01, rel=1e-3))
     assert np.all(GrainSizes(distribution="constant", lower=0.1, upper=0.1).draw(uniforms) == 0.1)
 
 
@@ -86,8 +85,7 @@ def test_grain_has_the_volume_of_its_sphere_and_its_centroid_at_the_origin():
 def test_bed_is_at_rest_in_its_box(bed):
     assert bed.history["kinetic_ratio"][-1] < settling.KINETIC_RATIO
     assert bed.history["unbalanced_force"][-1] < settling.UNBALANCED_FORCE
-    assert bed.history["gravity"][-1] == pytest.approx(5e-4)
-    assert bed.history["gravity"][0] == pytest.approx(0.5)
+    assert (bed.history["gravity"][-1], bed.history["gravity"][0]) == (pytest.approx(5e-4), pytest.approx(0.5))
     assert np.abs(bed.position[:, :2]).max() < 0.18
     assert bed.position[:, 2].min() > 0.0
     assert 0.4 < bed.solid_fraction < 0.8
@@ -141,8 +139,7 @@ def test_bed_survives_its_file(bed, tmp_path):
     assert np.array_equal(bed.position, other.position)
     assert np.array_equal(bed.orientation, other.orientation)
     assert all(np.array_equal(a.core, b.core) for a, b in zip(bed.grains, other.grains, strict=True))
-    assert other.width == bed.width
-    assert other.seed == bed.seed
+    assert (other.width, other.seed) == (bed.width, bed.seed)
     assert np.array_equal(bed.frames["position"], other.frames["position"])
 
 

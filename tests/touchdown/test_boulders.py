@@ -48,8 +48,7 @@ def ground(recipe: Any) -> Bed:
 
 
 def test_a_boulder_rests_among_the_grains_as_deep_as_asked(ground: Bed) -> None:
-    assert ground.boulder_count == 1
-    assert len(ground.grains) == 97
+    assert (ground.boulder_count, len(ground.grains)) == (1, 97)
     assert ground.history["kinetic_ratio"][-1] < settling.KINETIC_RATIO
     # It has not turned over, nor has it been lifted.
     assert abs(ground.orientation[0, 0]) > 0.999
@@ -88,8 +87,7 @@ def test_the_mean_coverage_over_beds_is_that_asked_for() -> None:
     asked, area = boulders(0.13), 0.9 * 1.1
     counts = [asked.count(area, (k + 0.5) / 1000) for k in range(1000)]
     mean = asked.mean_count(area)
-    assert set(counts) == {int(mean), int(mean) + 1}
-    assert np.mean(counts) == pytest.approx(mean, abs=1e-3)
+    assert (set(counts), np.mean(counts)) == ({int(mean), int(mean) + 1}, pytest.approx(mean, abs=1e-3))
     square = np.mean(SIZES.draw((np.arange(1000) + 0.5) / 1000) ** 2)
     assert mean * 0.25 * math.pi * square / area == pytest.approx(0.13)
 
@@ -129,8 +127,7 @@ def test_a_coverage_or_cover_of_no_bed_is_refused(coverage: float, cover: tuple[
 def test_what_is_cut_off_at_a_height_has_the_volume_above_it() -> None:
     box = ConvexHull(Box((1.0, 2.0, 4.0)).vertices + np.array([0.0, 0.0, 1.0]))
     cut = cut_below(box, 0.0)
-    assert cut.volume == pytest.approx(6.0)
-    assert cut.vertices[:, 2].min() == 0.0
+    assert (cut.volume, cut.vertices[:, 2].min()) == (pytest.approx(6.0), 0.0)
     assert cut_below(box, -2.0) is box
 
 

@@ -29,8 +29,7 @@ def ball(material=BOUNCY, mass=0.3):
 
 def test_bouncy_ball_rebounds_and_tells_of_it(bed):
     outcome = land(bed, ball(), landing(), frame_count=6)
-    assert outcome.status == "clear"
-    assert set(outcome.outputs) == set(OUTPUTS)
+    assert (outcome.status, set(outcome.outputs)) == ("clear", set(OUTPUTS))
     out = outcome.outputs
     velocity = np.array([out["velocity_out_x"], out["velocity_out_y"], out["velocity_out_z"]])
     assert out["speed_out"] == pytest.approx(np.linalg.norm(velocity), rel=1e-12)
@@ -95,10 +94,8 @@ def test_any_constant_acceleration_is_accepted(bed, gravity):
 def test_outgoing_velocity_is_told_along_the_incoming_one():
     still = np.array([1.0, 0.0, 0.0, 0.0])
     out = outgoing(np.array([0.0, 2.0, 1.0]), np.array([3.0, 0.0, 4.0]), still, math.pi / 2, over_rim=False)
-    assert out["velocity_out_x"] == pytest.approx(2.0)
-    assert out["velocity_out_y"] == pytest.approx(0.0, abs=1e-12)
-    assert out["spin_out"] == 5.0
-    assert out["azimuth_out"] == pytest.approx(0.0, abs=1e-12)
+    assert (out["velocity_out_x"], out["velocity_out_y"]) == (pytest.approx(2.0), pytest.approx(0.0, abs=1e-12))
+    assert (out["spin_out"], out["azimuth_out"]) == (5.0, pytest.approx(0.0, abs=1e-12))
     assert [out[f"spin_out_{axis}"] for axis in "xyz"] == pytest.approx([0.0, -3.0, 4.0], abs=1e-12)
     # Seen from a frame turned to the left, a lander that has not turned is turned to the right.
     half = math.sqrt(0.5)
@@ -127,8 +124,7 @@ def test_a_frictionless_ball_leaves_with_the_spin_that_it_came_with_and_turned_b
 def test_recorded_landing_is_written(bed, tmp_path):
     land(bed, ball(), landing(), frame_count=4).save_frames(tmp_path / "landing.h5", bed, ball(), landing())
     with h5py.File(tmp_path / "landing.h5") as file:
-        assert file.attrs["status"] == "clear"
-        assert len(file["vertex_start"]) == 26
+        assert (file.attrs["status"], len(file["vertex_start"])) == ("clear", 26)
         assert file["frames/position"].shape[1:] == (25, 3)
         force = file["frames/force"][:]
     # A lander above its bed and one that has left it feel no grain; between, the sum that slowed it down.

@@ -45,8 +45,7 @@ def test_the_file_holds_the_triangles_once_and_all_instants(motion: MovingBodies
     write_motion(motion, path)
     with h5py.File(path) as file:
         root = file["VTKHDF"]
-        assert root.attrs["Type"] == b"PolyData"
-        assert root["Steps"].attrs["NSteps"] == 3
+        assert (root.attrs["Type"], root["Steps"].attrs["NSteps"]) == (b"PolyData", 3)
         assert root["Points"].shape == (24, 3)
         assert root["Polygons/Connectivity"].shape == (24,)
         np.testing.assert_array_equal(root["Steps/PointOffsets"], [0, 8, 16])
@@ -248,8 +247,7 @@ def test_a_film_has_every_touchdown_with_a_map_before_it(journey_motion: Journey
     journey_film(
         JourneyMotion(journey_motion.track, journey_motion.bodies[:1]), path, 40.0, lambda done, what: told.append(done)
     )
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert (told, told[-1]) == (sorted(told), 1.0)
     with Image.open(path) as opened:
         assert opened.size == SIZE
         # Pictures that do not differ from the one before may be kept once.

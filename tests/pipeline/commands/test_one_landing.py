@@ -63,8 +63,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
     with h5py.File(motion) as file:
         assert file["frames/position"].shape[1:] == (31, 3)
     told = json.loads(CliRunner().invoke(app, ["land", str(study_file), "--set", "impact.speed=0.3", "--json"]).stdout)
-    assert told["outcome"] == "clear"
-    assert told["inputs"]["impact.speed"] == 0.3
+    assert (told["outcome"], told["inputs"]["impact.speed"]) == ("clear", 0.3)
     assert 0.0 < told["outputs"]["speed_out"] < 0.3
 
 
@@ -215,8 +214,7 @@ def test_the_command_follows_the_lander_and_keeps_its_motion(journeys_file: Path
 
 def test_a_program_is_given_the_same(followed: tuple[OneJourney, list[str]]) -> None:
     told = json.loads(json.dumps(followed[0].to_json(), allow_nan=False))
-    assert told["journey"] == NUMBER
-    assert told["end"] == "at_rest"
+    assert (told["journey"], told["end"]) == (NUMBER, "at_rest")
     assert [one["touchdown"] for one in told["touchdowns"]] == list(range(len(followed[0].landings)))
     assert told["touchdowns"][-1]["outputs"]["speed_out"] is None
 

@@ -57,8 +57,7 @@ def test_each_journey_has_a_row_with_its_end(journeys: StudyResults) -> None:
     assert table["end"].tolist() == list(expected.values())
     at_rest = table["end"] == JourneyEnd.AT_REST
     assert np.isfinite(table["tilt_deg"][at_rest]).all()
-    assert set(table["face"][~at_rest]) == {""}
-    assert table.columns["tilt_deg"].units == "deg"
+    assert (set(table["face"][~at_rest]), table.columns["tilt_deg"].units) == ({""}, "deg")
     assert sum(one.count for one in journeys.results.ends.values()) == table.row_count
 
 
@@ -194,8 +193,7 @@ def test_status_counts_the_ends_of_the_journeys(journeys: StudyResults) -> None:
     assert found.runs.journeys.lines() == [
         f"journeys: 48 of 48 ended: 43 at rest, 3 escaped, 1 under way, 1 failed; {touchdowns} touchdowns"
     ]
-    assert found.runs.tally.total == touchdowns
-    assert found.runs.others == 0
+    assert (found.runs.tally.total, found.runs.others) == (touchdowns, 0)
     assert "first touchdowns:" in found.runs.lines()
     assert json.loads(json.dumps(found.to_json()))["runs"]["journeys"]["ends"][JourneyEnd.AT_REST] == 43
 
@@ -223,8 +221,7 @@ def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResult
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found.journeys.touchdowns == made
-    assert found.others == journeys.touchdowns.row_count
+    assert (found.journeys.touchdowns, found.others) == (made, journeys.touchdowns.row_count)
 
 
 class Looks(Silent):
@@ -330,8 +327,7 @@ def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyP
     assert f"--key: {END_COLOURS[JourneyEnd.AT_REST]}" in view.html
     # A lander with several flights is one way, of so many flights.
     flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
-    assert sum(flights) == len(ways)
-    assert len(flights) == len(np.unique(data.path_times[1]))
+    assert (sum(flights), len(flights)) == (len(ways), len(np.unique(data.path_times[1])))
 
 
 @needs_browser

@@ -308,8 +308,7 @@ def test_status_counts_touchdowns_on_every_soil(made: StudyResults, tmp_path: Pa
     for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found.others == 0
-    assert found.journeys.touchdowns == made.touchdowns.row_count
+    assert (found.others, found.journeys.touchdowns) == (0, made.touchdowns.row_count)
 
 
 def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:

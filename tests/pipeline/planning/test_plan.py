@@ -105,8 +105,7 @@ def test_the_plan_says_how_many_and_how_large_the_grains_of_a_size_law_are() -> 
     for key, exponent in (("exponent", 3.0), ("cumulative_exponent", 2.0)):
         sizes = {"distribution": "power_law", key: exponent, "lower": 0.05, "upper": 0.1}
         found.append(planned_grains(soft(bed={"diameter": sizes, "grain_count": 200, "width": [0.8, 1.0]})))
-    assert found[0] == found[1]
-    assert found[0].mean == pytest.approx(2.0 / 30.0, rel=1e-6)
+    assert (found[0], found[0].mean) == (found[1], pytest.approx(2.0 / 30.0, rel=1e-6))
     assert (found[0].smallest, found[0].largest, found[0].count_per_m2) == (0.05, 0.1, 250.0)
     # N(>D) = (D^-2 - 100) / (400 - 100) is 0.1 at D^-2 = 130.
     assert found[0].large == pytest.approx(130.0**-0.5, rel=1e-12)
@@ -145,8 +144,7 @@ def test_the_plan_says_how_the_ground_of_the_first_touchdowns_lies() -> None:
     assert smooth.steeper == 0.0
     # The median of a Rayleigh law whose rms is tan(30 deg).
     median = math.degrees(math.atan(math.tan(math.radians(30.0)) * math.sqrt(math.log(2.0))))
-    assert rough.slope_deg[0] == pytest.approx(median, abs=4.0)
-    assert rough.slope_deg[1] == pytest.approx(35.0)
+    assert (rough.slope_deg[0], rough.slope_deg[1]) == (pytest.approx(median, abs=4.0), pytest.approx(35.0))
     assert 0.1 < rough.steeper < 0.5
     assert "with a roughness of 30 deg rms; " in rough.line()
     assert smooth.line().startswith("First touchdowns: ")

@@ -122,8 +122,7 @@ def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence
     poured: tuple[Path, str, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = pour(tmp_path, (NAMES[0], NAMES[2]))
-    assert told.said == ["bed: 2 of 2 were in the library of beds"]
-    assert told.works == []
+    assert (told.said, told.works) == (["bed: 2 of 2 were in the library of beds"], [])
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
     Broken(monkeypatch, 1, 2)
     with LocalExecutor(1) as executor, pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"):
