@@ -58,8 +58,8 @@ def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict
     assert different[0] == first
     assert set(names[names.index("summary") :]) <= set(different)
     # The landing at the medians hangs on no design, so it may be left out of an unbroken row.
-    assert [name for name in different if name != "landing"] == [
-        name for name in names[names.index(first) :] if name != "landing"
+    assert [one for one in different if one != "landing"] == [
+        one for one in names[names.index(first) :] if one != "landing"
     ]
 
 

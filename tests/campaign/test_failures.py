@@ -88,9 +88,7 @@ def tries(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("retry_count", [0, 1])
-def test_a_model_that_never_works_is_given_up_after_its_first_runs_and_retries(
-    retry_count: int, tmp_path: Path
-) -> None:
+def test_a_model_that_never_works_is_given_up_after_first_runs_and_retries(retry_count: int, tmp_path: Path) -> None:
     model = models.WorksAbove(1000.0, tmp_path)
     said = r"the first (1\d) runs have all failed \(1\d x OSError: no \[/licence\]\), so the (6|7)\d that are left"
     with pytest.raises(ValueError, match=said):

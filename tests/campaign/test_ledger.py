@@ -113,9 +113,7 @@ def test_an_edited_row_is_named_and_made_again(tmp_path: Path, caplog: pytest.Lo
     }
 
 
-def test_a_ledger_without_hashes_is_taken_as_it_is_and_gets_them(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_ledger_without_hashes_is_taken_and_gets_them(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path, models.parabola)
     before = read_records(path)
@@ -190,9 +188,7 @@ def test_runs_as_csv(tmp_path: Path) -> None:
     lines = text.getvalue().splitlines()
     titles = lines[0].split(",")
     assert titles[-5:] == ["input:a", "input:b", "output:depth", "output:height", "draw:seed"]
-    rows = sorted(
-        (dict(zip(titles, line.split(","), strict=True)) for line in lines[1:]), key=lambda row: row["input:a"]
-    )
+    rows = sorted((dict(zip(titles, line.split(","), strict=True)) for line in lines[1:]), key=lambda a: a["input:a"])
     assert [(row["input:a"], row["outcome"], row["output:height"], row["output:depth"]) for row in rows] == [
         ("1.0", "captured", "", "0.1"), ("2.0", "clear", "4.5", ""), ("3.0", "clear", "9.5", "")
     ]  # fmt: skip

@@ -176,12 +176,10 @@ def do(agenda: Agenda, item: int, time: float) -> None:
 def test_items_come_in_the_order_of_their_times_whatever_came_before() -> None:
     generator = np.random.default_rng(4)
     agenda, expected = new_agenda(40), {}
-    for item, time in zip(
-        generator.integers(40, size=3000).tolist(), generator.integers(-4, 12, size=3000), strict=True
-    ):
-        do(agenda, item, float(time))
-        if time >= 0:
-            expected[item] = float(time)
+    for item, at in zip(generator.integers(40, size=3000).tolist(), generator.integers(-4, 12, size=3000), strict=True):
+        do(agenda, item, float(at))
+        if at >= 0:
+            expected[item] = float(at)
         else:
             expected.pop(item, None)
         assert agenda.size[0] == len(expected)

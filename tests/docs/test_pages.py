@@ -113,7 +113,7 @@ def test_equations_become_mathml_with_the_stop_behind_them(hooks: dict[str, Any]
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if "```math" in page.read_text("utf-8")], ids=lambda page: page.name
+    "page", [one for one in PAGES if "```math" in one.read_text("utf-8")], ids=lambda one: one.name
 )
 def test_equations_of_a_page_have_no_command_that_is_left_as_it_is(page: Any, hooks: dict[str, Any]) -> None:
     equations = page.read_text("utf-8").split("```math\n")[1:]

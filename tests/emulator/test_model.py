@@ -459,9 +459,8 @@ def test_refits_scatter_as_the_mean_is_uncertain() -> None:
     means = [refit.mean([[0.0]])[0] for refit in expand("line").refits(40)]
     # The standard error of 40 refits' own standard deviation is 11 %.
     assert np.std(means) == pytest.approx(0.5 / np.sqrt(RUNS), rel=0.35)
-    np.testing.assert_allclose(
-        expand("line").reweighted(np.ones(RUNS)).mean([[0.0]]), expand("line").mean([[0.0]]), atol=1e-3
-    )
+    line = expand("line")
+    np.testing.assert_allclose(line.reweighted(np.ones(RUNS)).mean([[0.0]]), line.mean([[0.0]]), atol=1e-3)
 
 
 @pytest.mark.parametrize("name", FITS)

@@ -53,9 +53,7 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
 
 
 @pytest.mark.parametrize("frame", ["inertial", "fixed"])
-def test_a_sample_has_a_segment_for_each_flight_of_its_bounces(
-    bouncing: StudyResults, tmp_path: Path, frame: str
-) -> None:
+def test_a_sample_has_a_segment_for_each_flight_of_it(bouncing: StudyResults, tmp_path: Path, frame: str) -> None:
     """A flight begins where and when the one before it ends, whatever the axes; what changes is its velocity."""
     epoch = "2026-11-22T12:00:00"
     write_ephemerides(bouncing, tmp_path, samples=[0], frame=frame, epoch=epoch)
@@ -118,9 +116,8 @@ def test_mean_and_covariance_are_those_of_the_flights_that_last(results: StudyRe
 
 def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) -> None:
     write_ephemerides(results, tmp_path)
-    comments = " ".join(
-        line for line in (tmp_path / "flight_mean.oem").read_text().splitlines() if line.startswith("COMMENT")
-    )
+    lines = (tmp_path / "flight_mean.oem").read_text().splitlines()
+    comments = " ".join(line for line in lines if line.startswith("COMMENT"))
     assert "stands for no date" in comments
     assert "axes that DIMORPHOS_FIXED has at REF_FRAME_EPOCH" in comments.replace(" COMMENT", "")
 
@@ -133,9 +130,7 @@ def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) 
     ({"epoch": "0001-01-01T00:00:00+05:00"}, "of the years 1900 to 2999"),
     ({"step": 0.0}, "the longest flight"),
 ])  # fmt: skip
-def test_what_cannot_be_written_is_refused(
-    results: StudyResults, tmp_path: Path, wrong: dict[str, object], words: str
-) -> None:
+def test_what_cannot_be_written_is_refused(results: StudyResults, tmp_path: Path, wrong: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         write_ephemerides(results, tmp_path, **wrong)  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
@@ -311,9 +306,7 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
     ({"frame": "icrf", "epoch": EPOCH}, "leave epoch out"),
     ({"frame": "icrf", "samples": [99]}, "sample 99 has no flight"),
 ])  # fmt: skip
-def test_contradictions_are_refused(
-    delivered: StudyResults, tmp_path: Path, wrong: dict[str, object], words: str
-) -> None:
+def test_contradictions_are_refused(delivered: StudyResults, tmp_path: Path, wrong: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         write_ephemerides(delivered, tmp_path, **wrong)  # type: ignore[arg-type]
 

@@ -49,7 +49,7 @@ def mesh(folder: Path, header: str = "", label: str = "", ending: str = ".xml") 
     ("# GSD = 0.25\n", PDS4_LABEL, ".xml", 1e3),
     ("", PDS3_LABEL, ".lbl", 1e3),
 ])  # fmt: skip
-def test_the_unit_is_what_header_or_label_say(
+def test_the_unit_is_that_of_header_or_label(
     tmp_path: Path, header: str, label: str, ending: str, length: float
 ) -> None:
     vertices, _ = read_mesh(mesh(tmp_path, header, label, ending))

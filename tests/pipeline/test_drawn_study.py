@@ -61,9 +61,8 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     plan = plan_study(folder / "study.toml", folder / "out")
     assert plan.stages == ()
     assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (14, 26, 0)
-    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in " ".join(
-        study_status(folder / "out").lines()
-    )
+    status = " ".join(study_status(folder / "out").lines())
+    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in status
 
 
 def test_a_stage_of_the_other_method_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:

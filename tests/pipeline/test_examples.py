@@ -92,9 +92,8 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
 def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(EXAMPLES.parent), os.environ.get("PYTHONPATH", "")])}
     script = [sys.executable, str(EXAMPLES / "ball_on_plate_campaign.py"), str(tmp_path)]
-    first, second = (
-        subprocess.run(script, capture_output=True, text=True, check=True, env=environment).stdout for _ in range(2)
-    )
+    told = {"capture_output": True, "text": True, "check": True, "env": environment}
+    first, second = (subprocess.run(script, **told).stdout for _ in range(2))
     assert first.startswith("69 runs, 0 of them known before\n")
     assert second.startswith("69 runs, 69 of them known before\n")
     assert first.split("\n")[1:] == second.split("\n")[1:]

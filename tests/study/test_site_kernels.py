@@ -101,9 +101,7 @@ def test_a_kernel_of_zeros_is_refused_and_ends_no_process(folder: Path) -> None:
         study(folder, kernels=["zeros.ek"])
 
 
-def test_without_the_library_it_is_refused_with_how_to_install_it(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_the_library_it_says_how_to_install_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "spiceypy", None)
     with pytest.raises(
         ValueError, match=r'site.kernels: spiceypy.* is not installed: pip install "lithobrake\[spice\]"'

@@ -107,9 +107,8 @@ SMALL = [
 @pytest.mark.parametrize(("arguments", "within"), SMALL, ids=[arguments[0] for arguments, _ in SMALL])
 def test_small_rows_of_the_validation_come_out_again(arguments: list[str], within: float, tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "validation" / "recreate.py"), *arguments]
-    done = subprocess.run(
-        [*command, "--within", str(within), "--work", str(tmp_path)], capture_output=True, text=True, check=False
-    )
+    command += ["--within", str(within), "--work", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "same digits" in done.stdout
 

@@ -244,9 +244,8 @@ def test_a_film_has_every_touchdown_with_a_map_before_it(journey_motion: Journey
 
     path = tmp_path / "film.webp"
     told: list[float] = []
-    journey_film(
-        JourneyMotion(journey_motion.track, journey_motion.bodies[:1]), path, 40.0, lambda done, what: told.append(done)
-    )
+    motion = JourneyMotion(journey_motion.track, journey_motion.bodies[:1])
+    journey_film(motion, path, 40.0, lambda done, what: told.append(done))
     assert (told, told[-1]) == (sorted(told), 1.0)
     with Image.open(path) as opened:
         assert opened.size == SIZE

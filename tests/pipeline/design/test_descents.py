@@ -329,9 +329,7 @@ def columns(rows: list[dict[str, float]], *names: str) -> np.ndarray:
 
 @pytest.mark.parametrize(("few", "many"), [(2, 13), (12, 144), (115, 240), (240, 241), (599, 1200)])
 @pytest.mark.parametrize("beds", [{}, {"bed": {"bed_count": 2}}], ids=["beds grow", "two beds"])
-def test_more_runs_leave_every_run_with_its_bed_and_its_key(
-    few: int, many: int, beds: dict[str, dict[str, Any]]
-) -> None:
+def test_more_runs_leave_every_run_its_bed_and_its_key(few: int, many: int, beds: dict[str, dict[str, Any]]) -> None:
     first, second = drawn(few, **beds), drawn(many, **beds)
     before, after = DrawnDesign(first).rows, DrawnDesign(second).rows
     assert (len(before), len(after)) == (few, many)

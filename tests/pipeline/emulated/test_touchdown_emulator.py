@@ -371,9 +371,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_with_an_emulator_it_says_how_many_bounces_halve_the_unknown(
-    study: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_with_an_emulator_it_says_how_many_bounces_halve_it(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made, planned = list[ExpectedInference](), InferredStudy.plan
     monkeypatch.setattr(InferredStudy, "plan", lambda inferred: made.append(planned(inferred)) or made[-1])
     plan = plan_study(study, study.parent / "out", infers=True)

@@ -68,7 +68,7 @@ def home(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
 
 def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Path) -> None:
     before = {
-        path: path.read_bytes() for path in (home / "out").rglob("*") if path.is_file() and path.suffix != ".lock"
+        file: file.read_bytes() for file in (home / "out").rglob("*") if file.is_file() and file.suffix != ".lock"
     }
     lines = said_by("status", home).splitlines()
     assert lines[0] == f"{home / 'out'}: not running; the report is there"

@@ -470,9 +470,7 @@ def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulat
     assert shares[1] > shares[0] > shares[2]
 
 
-def test_the_page_says_it_is_one_touchdown_of_how_many(
-    page: Path, explored: dict[str, Any], journeys: StudyResults
-) -> None:
+def test_the_page_says_of_how_many_it_is_one(page: Path, explored: dict[str, Any], journeys: StudyResults) -> None:
     lines = visible_text(page.read_text(encoding="utf-8")).splitlines()
     words = next(line for line in lines if line.startswith("Any touchdown of a journey"))
     fitted = int(np.sum(journeys.touchdowns["outcome"] != "failed"))

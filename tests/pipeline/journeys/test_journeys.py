@@ -61,9 +61,7 @@ def run(folder: Path, **changes: dict[str, Any]) -> Any:
 
 def rows(folder: Path, name: str) -> dict[str, np.ndarray]:
     table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    return {
-        title.split("_m")[0] if title.startswith("position") else title: table[title] for title in table.dtype.names
-    }
+    return {name.split("_m")[0] if name.startswith("position") else name: table[name] for name in table.dtype.names}
 
 
 @pytest.fixture(scope="module")
@@ -248,9 +246,8 @@ def pairs(table: Any, number: str, journey: str = "journey") -> tuple[list[int],
 
 
 def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path: Path) -> None:
-    results = lithobrake.run(
-        journey_tables(site={"roughness_deg": 20.0}), tmp_path / "out", workers=1, model=bounce, report=False
-    )
+    tables = journey_tables(site={"roughness_deg": 20.0})
+    results = lithobrake.run(tables, tmp_path / "out", workers=1, model=bounce, report=False)
     assert results.results.emulated.agrees
     assert results.results.ends["at_rest"].share > 0.5
 

@@ -165,9 +165,7 @@ def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
 def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
     results = open_study(out).summary["results"]
     shares = [value for value in results["shares"].values() if isinstance(value, dict)]
-    shares += [
-        value for value in (results["rest"]["soil"] or {}).values() if isinstance(value, dict) and "share" in value
-    ]
+    shares += [one for one in (results["rest"]["soil"] or {}).values() if isinstance(one, dict) and "share" in one]
     assert len(shares) > 9
     assert results["returns"]["missing"] == results["shares"]["missing"]["share"]
     # What bounces on hard ground has met neither the bed nor the expansion: its shares have the sampling error alone.

@@ -216,9 +216,7 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
     ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
 ])  # fmt: skip
-def test_what_a_run_refuses_a_plan_refuses_in_the_same_words(
-    changes: dict[str, str], said: str, tmp_path: Path
-) -> None:
+def test_what_a_run_refuses_a_plan_refuses_in_its_words(changes: dict[str, str], said: str, tmp_path: Path) -> None:
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n")
     study = str(write_ball(tmp_path / "study.toml", FEW | changes))
     plan, run = (
@@ -245,9 +243,7 @@ def test_what_a_run_refuses_a_plan_refuses_in_the_same_words(
     ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
 ])  # fmt: skip
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
-    kept = {
-        section: {key: value for key, value in keys.items() if value is not None} for section, keys in changes.items()
-    }
+    kept = {name: {key: value for key, value in keys.items() if value is not None} for name, keys in changes.items()}
     study = soft(**kept)
     found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
     assert said in found if said else "The screening fits" not in found
@@ -391,9 +387,8 @@ def test_landings_that_leave_the_bed_widen_what_is_promised(tmp_path: Path) -> N
 
 def test_a_plan_says_how_many_runs_a_bed_are_best(tmp_path: Path) -> None:
     folder = StudyFolder.only_read(tmp_path / "out")
-    default, many = (
-        plan_for(drawn(design={"run_count": 600}, bed=bed), folder, 2).runs_a_bed for bed in ({}, {"bed_count": 300})
-    )
+    plans = (plan_for(drawn(design={"run_count": 600}, bed=bed), folder, 2) for bed in ({}, {"bed_count": 300}))
+    default, many = (plan.runs_a_bed for plan in plans)
     assert (default.count, many.count) == (20.0, 2.0)
     best = math.sqrt(many.bed_cost * 0.98 / 0.02)
     assert default.best == many.best == pytest.approx(best)
@@ -464,9 +459,7 @@ incidence_deg = { distribution = "uniform", lower = 0.0, upper = 88.0 }
 
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
     tables = tomllib.loads(EVERY_IMPACT)
-    repeating, walled = (
-        check_tables(tables | {"bed": tables["bed"] | sides}, HERE) for sides in ({}, {"sides": "walls"})
-    )
+    repeating, walled = (check_tables(with_keys(tables, {"bed": bed}), HERE) for bed in ({}, {"sides": "walls"}))
     (here,) = study_warnings(DrawnDesign(repeating), Site(repeating), soil_of(repeating))
     assert here.startswith("Many journeys on the soil will have an unknown outcome")
     lost, unknown = study_warnings(DrawnDesign(walled), Site(walled), soil_of(walled))
@@ -501,9 +494,7 @@ def record(wall_s: float) -> Record:
     return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
 
 
-def test_other_work_on_the_cores_raises_upper_ends_by_its_factor(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_work_on_the_cores_raises_upper_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder, cores = StudyFolder.only_read(tmp_path / "out"), available_cores()
     idle = plan_for(soft(), folder, 1)
     monkeypatch.setattr(expected_time, "_load", lambda: 3.0 * cores)

@@ -102,9 +102,7 @@ def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any
     assert "would change this number; this study cannot show by how much" in results.headline[1]
     assert "interval" not in results.headline[0]
     tables = found["shares"], found["shares"]["emulator"]
-    assert {one["lower"] for table in tables for one in table.values() if isinstance(one, dict) and "lower" in one} == {
-        None
-    }
+    assert {a["lower"] for table in tables for a in table.values() if isinstance(a, dict) and "lower" in a} == {None}
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
 
@@ -142,9 +140,8 @@ def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: 
     assert sum(shares[name]["share"] for name in PARTS) == pytest.approx(1.0)
     counted = [*PARTS, "missing"]
     assert sum(shares[name]["count"] for name in counted) == shares["sample_count"] == 64 * 48
-    assert shares["returns"] == {key: returns[key] for key in ("share", "lower", "upper")} | {
-        "count": shares["impact"]["count"]
-    }
+    share = {key: returns[key] for key in ("share", "lower", "upper")}
+    assert shares["returns"] == share | {"count": shares["impact"]["count"]}
     states = found["limit_states"]
     for name, word in (("away", "escaped"), ("back", "returns"), ("caught", "captured")):
         assert states[name]["source"] == "runs"

@@ -220,9 +220,7 @@ def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:
     names = ["captured", "captured", "time_limit"]
     outcome = np.array([SAMPLE_OUTCOMES.index(name) for name in names], dtype=np.uint8)
     samples = Samples(["grain.friction"], list(OUTPUTS), np.array([[0.9], [0.05], [0.9]]), np.zeros((3, 6)), outcome)
-    site = {key: np.full(3, value) for key, value in Site(study).medians.items()} | {
-        "latitude_deg": np.full(3, latitude)
-    }
+    site = {key: np.full(3, one) for key, one in Site(study).medians.items()} | {"latitude_deg": np.full(3, latitude)}
     first = Rebounds(np.zeros((3, 3)), np.zeros((3, 3)), np.array([True, True, False]), ~samples.known)
     return Sites.of(Site(study), samples, site), first
 

@@ -141,9 +141,8 @@ def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
     ball = energy_bound(DrawnDesign(study()), NO_BED, {}, 3)
     assert ball.spin() == pytest.approx(np.full(3, 0.4 / np.sqrt(1e-3)))
     assert ball.spin(np.array([0.0, 0.24, 0.4])) == pytest.approx(np.array([0.4, 0.32, 0.0]) / np.sqrt(1e-3))
-    box = energy_bound(
-        DrawnDesign(study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None})), NO_BED, {}, 1
-    )
+    boxed = study(lander={"shape": "box", "edges": [0.1, 0.1, 0.2], "diameter": None})
+    box = energy_bound(DrawnDesign(boxed), NO_BED, {}, 1)
     assert box.spin()[0] == pytest.approx(0.4 / np.sqrt((0.1**2 + 0.1**2) / 12))
     known = energy_bound(DrawnDesign(study(lander={"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0})), NO_BED, {}, 1)
     assert known.spin()[0] == pytest.approx(0.4 / np.sqrt(0.5e-3))
