@@ -107,7 +107,6 @@ PARTS = ("dem", "touchdown", "chaos", "emulator", "campaign", "smallbody", "anal
 
 
 def readme_commands() -> list[str]:
-    """The shell commands of the README, one entry a block."""
     return re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(), flags=re.DOTALL)
 
 

@@ -29,7 +29,6 @@ from .paper_tables import paper_tables, with_keys
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    """The template with some keys changed."""
     return with_site_gravity(check_tables(with_keys(paper_tables(), sections), Path()))
 
 

@@ -125,8 +125,7 @@ def test_a_log_of_each_run_on_demand(tmp_path: Path) -> None:
     assert runs.records[0].outputs == {"height": 1.0}
 
 
-def grid() -> np.ndarray:
-    return np.array([[a, b] for a in np.linspace(0, 1, 10) for b in np.linspace(0, 1, 10)])
+GRID = np.array([[a, b] for a in np.linspace(0, 1, 10) for b in np.linspace(0, 1, 10)])
 
 
 def reasons(failed: np.ndarray) -> list[str | None]:
@@ -134,40 +133,26 @@ def reasons(failed: np.ndarray) -> list[str | None]:
 
 
 def test_nothing_missing_says_nothing() -> None:
-    assert missing(grid(), [None] * 100, ("a", "b"), 0.1) == ""
+    assert missing(GRID, [None] * 100, ("a", "b"), 0.1) == ""
 
 
 def test_scattered_failures_are_counted_and_accepted() -> None:
     failed = np.zeros(100, dtype=bool)
     failed[np.random.default_rng(3).choice(100, 8, replace=False)] = True
-    assert missing(grid(), reasons(failed), ("a", "b"), 0.1) == (
+    assert missing(GRID, reasons(failed), ("a", "b"), 0.1) == (
         "8 of 100 runs failed (8 x it diverged); what is fitted goes without them"
     )
 
 
-def test_too_many_failures_are_refused() -> None:
-    failed = np.zeros(100, dtype=bool)
-    failed[::9] = True
-    with pytest.raises(ValueError, match=r"12 of 100 runs failed .* allowed: at most 10 %"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_too_many_failures_that_lie_together_are_told_with_their_corner() -> None:
-    failed = grid()[:, 0] > 0.7
-    with pytest.raises(ValueError, match=r"30 of 100 .*, 30 of them where a > 0\.5; allowed: at most 10 %"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_failures_on_one_side_of_an_input_are_refused_and_the_side_is_named() -> None:
-    failed = grid()[:, 0] > 0.95
-    with pytest.raises(ValueError, match=r"10 of them lie where a > 0\.5, so"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_failures_in_a_corner_of_two_inputs_are_refused_and_the_corner_is_named() -> None:
-    failed = (grid()[:, 0] > 0.6) & (grid()[:, 1] < 0.2)
-    with pytest.raises(ValueError, match=r"8 of them lie where a > 0\.5 and b < 0\.5"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
+@pytest.mark.parametrize(("failed", "words"), [
+    (np.arange(100) % 9 == 0, r"12 of 100 runs failed .* allowed: at most 10 %"),
+    (GRID[:, 0] > 0.7, r"30 of 100 .*, 30 of them where a > 0\.5; allowed: at most 10 %"),
+    (GRID[:, 0] > 0.95, r"10 of them lie where a > 0\.5, so"),
+    ((GRID[:, 0] > 0.6) & (GRID[:, 1] < 0.2), r"8 of them lie where a > 0\.5 and b < 0\.5"),
+], ids=["scattered", "together", "on one side", "in a corner of two inputs"])  # fmt: skip
+def test_too_many_failures_or_some_that_lie_together_are_refused(failed: np.ndarray, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        missing(GRID, reasons(failed), ("a", "b"), 0.1)
 
 
 def test_chance_alone_seldom_looks_like_a_corner() -> None:
@@ -176,7 +161,7 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
         failed = np.zeros(100, dtype=bool)
         failed[generator.choice(100, 10, replace=False)] = True
         try:
-            missing(grid(), reasons(failed), ("a", "b"), 0.1)
+            missing(GRID, reasons(failed), ("a", "b"), 0.1)
         except ValueError:
             refused += 1
     # The chance is at most 0.01 in each of the 300; more than 9 would itself have a chance below 0.002.
@@ -233,7 +218,6 @@ class KilledFirst(Worker):
             os.kill(self.number, signal.SIGSTOP)
 
     def take(self, call: Call) -> bool:
-        """Send a call."""
         taken = super().take(call)
         if self is self.started[0]:
             os.kill(self.number, signal.SIGKILL)
@@ -278,7 +262,6 @@ if __name__ == "__main__":
 
 
 def python(place: Path, *words: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
-    """What Python says in a folder."""
     return subprocess.run([sys.executable, *words], cwd=place, input=given, capture_output=True, text=True, check=False)
 
 

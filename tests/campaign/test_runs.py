@@ -191,7 +191,6 @@ LENGTHS = [112, 9, 1]
 
 
 def then(chain: int, records: Sequence[Record]) -> Mapping[str, float] | None:
-    """The next number of the Collatz sequence."""
     last = records[-1]
     if last.status == "failed" or last.inputs["value"] == 1.0:
         return None

@@ -360,7 +360,6 @@ def test_a_terminal_gets_whole_words(code: str) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """The folder of a campaign of one run."""
     with Ledger(tmp_path / "runs.sqlite") as ledger:
         ledger.queue([("first", {"a": 1.0}, 1, 0)], "7")
         ledger.finish("first", {"status": "done", "outcome": "clear", "outputs": {"speed_out": 0.1}})

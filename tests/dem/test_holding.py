@@ -36,7 +36,6 @@ def heap() -> World:
 
 
 def held(world: World) -> np.ndarray:
-    """Which bodies are held."""
     return world._state.local.flight.held
 
 

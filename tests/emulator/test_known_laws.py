@@ -16,7 +16,6 @@ COUNT = 300
 
 
 def inputs_of(count: int) -> dict[str, Uniform]:
-    """So many inputs between -1 and 1."""
     return {f"x{k}": Uniform(-1.0, 1.0) for k in range(count)}
 
 

@@ -34,7 +34,6 @@ def printed(name: str, folder: Path, has_workers: bool = False) -> str:
 
 
 def number(pattern: str, text: str) -> float:
-    """The number that a pattern has in brackets."""
     found = re.search(pattern, text)
     assert found, f"{pattern} is not in: {text}"
     return float(found[1])

@@ -19,7 +19,6 @@ from .delivered import delivered_tables
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    """The results of a study on Dimorphos."""
     out = tmp_path_factory.mktemp("export") / "out"
     with quick_studies():
         lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)

@@ -231,7 +231,6 @@ def test_between_states_an_ephemeris_of_spice_is_the_flight(furnished, delivered
 
 
 def entries(table: Table, names: Sequence[str], row: int) -> np.ndarray:
-    """Some numbers of a row."""
     return np.array([table[name][row] for name in names])
 
 

@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 
 from lithobrake.pipeline.design.dependencies import solver_dependencies
-from lithobrake.pipeline.runs.solver import completed
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 
@@ -26,7 +25,6 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished study of the ball on a plate."""
     out = tmp_path_factory.mktemp("plate") / "out"
     ended = lithobrake("run", EXAMPLES / "ball_on_plate.toml", "--out", out, "--workers", 2)
     assert ended.returncode == 0, ended.stderr
@@ -125,12 +123,6 @@ def test_a_frictionless_elastic_ball_is_thrown_back_as_light_from_a_mirror() -> 
     assert out["velocity_out_x"] == pytest.approx(2 * math.sin(0.3), rel=1e-14)
     assert out["velocity_out_z"] == pytest.approx(2 * math.cos(0.3), rel=1e-14)
     assert out["spin_out"] == 0.0
-
-
-def test_speed_and_elevation_follow_from_the_components() -> None:
-    found = completed({"velocity_out_x": 3.0, "velocity_out_y": 4.0, "velocity_out_z": 5.0, "spin_out": 1.0})
-    assert found["speed_out"] == pytest.approx(math.sqrt(50))
-    assert found["elevation_out"] == pytest.approx(math.pi / 4)
 
 
 def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from lithobrake.results import open_study
 from lithobrake.study import StudySource
 
 from .ball_studies import BALL
-from .captured_model import land
+from .synthetic_lander import land
 
 
 class Said(Silent):

@@ -30,7 +30,6 @@ from .synthetic_lander import outputs_of, synthetic_tables
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    """The template with some keys changed."""
     return check_tables(with_keys(tomllib.loads(template()), sections), Path())
 
 

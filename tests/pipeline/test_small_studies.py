@@ -25,7 +25,6 @@ FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
 
 
 def write_study(folder: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
-    """The example's study with few runs and these changes of its text."""
     return write_ball(folder / "study.toml", FEW_RUNS | {"test_count = 10": "test_count = 6"} | changes, program)
 
 
@@ -245,8 +244,6 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
     said_first: list[str] = []
 
     class Shown:
-        """Keeps what is told."""
-
         def say(self, sentence: str) -> None:
             if not stages:
                 said_first.append(sentence)

@@ -265,7 +265,6 @@ def test_a_flight_of_too_many_steps_comes_to_an_end(ball, monkeypatch):
 
 
 def turned(angle: float) -> np.ndarray:
-    """Rotation about z."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 

@@ -277,7 +277,6 @@ def sphere(frequency: int = 12, spin_period: float = math.inf) -> Body:
 
 
 def slid(body: Body, position, velocity, friction: float, duration: float = 1e6, *, rolls: bool = False) -> Slides:
-    """One lander."""
     place = np.array([position], dtype=float)
     one = [np.array([value]) for value in (friction, body.mass, body.spin_period, 0.0)]
     ground = OnGround(body, body.shape.nearest(place)[1], *one, rolls)

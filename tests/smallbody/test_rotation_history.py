@@ -206,7 +206,6 @@ class Stars:
         self.start, self.spin = turn.as_matrix(), spin + body.spin_rate * turn.as_matrix()[2]
 
     def toward(self, time: float) -> np.ndarray:
-        """From the body's centre to its partner's."""
         motion = 2.0 * math.pi / self.body.partner.period
         place = math.radians(self.body.partner.longitude_deg) + motion * time
         return self.body.orbit.distance * np.array([math.cos(place), math.sin(place), 0.0])
@@ -349,7 +348,6 @@ def skewed(moments: tuple[float, float, float], random: np.random.Generator) -> 
 
 
 def starts(count: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Attitudes and spins by chance."""
     attitude = random.normal(size=(count, 4))
     return attitude / np.linalg.norm(attitude, axis=1)[:, None], random.normal(size=(count, 3))
 

@@ -28,7 +28,6 @@ DRAWN_TABLES = TABLES | {"design": {"method": "drawn"}}
 
 
 def study(changes: dict[str, dict[str, Any]]) -> Study:
-    """The template by the drawn method, with other keys in its tables."""
     tables = DRAWN_TABLES | {name: {**DRAWN_TABLES.get(name, {}), **keys} for name, keys in changes.items()}
     return check_tables(tables, Path())
 

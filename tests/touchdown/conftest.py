@@ -18,7 +18,6 @@ def small_recipe(**changes):
 
 @pytest.fixture(scope="session")
 def recipe():
-    """The recipe of the small bed, with changes."""
     return small_recipe
 
 

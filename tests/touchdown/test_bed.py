@@ -254,13 +254,6 @@ def test_a_bed_that_was_poured_is_found_again_bit_for_bit(library, recipe, tmp_p
     assert found.seed == few.seed
 
 
-def test_another_seed_pours_another_bed_and_the_same_seed_the_same(recipe):
-    few = recipe(grain_count=4, width=(0.25, 0.25))
-    beds = [pour_bed(replace(few, seed=seed)) for seed in (1, 1, 2)]
-    assert beds[0].position.tobytes() == beds[1].position.tobytes()
-    assert beds[0].position.tobytes() != beds[2].position.tobytes()
-
-
 def test_the_key_holds_what_a_bed_follows_from_and_nothing_else(recipe, monkeypatch):
     first = recipe()
     others = [

@@ -41,7 +41,6 @@ GRAVITY = 5e-4
 
 
 def slow(**changes: Any) -> Landing:
-    """A landing that may go on to rest."""
     of_rest = {"speed": 0.02, "incidence": 0.5, "time_limit": 1000.0, "hop_height": 0.3}
     return landing(**{**of_rest, "contact": ContactModel(held_speed=0.03), **changes})
 

@@ -35,7 +35,6 @@ TEXT = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0
 
 @pytest.fixture
 def study_file(tmp_path: Path) -> Path:
-    """A study file of ten grains."""
     path = tmp_path / "ten.toml"
     path.write_text(TEXT)
     return path
@@ -133,7 +132,6 @@ def journeys_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def results(journeys_file: Path) -> StudyResults:
-    """The study up to its summary."""
     run_study(StudySource.read(journeys_file), journeys_file.parent / "out", until="summary", worker_count=1)
     return open_study(journeys_file.parent / "out")
 
@@ -259,7 +257,6 @@ class NoisyLander:
     lost: bool = False
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
-        """Land once."""
         law, random = SOIL["grain.friction"], np.random.default_rng(seed)
         rough = (values["grain.friction"] - law["lower"]) / (law["upper"] - law["lower"])
         # The synthetic study draws places within 0.1 m of the middle.
@@ -285,13 +282,11 @@ class Stopping(Silent):
         self.looks, self.said = looks, []
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Count a look at the landings."""
         self.looks -= what.startswith("fast")
         if self.looks == 0:
             raise StoppedError
 
     def say(self, sentence: str) -> None:
-        """Keep a sentence."""
         self.said.append(sentence)
 
 

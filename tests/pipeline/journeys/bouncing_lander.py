@@ -63,7 +63,6 @@ def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def _contact(along: float) -> dict[str, float]:
-    """What happens on the ground."""
     return {
         "displacement_x": 10.0 * along, "displacement_y": 0.0, "duration": 30.0, "contacts": 2.0,
         "contact_duration": 20.0, "penetration": 0.01, "peak_acceleration": 1.0, "energy_lost": 0.1,
@@ -71,7 +70,6 @@ def _contact(along: float) -> dict[str, float]:
 
 
 def _attitude(random: np.random.Generator) -> dict[str, float]:
-    """An attitude that nothing prefers."""
     drawn = random.standard_normal(4)
     return dict(
         zip((f"orientation_out_{axis}" for axis in "wxyz"), (drawn / np.linalg.norm(drawn)).tolist(), strict=True)
@@ -79,7 +77,6 @@ def _attitude(random: np.random.Generator) -> dict[str, float]:
 
 
 def _rebound(along: float, up: float, spin: float) -> dict[str, float]:
-    """The motion after the touchdown."""
     return {
         "speed_out": math.hypot(along, up), "elevation_out": math.atan2(up, along), "azimuth_out": 0.0,
         "spin_out": spin, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,

@@ -231,7 +231,6 @@ class Looks(Silent):
         self.folder, self.told, self.seen = folder, "", list[str]()
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Look when half of the journeys have ended."""
         if what == "journeys" and done >= 24 and not self.seen:
             self.told, self.seen = detail.splitlines()[0], study_status(self.folder).lines()
 

@@ -60,7 +60,6 @@ def ended(out: Path) -> dict[str, str | None]:
 
 
 def wait_for_touchdowns(process: BaseProcess, out: Path, count: int) -> None:
-    """Wait until the ledger has so many."""
     while len(ended(out)) < count:
         assert process.exitcode is None, (out.parent / "said.txt").read_text()
         time.sleep(0.005)
@@ -99,7 +98,6 @@ class Loses(Silent):
         self.worker, self.out = cluster.processes["first"], out
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Kill the worker, if it is time."""
         if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= MOMENTS[1]:
             self.worker.kill()
             self.worker.wait()

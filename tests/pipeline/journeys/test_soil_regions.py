@@ -56,7 +56,6 @@ class Here(Executor):
     """Makes touchdowns at once, in this process: another would take longer to start than all of them."""
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
-        """Call a function."""
         future: Future[Any] = Future()
         future.set_result(function(*args, **kwargs))
         return future
@@ -72,7 +71,6 @@ def in_this_process() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A ball as a mesh."""
     vertices, faces = sphere_mesh(FREQUENCY)
     path = tmp_path_factory.mktemp("body") / "ball.obj"
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (RADIUS * vertices).tolist()]

@@ -71,7 +71,6 @@ test_count = 8
 
 
 def changed(**design: Any) -> Study:
-    """The template with another design."""
     tables = paper_tables()
     tables["design"].update(design)
     return check_tables(tables, Path())
@@ -116,7 +115,6 @@ def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> N
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished study of a program that scatters."""
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
     (folder / "study.toml").write_text(STUDY.replace("PYTHON", f"{sys.executable} -S"))

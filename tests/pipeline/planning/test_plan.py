@@ -63,7 +63,6 @@ def soft(**changes: dict[str, Any]) -> Study:
 
 
 def journeys(roughness_deg: float) -> Study:
-    """The quick study on ground of this roughness."""
     tables = with_keys(load_tables(SCENARIOS / "quick.toml"), {"site": {"roughness_deg": roughness_deg}})
     return check_tables(tables, SCENARIOS)
 
@@ -192,8 +191,6 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
         """The first stage."""
 
     class Shown(Silent):
-        """Keeps what is said."""
-
         def begin(self, title: str, number: int, count: int) -> None:
             raise Begun
 

@@ -57,7 +57,6 @@ def rebound(x: np.ndarray) -> np.ndarray:
 
 
 def bounce(friction: list[float], scatter: Scatter | None = None, outcome: str = "clear") -> SoilBounce:
-    """A soil that is exactly as `rebound` says."""
     x = smolyak(INPUTS, level=2)
     surrogate = fit(INPUTS, x, rebound(x), degree=2, method="ols", output_names=OUTPUTS)
     outcomes = OutcomeModel(INPUTS, x, [outcome] * len(x), tuple(TouchdownOutcome))

@@ -50,8 +50,6 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 @dataclass
 class Told(Silent):
-    """Keeps what a job tells."""
-
     said: list[str] = field(default_factory=list)
     works: list[tuple[float, float, str]] = field(default_factory=list)
 

@@ -28,8 +28,6 @@ SPIN = {"spin_out_x": 1.0, "spin_out_y": -2.0, "spin_out_z": 2.0}
 
 
 class Answers:
-    """A program that always gives one answer."""
-
     def __init__(self, answer: dict[str, Any]) -> None:
         self.answer = answer
 
@@ -105,7 +103,6 @@ NO_BED = 0.0
 
 
 def fastest(given: Study, *others: Any) -> np.ndarray:
-    """The bound of the speed."""
     return energy_bound(DrawnDesign(given), *others).speed
 
 
