@@ -93,10 +93,8 @@ class Truth:
         a, b = CENTRES[:, None] + SPREADS[:2, None] * (means.T + scale * np.stack([speed, elevation]))
         spin = 0.7 * (a - CENTRES[0]) / SPREADS[0] + 0.7 * rng.standard_normal(len(x))
         return np.column_stack(
-            [
-                SPEED_LIMIT * special.expit(a), ELEVATION_LIMIT * special.expit(b), self._azimuth(u, rng),
-                np.exp(SPREADS[2] * spin),
-            ]
+            [SPEED_LIMIT * special.expit(a), ELEVATION_LIMIT * special.expit(b), self._azimuth(u, rng),
+                np.exp(SPREADS[2] * spin)]
         )  # fmt: skip
 
     def _place(self, second_branch: np.ndarray, rng: np.random.Generator) -> np.ndarray:

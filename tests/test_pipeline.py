@@ -274,10 +274,8 @@ def _names_in_tables(text: str) -> list[str]:
 
 
 # Of each of the four quantities that have quantiles the table names the first.
-RESTITUTION_NAMES = [
-    *(name.partition(" ")[0] for name in EDGES), *COUNTS,
-    "normal_restitution_q0", "_q1", "tangential_restitution_q", "azimuth_deg_q", "friction_q",
-]  # fmt: skip
+RESTITUTION_NAMES = [*(name.partition(" ")[0] for name in EDGES), *COUNTS, "normal_restitution_q0", "_q1",
+    "tangential_restitution_q", "azimuth_deg_q", "friction_q"]  # fmt: skip
 
 
 def test_the_partner_stands_where_the_sample_says() -> None:

@@ -33,10 +33,8 @@ refined_degree = 1
 kept_outputs = ["speed_out"]
 test_count = 2
 """
-FILES = (
-    "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
-    "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html",
-)  # fmt: skip
+FILES = ("study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
+    "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html")  # fmt: skip
 
 
 def command(study: Path, out: Path, workers: int) -> list[str]:

@@ -42,10 +42,8 @@ def campaign(folder: Path, do: str, limits: Limits | None = None) -> Runs:
     program.write_text(PROGRAM.replace("DO", do))
     model = Command(shlex.join([sys.executable, str(program)]), folder / "solver", required=("height",))
     with Ledger(folder / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
-        return run(
-            model, X, names=("a",), ledger=ledger, executor=executor, context={"solver": model.identity()},
-            limits=limits,
-        )  # fmt: skip
+        return run(model, X, names=("a",), ledger=ledger, executor=executor, context={"solver": model.identity()},
+            limits=limits)  # fmt: skip
 
 
 FAILURES = [

@@ -153,27 +153,19 @@ def test_estimate_sees_long_tails():
     assert min(ratios) > 0.3
 
 
-BOREHOLE = {
-    "radius": Normal(0.1, 0.0161812), "influence": LogNormal(7.71, 1.0056),
+BOREHOLE = {"radius": Normal(0.1, 0.0161812), "influence": LogNormal(7.71, 1.0056),
     "upper_transmissivity": Uniform(63070.0, 115600.0), "upper_head": Uniform(990.0, 1110.0),
     "lower_transmissivity": Uniform(63.1, 116.0), "lower_head": Uniform(700.0, 820.0),
-    "length": Uniform(1120.0, 1680.0), "conductivity": Uniform(9855.0, 12045.0),
-}  # fmt: skip
-OTL = {
-    "b1": Uniform(50.0, 150.0), "b2": Uniform(25.0, 70.0), "f": Uniform(0.5, 3.0), "c1": Uniform(1.2, 2.5),
-    "c2": Uniform(0.25, 1.2), "beta": Uniform(50.0, 300.0),
-}  # fmt: skip
-PISTON = {
-    "mass": Uniform(30.0, 60.0), "area": Uniform(0.005, 0.020), "volume": Uniform(0.002, 0.010),
+    "length": Uniform(1120.0, 1680.0), "conductivity": Uniform(9855.0, 12045.0)}  # fmt: skip
+OTL = {"b1": Uniform(50.0, 150.0), "b2": Uniform(25.0, 70.0), "f": Uniform(0.5, 3.0), "c1": Uniform(1.2, 2.5),
+    "c2": Uniform(0.25, 1.2), "beta": Uniform(50.0, 300.0)}  # fmt: skip
+PISTON = {"mass": Uniform(30.0, 60.0), "area": Uniform(0.005, 0.020), "volume": Uniform(0.002, 0.010),
     "spring": Uniform(1000.0, 5000.0), "pressure": Uniform(90000.0, 110000.0), "ambient": Uniform(290.0, 296.0),
-    "filling": Uniform(340.0, 360.0),
-}  # fmt: skip
-WING = {
-    "area": Uniform(150.0, 200.0), "fuel": Uniform(220.0, 300.0), "aspect": Uniform(6.0, 10.0),
+    "filling": Uniform(340.0, 360.0)}  # fmt: skip
+WING = {"area": Uniform(150.0, 200.0), "fuel": Uniform(220.0, 300.0), "aspect": Uniform(6.0, 10.0),
     "sweep_deg": Uniform(-10.0, 10.0), "pressure": Uniform(16.0, 45.0), "taper": Uniform(0.5, 1.0),
     "thickness": Uniform(0.08, 0.18), "load": Uniform(2.5, 6.0), "gross": Uniform(1700.0, 2500.0),
-    "paint": Uniform(0.025, 0.08),
-}  # fmt: skip
+    "paint": Uniform(0.025, 0.08)}  # fmt: skip
 FRIEDMAN = {f"x{k}": Uniform(0.0, 1.0) for k in range(1, 11)}
 
 

@@ -67,11 +67,9 @@ def moments(entry, power):
 
 
 def test_polynomial_in_mixed_families_has_exact_moments():
-    inputs = {
-        "u": Uniform(-1.0, 3.0), "n": Normal(0.5, 2.0), "g": Gamma(2.0, 0.5), "e": Exponential(2.0),
+    inputs = {"u": Uniform(-1.0, 3.0), "n": Normal(0.5, 2.0), "g": Gamma(2.0, 0.5), "e": Exponential(2.0),
         "b": Beta(2.0, 3.0, 0.0, 2.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
-        "m": Empirical(np.random.default_rng(0).normal(size=60)),
-    }  # fmt: skip
+        "m": Empirical(np.random.default_rng(0).normal(size=60))}  # fmt: skip
     entries = list(inputs.values())
     x = latin_hypercube(inputs, 300, seed=1)
     y = 1.0 + np.prod(x[:, [0, 1]], axis=1) + x[:, 2] * x[:, 3] + x[:, 4] ** 2 - x[:, 5] ** 2 + x[:, 6] * x[:, 0]
@@ -283,10 +281,8 @@ def test_sum_of_independent_inputs_adds_cumulants():
         "n": Normal(3.0, 0.5), "e": Exponential(2.0), "g": Gamma(2.5, 0.4), "b": Beta(2.0, 5.0, 0.0, 3.0),
         "u": Uniform(-1.0, 2.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0), "m": Empirical([1.0, 2.0, 2.5, 4.0]),
     }  # fmt: skip
-    oracles = [
-        stats.norm(3.0, 0.5), stats.expon(scale=0.5), stats.gamma(2.5, scale=0.4), stats.beta(2.0, 5.0, 0.0, 3.0),
-        stats.uniform(-1.0, 3.0), stats.truncnorm(-1.0, 2.0),
-    ]  # fmt: skip
+    oracles = [stats.norm(3.0, 0.5), stats.expon(scale=0.5), stats.gamma(2.5, scale=0.4),
+        stats.beta(2.0, 5.0, 0.0, 3.0), stats.uniform(-1.0, 3.0), stats.truncnorm(-1.0, 2.0)]  # fmt: skip
     rows = [[float(one) for one in oracle.stats(moments="vsk")] for oracle in oracles]
     samples = np.array([1.0, 2.0, 2.5, 4.0])
     rows.append([samples.var(), stats.skew(samples), stats.kurtosis(samples)])

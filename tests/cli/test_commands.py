@@ -312,10 +312,8 @@ def on_a_terminal(code: str, **variables: str) -> bytes:
     unset = ("NO_COLOR", "FORCE_COLOR", "COLORTERM")
     kept = {name: value for name, value in os.environ.items() if name not in unset}
     with os.fdopen(ours, "rb", buffering=0) as screen:
-        process = subprocess.Popen(
-            [sys.executable, "-c", code], stdin=theirs, stdout=theirs, stderr=theirs,
-            env={**kept, "TERM": "xterm-256color", "COLUMNS": "100", **variables},
-        )  # fmt: skip
+        process = subprocess.Popen([sys.executable, "-c", code], stdin=theirs, stdout=theirs, stderr=theirs,
+            env={**kept, "TERM": "xterm-256color", "COLUMNS": "100", **variables})  # fmt: skip
         os.close(theirs)
         seen = b""
         while True:

@@ -241,10 +241,8 @@ def package(tmp_path: Path) -> Path:
 def call(package: Path, *versions: str) -> tuple[list[str], str]:
     """What a process of its own prints, and what it logs, with Numba as if it had another version."""
     environment = {**os.environ, "LITHOBRAKE_CACHE": str(package / "cache"), "PYTHONPATH": str(package)}
-    ended = subprocess.run(
-        [sys.executable, "-c", CALLER, *versions], env=environment, cwd=package, capture_output=True, text=True,
-        check=True,
-    )  # fmt: skip
+    ended = subprocess.run([sys.executable, "-c", CALLER, *versions], env=environment, cwd=package, capture_output=True,
+        text=True, check=True)  # fmt: skip
     return ended.stdout.splitlines(), ended.stderr
 
 

@@ -205,10 +205,8 @@ def test_processes_that_start_together_compile_once(tmp_path):
     environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path)}
 
     def process() -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [sys.executable, "-c", TURN], env=environment, text=True,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        )  # fmt: skip
+        return subprocess.Popen([sys.executable, "-c", TURN], env=environment, text=True, stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
 
     together = [process() for _ in range(3)]
     for one in together:

@@ -122,10 +122,8 @@ def model() -> Emulator:
     y = np.column_stack([1.0 / (1.0 + np.exp(-first)), second, random.uniform(size=160)])
     outcome = np.where(random.random(160) < 0.1, "captured", "clear")
     y[outcome == "captured"] = np.nan
-    return emulator.fit(
-        INPUTS, x, y, outcome=outcome, lower=[0.0, -np.inf, -np.inf], upper=[1.0, np.inf, np.inf],
-        riders=["place"], output_names=["share", "height", "place"],
-    )  # fmt: skip
+    return emulator.fit(INPUTS, x, y, outcome=outcome, lower=[0.0, -np.inf, -np.inf], upper=[1.0, np.inf, np.inf],
+        riders=["place"], output_names=["share", "height", "place"])  # fmt: skip
 
 
 def densities(model: Emulator, name: str, grid: np.ndarray, **errors: float) -> np.ndarray:

@@ -11,10 +11,8 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     """A rebound that friction makes steeper."""
     speed, elevation = inputs["impact.speed"] * inputs["lander.restitution"], 0.4 + inputs["lander.friction"]
-    outputs = {
-        "velocity_out_x": speed * math.cos(elevation), "velocity_out_y": 0.0,
-        "velocity_out_z": speed * math.sin(elevation), "spin_out": 1.0 + inputs["lander.friction"],
-    }  # fmt: skip
+    outputs = {"velocity_out_x": speed * math.cos(elevation), "velocity_out_y": 0.0,
+        "velocity_out_z": speed * math.sin(elevation), "spin_out": 1.0 + inputs["lander.friction"]}  # fmt: skip
     return {"outcome": "clear", "outputs": outputs}
 
 

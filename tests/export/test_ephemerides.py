@@ -142,10 +142,8 @@ def test_progress_reaches_its_end_and_large_files_are_announced(
     sample = int(results.flights["sample"][0])
     told: list[tuple[float, str]] = []
     write_ephemerides(results, tmp_path, [sample], progress=lambda done, what: told.append((done, what)))
-    assert list(dict.fromkeys(what for _, what in told)) == [
-        "mean of all flights", "flights of the chosen samples", "writing flight_mean.oem",
-        f"writing flight_{sample}.oem",
-    ]  # fmt: skip
+    assert list(dict.fromkeys(what for _, what in told)) == ["mean of all flights", "flights of the chosen samples",
+        "writing flight_mean.oem", f"writing flight_{sample}.oem"]  # fmt: skip
     assert all(0.0 <= done <= 1.0 for done, _ in told)
     assert caplog.messages == []
     monkeypatch.setattr(ephemerides, "LARGE", 1000.0)

@@ -16,9 +16,8 @@ from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, re
 
 FORM = {"files": {str: {"key": str}}, "wall_s": {str: NUMBER}, "names": [str]}
 GOOD = {"files": {"a.csv": {"key": "1f"}}, "wall_s": {"bed": 1.5, "fly": 2}, "names": ["a"]}
-DAMAGED = {
-    "nothing": "", "no JSON": "{", "no text": b"\xff\xfe\x00", "a list": "[1, 2]", "a number": "3", "null": "null",
-    "a table is a list": json.dumps(GOOD | {"files": []}),
+DAMAGED = {"nothing": "", "no JSON": "{", "no text": b"\xff\xfe\x00", "a list": "[1, 2]", "a number": "3",
+    "null": "null", "a table is a list": json.dumps(GOOD | {"files": []}),
     "an entry is a number": json.dumps(GOOD | {"files": {"a.csv": 3}}),
     "a name is a number": json.dumps(GOOD | {"names": [3]}),
     "a table is missing": json.dumps({"files": {}, "names": []}),
@@ -26,8 +25,7 @@ DAMAGED = {
     "a number of 5000 digits": json.dumps(GOOD).replace("1.5", "9" * 5000),
     "a number without end": json.dumps(GOOD).replace("1.5", "1e999"),
     "no number": json.dumps(GOOD).replace("1.5", "NaN"), "3000 brackets": "[" * 3000 + "]" * 3000,
-    "3000 tables": '{"a":' * 3000 + "1" + "}" * 3000,
-}  # fmt: skip
+    "3000 tables": '{"a":' * 3000 + "1" + "}" * 3000}  # fmt: skip
 
 
 def test_what_is_of_the_form_is_read(tmp_path: Path) -> None:

@@ -46,10 +46,8 @@ def with_ball(bed, density, speed, diameter, place=(0.0, 0.0), pace=1.0, stiffne
     """A world with a ball just above all beads, on its way down; the ball is the last body."""
     world = box(bed, pace, stiffness)
     start = bed[:, 2].max() + 0.5 * SIZE + 0.5 * diameter
-    world.add_body(
-        Sphere(0.5 * diameter), replace(world.bodies[0].material, density=density), (*place, start),
-        velocity=(0.0, 0.0, -speed * pace),
-    )  # fmt: skip
+    world.add_body(Sphere(0.5 * diameter), replace(world.bodies[0].material, density=density), (*place, start),
+        velocity=(0.0, 0.0, -speed * pace))  # fmt: skip
     return world
 
 

@@ -15,10 +15,8 @@ from lithobrake.dem.stepping.time_step import contact_duration
 
 
 def material(restitution=1.0, friction=0.0, poisson_ratio=0.25, young_modulus=1e7):
-    return Material(
-        young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution, friction=friction,
-        density=2500.0,
-    )  # fmt: skip
+    return Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution,
+        friction=friction, density=2500.0)  # fmt: skip
 
 
 def kinetic(world):

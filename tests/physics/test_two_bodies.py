@@ -11,10 +11,8 @@ from lithobrake.dem.stepping.time_step import contact_duration
 
 
 def material(young_modulus, poisson_ratio, density, restitution=1.0, friction=0.0):
-    return Material(
-        young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution, friction=friction,
-        density=density,
-    )  # fmt: skip
+    return Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution,
+        friction=friction, density=density)  # fmt: skip
 
 
 def rigid(like):

@@ -47,11 +47,9 @@ def outputs_of(y: np.ndarray) -> dict[str, float]:
     """Outputs of a study [SI] from a row of synthetic ones."""
     speed, elevation, azimuth, spin = (float(y[OUTPUT_NAMES.index(name)]) for name in OUTPUT_NAMES)
     level = speed * np.cos(elevation)
-    return {
-        "velocity_out_x": level * np.cos(azimuth), "velocity_out_y": level * np.sin(azimuth),
+    return {"velocity_out_x": level * np.cos(azimuth), "velocity_out_y": level * np.sin(azimuth),
         "velocity_out_z": speed * np.sin(elevation), "spin_out_x": 0.6 * spin, "spin_out_y": -0.8 * spin,
-        "spin_out_z": 0.0, "contact_duration": 0.1 / speed,
-    }  # fmt: skip
+        "spin_out_z": 0.0, "contact_duration": 0.1 / speed}  # fmt: skip
 
 
 def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:

@@ -218,11 +218,9 @@ def test_a_progress_that_shows_nothing_is_refused_before_anything_is_written(tmp
 
 
 FEW = FEW_RUNS | FEW_SAMPLES
-FEW |= {
-    "screening_degree = 2": "screening_degree = 1\nfit = 'omp'", "refined_level = 3": "refined_level = 2",
+FEW |= {"screening_degree = 2": "screening_degree = 1\nfit = 'omp'", "refined_level = 3": "refined_level = 2",
     "test_count = 10": "test_count = 6", "sample_count = 10_000": "sample_count = 200\nscatter = true",
-    "duration = 7200.0": "duration = 600.0",
-}  # fmt: skip
+    "duration = 7200.0": "duration = 600.0"}  # fmt: skip
 # What was done of how much, by stage and piece of work.
 Told = dict[str, dict[str, list[tuple[float, float]]]]
 # Which pieces of work each stage tells of, in their order.

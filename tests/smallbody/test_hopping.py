@@ -171,10 +171,8 @@ def test_flights_that_are_noted_lead_from_bounce_to_bounce_and_change_nothing():
     assert len(plain.arcs.lander) == 0
     assert sorted(set(arcs.lander.tolist())) == [0, 1]
     assert (np.diff(arcs.lander) >= 0).all()
-    again = fly(
-        *(body, arcs.position, arcs.velocity, 2e4 - arcs.begin),
-        gravity="exact", start_time=arcs.clock, mass=arcs.mass, spin_period=arcs.spin_period,
-    )  # fmt: skip
+    again = fly(*(body, arcs.position, arcs.velocity, 2e4 - arcs.begin), gravity="exact", start_time=arcs.clock,
+        mass=arcs.mass, spin_period=arcs.spin_period)  # fmt: skip
     assert np.array_equal(arcs.begin + again.time, arcs.end)
     follows = (arcs.lander[1:] == arcs.lander[:-1]) & (arcs.begin[1:] == arcs.end[:-1])
     assert follows.sum() > 3

@@ -47,12 +47,10 @@ def test_the_numbers_of_kernels_are_those_of_the_study_and_of_its_summary(folder
     assert Site(found).medians["partner_longitude_deg"] == place.longitude_deg
     assert Site(found).body.spin_period == period
     told = site_results(Site(found))
-    assert to_json(told.kernels) == {
-        "spin_period_s": period, "pole_right_ascension_deg": 69.327, "pole_declination_deg": -72.725,
-        "prime_meridian_deg": 120.0, "partner_longitude_deg": place.longitude_deg,
+    assert to_json(told.kernels) == {"spin_period_s": period, "pole_right_ascension_deg": 69.327,
+        "pole_declination_deg": -72.725, "prime_meridian_deg": 120.0, "partner_longitude_deg": place.longitude_deg,
         "partner_latitude_deg": place.latitude_deg, "partner_distance_m": place.distance,
-        "partner_period_s": place.period,
-    }  # fmt: skip
+        "partner_period_s": place.period}  # fmt: skip
     assert told.spin_period_s == period
     # Paths stand in the summary as they were written.
     assert study_tables(found, {"site": {"kernels": NAMES}})["site"]["kernels"] == NAMES

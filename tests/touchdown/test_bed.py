@@ -256,11 +256,9 @@ def test_a_bed_that_was_poured_is_found_again_bit_for_bit(library, recipe, tmp_p
 
 def test_the_key_holds_what_a_bed_follows_from_and_nothing_else(recipe, monkeypatch):
     first = recipe()
-    others = [
-        recipe(seed=4), recipe(grain_count=25), recipe(pour_gravity=0.6), recipe(gravity=(0.0, 0.0, -6e-4)),
+    others = [recipe(seed=4), recipe(grain_count=25), recipe(pour_gravity=0.6), recipe(gravity=(0.0, 0.0, -6e-4)),
         recipe(material=replace(first.material, friction=0.6)), recipe(contact=ContactModel(steps_per_contact=26.0)),
-        recipe(sizes=replace(first.sizes, upper=0.12)), recipe(sides="periodic"),
-    ]  # fmt: skip
+        recipe(sizes=replace(first.sizes, upper=0.12)), recipe(sides="periodic")]  # fmt: skip
     assert len({module.bed_key(one) for one in (first, *others)}) == 9
     assert module.bed_key(recipe()) == module.bed_key(first)
     # How a landing is stepped changes no bed.

@@ -113,15 +113,11 @@ LANDING = SimpleNamespace(
 
 def world(velocity=(0.1, 0.0, 0.05), touches=False, touched=1.0, x=0.6):
     """A lander low over the grains, at x [m], after a blow."""
-    motion = BodyMotion(
-        np.array([x, 0.0, 0.62]), np.array(velocity), np.array([1.0, 0.0, 0.0, 0.0]), angular_momentum=np.zeros(3),
-        spin=np.array([0.0, 1.0, 0.0]), mass=1.0,
-    )  # fmt: skip
-    return SimpleNamespace(
-        time=1.0, time_step=1e-3, gravity=np.array([0.0, 0.0, -1e-4]), touch_duration=touched,
+    motion = BodyMotion(np.array([x, 0.0, 0.62]), np.array(velocity), np.array([1.0, 0.0, 0.0, 0.0]),
+        angular_momentum=np.zeros(3), spin=np.array([0.0, 1.0, 0.0]), mass=1.0)  # fmt: skip
+    return SimpleNamespace(time=1.0, time_step=1e-3, gravity=np.array([0.0, 0.0, -1e-4]), touch_duration=touched,
         first_touch=None if touched is None else 0.5, motion_of=lambda number: motion, is_touched=touches,
-        watched={"peak_force": 1.0},
-    )  # fmt: skip
+        watched={"peak_force": 1.0})  # fmt: skip
 
 
 def judged(**changes):

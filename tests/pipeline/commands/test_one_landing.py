@@ -244,10 +244,8 @@ OF_FRICTION, OF_PLACE = 0.6, 0.7
 SPREAD, MIDDLE = 0.3, 0.1
 RARE = 1e-3
 LIMIT = MIDDLE * math.exp(SPREAD * stats.norm.isf(RARE))
-CONDITIONS = {
-    "fast": f"speed_out > {LIMIT!r}", "never": "speed_out > 10", "gone": "not returns",
-    "hard": "peak_acceleration > 50",
-}  # fmt: skip
+CONDITIONS = {"fast": f"speed_out > {LIMIT!r}", "never": "speed_out > 10", "gone": "not returns",
+    "hard": "peak_acceleration > 50"}  # fmt: skip
 
 
 @dataclass(frozen=True)

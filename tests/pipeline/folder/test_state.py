@@ -167,14 +167,12 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "truncated samples": ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:3000])),
     "samples without inputs": ("samples.h5", damage_hdf5),
 }  # fmt: skip
-KEYS = {
-    "empty": "", "a list": "[1]", "a number": "3", "no format": "{}",
+KEYS = {"empty": "", "a list": "[1]", "a number": "3", "no format": "{}",
     "files are a list": '{"format_version": 2, "files": []}',
     "a file is a number": '{"format_version": 2, "files": {"summary.json": 3}}',
     "stages without names": '{"format_version": 2, "stages": {"a": {"title": "a", "key": "b", "files": []}}}',
     "400 digits": '{"format_version": 2, "wall_s": {"bed": ' + 400 * "9" + "}}",
-    "3000 brackets": "[" * 3000 + "]" * 3000,
-}  # fmt: skip
+    "3000 brackets": "[" * 3000 + "]" * 3000}  # fmt: skip
 LEDGERS: dict[str, Callable[[Path], object]] = {
     "empty": lambda path: path.write_bytes(b""),
     "no database": lambda path: path.write_text("this is not a database, and long enough to be seen as such" * 20),

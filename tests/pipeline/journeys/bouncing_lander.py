@@ -63,10 +63,8 @@ def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def _contact(along: float) -> dict[str, float]:
-    return {
-        "displacement_x": 10.0 * along, "displacement_y": 0.0, "duration": 30.0, "contacts": 2.0,
-        "contact_duration": 20.0, "penetration": 0.01, "peak_acceleration": 1.0, "energy_lost": 0.1,
-    }  # fmt: skip
+    return {"displacement_x": 10.0 * along, "displacement_y": 0.0, "duration": 30.0, "contacts": 2.0,
+        "contact_duration": 20.0, "penetration": 0.01, "peak_acceleration": 1.0, "energy_lost": 0.1}  # fmt: skip
 
 
 def _attitude(random: np.random.Generator) -> dict[str, float]:
@@ -77,11 +75,9 @@ def _attitude(random: np.random.Generator) -> dict[str, float]:
 
 
 def _rebound(along: float, up: float, spin: float) -> dict[str, float]:
-    return {
-        "speed_out": math.hypot(along, up), "elevation_out": math.atan2(up, along), "azimuth_out": 0.0,
-        "spin_out": spin, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up,
-        "spin_out_x": 0.0, "spin_out_y": spin, "spin_out_z": 0.0,
-    }  # fmt: skip
+    return {"speed_out": math.hypot(along, up), "elevation_out": math.atan2(up, along), "azimuth_out": 0.0,
+        "spin_out": spin, "velocity_out_x": along, "velocity_out_y": 0.0, "velocity_out_z": up, "spin_out_x": 0.0,
+        "spin_out_y": spin, "spin_out_z": 0.0}  # fmt: skip
 
 
 def run_without_emulator(

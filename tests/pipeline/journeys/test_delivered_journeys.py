@@ -357,10 +357,8 @@ def sky_study(**changes: dict[str, Any]) -> tuple[Study, Site]:
 
 
 POLE = {"pole_right_ascension_deg": 0.0, "pole_declination_deg": 90.0}
-ORBIT = {
-    "semi_major_axis_au": 2.0, "eccentricity": 0.0, "inclination_deg": 0.0, "node_deg": 0.0, "perihelion_deg": 0.0,
-    "mean_anomaly_deg": 0.0, "epoch": "2027-04-20T00:00:00",
-}  # fmt: skip
+ORBIT = {"semi_major_axis_au": 2.0, "eccentricity": 0.0, "inclination_deg": 0.0, "node_deg": 0.0, "perihelion_deg": 0.0,
+    "mean_anomaly_deg": 0.0, "epoch": "2027-04-20T00:00:00"}  # fmt: skip
 
 
 def test_a_year_has_days_of_all_seasons(tmp_path: Path) -> None:

@@ -207,11 +207,9 @@ def test_a_flight_is_noted_by_its_sample_and_its_number_in_the_journey() -> None
     arcs = Arcs(lander, begin, begin + 2.0, begin + 100.0, vectors, -vectors, np.full(3, 4e9), np.full(3, 3e4))
     rows = [dict(zip(ARC, row, strict=True)) for row in arc_rows(arcs, np.array([0, 2, 3]))]
     assert [(row["sample"], row["arc"]) for row in rows] == [(0, 0), (0, 1), (2, 0)]
-    assert rows[1] == {
-        "sample": 0, "arc": 1, "begin_s": 5.0, "end_s": 7.0, "clock_s": 105.0,
-        "position_x": 3.0, "position_y": 4.0, "position_z": 5.0,
-        "velocity_x": -3.0, "velocity_y": -4.0, "velocity_z": -5.0, "site_mass": 4e9, "site_spin_period": 3e4,
-    }  # fmt: skip
+    assert rows[1] == {"sample": 0, "arc": 1, "begin_s": 5.0, "end_s": 7.0, "clock_s": 105.0, "position_x": 3.0,
+        "position_y": 4.0, "position_z": 5.0, "velocity_x": -3.0, "velocity_y": -4.0, "velocity_z": -5.0,
+        "site_mass": 4e9, "site_spin_period": 3e4}  # fmt: skip
 
 
 def captured_sites(study: Study, latitude: float) -> tuple[Sites, Rebounds]:

@@ -149,10 +149,8 @@ def start(folder: Path) -> "subprocess.Popen[str]":
         sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers", "2",
     ]  # fmt: skip
     # What runs in the background of a shell ignores the signal, and so would what it starts.
-    return subprocess.Popen(
-        list(map(str, words)), stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )  # fmt: skip
+    return subprocess.Popen(list(map(str, words)), stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # fmt: skip
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
