@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lithobrake.dem import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.bodies.arrays import Cores
 from lithobrake.dem.bodies.rigid_body import AT_CENTRE
-from lithobrake.dem.stepping.assembly import cores_of, rotation_matrices
+from lithobrake.dem.stepping.engine import cores_of, rotation_matrices
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -12,17 +12,15 @@ from distance_pairs import Floats, Integers, Library, Poses, units
 from lithobrake.compilation.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.bodies.period import NO_PERIOD
 from lithobrake.dem.bodies.rigid_body import RigidBody
-from lithobrake.dem.bodies.vectors import dot, minus, put, row, scaled
-from lithobrake.dem.narrow_phase.closest_points import find_closest_points
+from lithobrake.dem.bodies.vectors import NO_PERIOD, dot, minus, put, row, scaled
 from lithobrake.dem.narrow_phase.contact_patch import measure_feature
-from lithobrake.dem.narrow_phase.feature_id import ALL_FEATURES, SPHERES, feature_kind, listed_feature
+from lithobrake.dem.narrow_phase.feature_distance import ALL_FEATURES, SPHERES, feature_kind, listed_feature
 from lithobrake.dem.narrow_phase.feature_list import list_bodies, list_margin, list_plane
 from lithobrake.dem.narrow_phase.gjk import PENETRATING, weighted
-from lithobrake.dem.narrow_phase.penetration import penetration_vector
+from lithobrake.dem.narrow_phase.penetration import find_closest_points, penetration_vector
 from lithobrake.dem.narrow_phase.scratch import Scratch, scratch_for
-from lithobrake.dem.stepping.assembly import bodies_of, parts_of, shapes_of
+from lithobrake.dem.stepping.engine import bodies_of, parts_of, shapes_of
 from lithobrake.dem.stepping.neighbours import Neighbours, new_pairs
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)

@@ -22,7 +22,7 @@ def main(repeats: int) -> None:
     first = origin(f"benchmarks/doctor_speed.py {repeats}")
     rounds = [list(measured_speeds()) for _ in range(repeats)]
     # The first speed is that of the work by which the pace of a machine is told.
-    paces = [1.0 / steps.ratio for steps, *_ in rounds]
+    paces = [steps.reference / steps.here for steps, *_ in rounds]
     speeds = {
         rounds[0][number].what: [pace * one[number].here for pace, one in zip(paces, rounds, strict=True)]
         for number in (1, 2)

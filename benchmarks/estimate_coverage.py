@@ -32,8 +32,7 @@ from lithobrake.analysis import (
     soil_total_effect,
     variance_shares,
 )
-from lithobrake.analysis.bed_components import BedComponents, bed_components
-from lithobrake.analysis.confidence import LEVEL, t_quantile
+from lithobrake.analysis.confidence import LEVEL, BedComponents, bed_components, t_quantile
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.share_estimate import standard_error
 from lithobrake.chaos import sobol_sequence

@@ -28,7 +28,7 @@ is_old = find_spec("lithobrake.pipeline.kernels") is not None
 if is_old:
     from lithobrake.pipeline.kernels import compile_kernels
 else:
-    from lithobrake.pipeline.runs.kernels import compile_kernels
+    from lithobrake.pipeline.runs.beds import compile_kernels
 class Silent:
     def progress(self, *what):
         pass

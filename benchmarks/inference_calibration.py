@@ -23,7 +23,7 @@ from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMI
 
 from lithobrake import emulator
 from lithobrake.analysis import LEVEL, Observation, identifiability, infer, inference
-from lithobrake.emulator.coordinates import from_coordinate, to_coordinate
+from lithobrake.emulator.training import from_coordinate, to_coordinate
 
 TABLE = RESULTS / "inference_calibration.csv"
 COLUMNS = ("kind", "soil", "bounces", "cases", "input", "held", "chi_square_p", "sd_ratio", "effective", "to_halve")

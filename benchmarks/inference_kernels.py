@@ -16,7 +16,7 @@ from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
 from inference_calibration import INPUTS, REFITS, WEAK, fitted, observation, random_soils
 
 from lithobrake.analysis import LEVEL, Posterior, infer, inference
-from lithobrake.emulator import Emulator, observed_density
+from lithobrake.emulator import Emulator, density
 
 TABLE = RESULTS / "inference_kernels.csv"
 COLUMNS = ("bed_share", "one_bed", "cases", "kernel", "input", "held", "sd_ratio", "effective")
@@ -37,7 +37,7 @@ def posteriors(bed_share: float, one_bed: bool, cases: int) -> Iterator[tuple[fl
         seen = [observation(y, str(word)) for y, word in zip(found.y, found.outcome, strict=True)]
         seen = [replace(one, bed="one" if one_bed else None) for one in seen]
         for kernel in KERNELS:
-            observed_density.DENSITY_FACTOR = kernel
+            density.DENSITY_FACTOR = kernel
             yield kernel, soil, infer(fit, seen, refit_count=REFITS, point_count=POINTS, seed=case)
 
 

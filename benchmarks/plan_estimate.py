@@ -6,7 +6,7 @@
 pours beds of each study of scenarios/ or validation/studies/, makes so many of its landings on the first, with slow
 grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. Of
 a study of journeys it follows so many of these on as many beds instead. `bed_costs` is how many landings or journeys a
-bed costs: what default_bed_count in lithobrake/study/bed_section.py stands on. The
+bed costs: what default_bed_count in lithobrake/study/ground_sections.py stands on. The
 constants of expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
 """
 
@@ -20,10 +20,9 @@ from pathlib import Path
 from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
 
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import landing_time, mean_journey_time, pour_time
-from lithobrake.pipeline.planning.pace import REFERENCE, probe
+from lithobrake.pipeline.planning.expected_time import REFERENCE, landing_time, mean_journey_time, pour_time, probe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import StudySource, load_tables, read_study

@@ -23,7 +23,7 @@ from landing_ensembles import beds_of, drawn_study, draws
 from scipy.stats import binomtest, chi2_contingency
 
 from lithobrake.touchdown import Bed, Lander, Landing, land
-from lithobrake.touchdown.surface import rotation_matrix
+from lithobrake.touchdown.bed import rotation_matrix
 
 STUDY = Path(__file__).parents[1] / "scenarios" / "first_bounce.toml"
 BEDS, GRAVITY, TIME_LIMIT, STEEPEST = 8, 4.5e-5, 1000.0, math.radians(80.0)

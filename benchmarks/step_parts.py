@@ -18,11 +18,11 @@ from harness import Row, command_line, cpu_seconds, origin, write_document
 from lithobrake.dem import World
 from lithobrake.dem.bodies.arrays import Pairs
 from lithobrake.dem.bodies.motion import drift, kick
-from lithobrake.dem.narrow_phase.feature_id import EDGES, feature_kind
+from lithobrake.dem.narrow_phase.feature_distance import EDGES, feature_kind
 from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
 from lithobrake.dem.stepping.engine import NO_REACTIONS
-from lithobrake.dem.stepping.force_sums import contact_forces
-from lithobrake.dem.stepping.stability import LOOK_STEPS, largest_step
+from lithobrake.dem.stepping.time_loop import contact_forces
+from lithobrake.dem.stepping.time_step_stability import LOOK_STEPS, largest_step
 
 CALLS = 50
 KINDS = (

@@ -22,8 +22,7 @@ from harness import Row, command_line, origin, write_document
 from lithobrake.study import Study, check_tables, load_tables
 from lithobrake.study.touchdown_model import lander, landing, stored_bed
 from lithobrake.touchdown import simulation
-from lithobrake.touchdown.outcome_judge import OutcomeJudge
-from lithobrake.touchdown.rest_watch import REST_WAY
+from lithobrake.touchdown.outcome_judge import REST_WAY, OutcomeJudge
 
 PHASES = ("approach", "hop", "contact", "rest")
 

@@ -6,7 +6,6 @@ import threading
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Self, TextIO
 
 from rich.console import Console, RenderableType
@@ -26,7 +25,6 @@ class _TimeLeft(TimeRemainingColumn):
     """Time left of the work; none for the stages, which differ too much, and none where the lines below tell it."""
 
     def render(self, task: Task) -> Text:
-        """Give what is drawn."""
         return Text.assemble("left ", super().render(task)) if task.fields["tells_time_left"] else Text("")
 
 
@@ -36,7 +34,6 @@ class _Lines(Progress):
     detail = ""
 
     def get_renderables(self) -> Iterable[RenderableType]:
-        """Give what is drawn."""
         yield from super().get_renderables()
         if self.detail:
             yield Text(plain(self.detail), style="dim")
@@ -99,12 +96,9 @@ class ProgressBars:
             self._work = None
 
     def __enter__(self) -> Self:
-        """Give the lines."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         """Leave the last state on the screen."""
         if kind is None:
             self._progress.detail = ""
@@ -220,9 +214,7 @@ class ProgressLog:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         """Write no more."""
         with self._lock:
             if kind is None:

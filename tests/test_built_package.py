@@ -24,7 +24,7 @@ FOLDERS = ("benchmarks", "docs", "examples", "lithobrake", "scenarios", "tests",
 SAY = """
 import lithobrake
 from lithobrake.study import read_study
-from lithobrake.study.shipped import shipped
+from lithobrake.study.reader import shipped
 from pathlib import Path
 
 assert lithobrake.__version__ == "VERSION"

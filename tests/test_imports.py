@@ -41,26 +41,9 @@ WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())
 ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
-        *(
-            "site",
-            "folder",
-            "design",
-            "job",
-            "stage",
-            "runs",
-            "emulate",
-            "fly",
-            "journeys",
-            "rest",
-            "emulated",
-            "sky",
-            "answer",
-            "sites",
-            "paper",
-            "stages",
-            "outdated_files",
-        ),
-        *("sequential_sampling", "inference", "planning", "study_run", "commands"),
+        *("site", "study_folder", "folder_state", "design", "job", "runs", "samples", "flights", "run_flights"),
+        *("first_bounces", "journeys", "sky", "answer", "site_grid", "paper", "stages", "outdated_files"),
+        *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "report": (
         "content",
@@ -72,8 +55,7 @@ ROOMS = {
         "pages",
         "study_plots",
         "study_report",
-        "comparison_report",
-        "site_report",
+        "further_reports",
     ),
 }
 # What a file hands itself on to when a user asks for it, without knowing anything of it.

@@ -11,16 +11,16 @@ import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
-from lithobrake.pipeline.answer.scope import scope
-from lithobrake.pipeline.answer.summary_parts import study_tables
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.fly.flights import COLUMNS, starts
-from lithobrake.pipeline.paper.paper_designs import kept_inputs, points
+from lithobrake.pipeline.answer.run_answers import scope
+from lithobrake.pipeline.answer.study_summary import study_tables
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
+from lithobrake.pipeline.flights import COLUMNS, starts
+from lithobrake.pipeline.paper.expansions import kept_inputs, points
 from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
-from lithobrake.pipeline.rest import journeys as rest
+from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.smallbody.restitution_table import COUNTS, EDGES
+from lithobrake.smallbody.bounce import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import PLACE, acceleration, draw, in_words_of_the_study, medians
 from lithobrake.vocabulary.quantities import ARC, ORIENTATION, OUTPUTS

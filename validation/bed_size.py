@@ -18,7 +18,7 @@ import numpy as np
 
 from lithobrake.dem import Box, Material
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
-from lithobrake.touchdown.smallest_bed import smallest_bed
+from lithobrake.touchdown.lander import smallest_bed
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import Row, add_row, command_line, origin, read_rows, write_document

@@ -21,10 +21,10 @@ from scipy.spatial import cKDTree
 
 from lithobrake.dem import ConvexHull, Material, Shape, Sphere, World
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, pour_bed
+from lithobrake.touchdown.bed import rotation_matrix
 from lithobrake.touchdown.grains import make_grain
 from lithobrake.touchdown.pouring import rain
 from lithobrake.touchdown.simulation import relax, release
-from lithobrake.touchdown.surface import rotation_matrix
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import Row as Result

@@ -28,11 +28,11 @@ import numpy as np
 from sphere_beds import SphereBed, pour_spheres
 
 from lithobrake.dem import Box, Material
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.smallbody import didymos, fly
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, Outcome, land, pour_bed
-from lithobrake.touchdown.smallest_bed import smallest_bed
+from lithobrake.touchdown.lander import smallest_bed
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, timed, write_document

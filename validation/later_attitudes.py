@@ -15,8 +15,8 @@ import numpy as np
 from scipy import stats
 
 from lithobrake.pipeline.design.lander_attitude import seen
-from lithobrake.pipeline.folder.study_folder import StudyFolder
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))

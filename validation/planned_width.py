@@ -32,17 +32,16 @@ from harness import ROOT, SCENARIOS, Row, command_line, origin, read_rows, round
 
 from lithobrake.analysis import HalfWidthRange as HalfWidths
 from lithobrake.analysis import half_width_range
-from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import answered_runs
+from lithobrake.analysis.confidence import answered_runs, bed_components
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
-from lithobrake.pipeline.answer.run_shares import return_fraction
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.fly.run_flights import RunFlights
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_estimates import return_fraction
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_width import expected_correlation, expected_width, law_of_runs
+from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource, check_tables, read_study
 

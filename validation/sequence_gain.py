@@ -32,14 +32,13 @@ import numpy as np
 from scipy import stats
 
 from lithobrake.analysis import LEVEL, regression_terms, share_estimate
-from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import numbered_beds, t_quantile
+from lithobrake.analysis.confidence import bed_components, numbered_beds, t_quantile
 from lithobrake.analysis.share_estimate import standard_error
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
-from lithobrake.pipeline.fly.run_flights import RunFlights
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.design.design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import StudySource, check_tables
 

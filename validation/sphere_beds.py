@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.dem import Material, Sphere, World
 from lithobrake.touchdown import Bed, BedRecipe, pouring, settling
 from lithobrake.touchdown.bed import ContactModel, boxed_world
-from lithobrake.touchdown.outcome import hull_about_centroid
+from lithobrake.touchdown.landing import hull_about_centroid
 
 
 class SphereBed(Bed):

@@ -10,13 +10,21 @@ from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
-from lithobrake.analysis.posterior_points import ENDLESS, INSTALL, LEAST, WALKER_COUNT, Proposal, can_walk, walk
-from lithobrake.analysis.shared_beds import Observation, by_bed
+from lithobrake.analysis.posterior import (
+    ENDLESS,
+    INSTALL,
+    LEAST,
+    WALKER_COUNT,
+    Observation,
+    Proposal,
+    by_bed,
+    can_walk,
+    walk,
+)
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
-from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.bed_effect import BedEffect
-from lithobrake.emulator.observed_density import observed_density
+from lithobrake.chaos.training import one_thread
+from lithobrake.emulator.density import BedEffect, observed_density
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.percentages import percent

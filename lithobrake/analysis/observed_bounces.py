@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from lithobrake.analysis.inference import Bounds, Posterior, posterior_of
-from lithobrake.analysis.shared_beds import Observation
+from lithobrake.analysis.posterior import Observation
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.bed_components import BedComponents, bed_components
 from lithobrake.analysis.confidence import (
     LEVEL,
+    BedComponents,
     Bounds,
+    bed_components,
     numbered_beds,
     partial_quantile,
     share_interval,
@@ -19,7 +20,7 @@ from lithobrake.analysis.confidence import (
 )
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.outcome_model import upper_limit
-from lithobrake.chaos.threads import one_thread
+from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
 

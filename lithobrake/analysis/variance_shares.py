@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.bed_components import BedComponents, bed_components
-from lithobrake.analysis.confidence import LEVEL, Bounds, IntervalEstimate, answers, numbered_beds, t_quantile
-from lithobrake.analysis.control_variate import regression_terms
-from lithobrake.analysis.side_runs import chaos_variance
-from lithobrake.chaos.threads import one_thread
+from lithobrake.analysis.confidence import (
+    LEVEL,
+    BedComponents,
+    Bounds,
+    IntervalEstimate,
+    answers,
+    bed_components,
+    numbered_beds,
+    t_quantile,
+)
+from lithobrake.analysis.control_variate import chaos_variance, regression_terms
+from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array, Labels
 
 if TYPE_CHECKING:

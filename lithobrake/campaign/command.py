@@ -1,24 +1,114 @@
 """A model that is a program: a folder for each run, `inputs.json` in it, the program, and its answer back."""
 
 import contextlib
+import csv
 import json
 import os
 import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign.capped_log import CappedLog, last_words
-from lithobrake.campaign.decoders import read_answer
-from lithobrake.campaign.seed_and_key import run_key
-from lithobrake.files.hashing import content_hash
+from lithobrake.campaign.single_run import CappedLog, last_words, run_key
+from lithobrake.files.reading import content_hash
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.plain_text import closest
+
+
+def read_answer(path: Path) -> dict[str, Any]:
+    """What a program wrote into a file whose ending DECODERS has.
+
+    Raises ValueError when there is none, it is not of its format, or a value is not finite.
+    """
+    if not path.is_file():
+        raise ValueError(f"the program wrote no {path.name}; it has to write one into the folder that it is started in")
+    content = DECODERS[path.suffix.lower()](path)
+    if not isinstance(content, dict) or not isinstance(content.get("outputs", {}), dict):
+        raise ValueError(f"{path.name} is no JSON object of numbers by name; mend what the program writes")
+    answer = content if "outputs" in content or "outcome" in content else {"outputs": content}
+    beside = [name for name in answer if name not in ("outcome", "outputs", "draws")]
+    if beside and "outputs" not in answer:
+        raise ValueError(
+            f"{path.name} has {', '.join(map(str, beside))} beside the outcome; allowed: "
+            '{"outcome": a word, "outputs": numbers by name}; put the numbers into outputs'
+        )
+    outputs = answer.setdefault("outputs", {})
+    for name, value in outputs.items():
+        if not _is_number(value):
+            raise ValueError(f"{path.name} has {value!r} for {name}; allowed: a finite number; leave out what has none")
+    for name, kind, words in (("outcome", str, "a word"), ("draws", dict, "a JSON object")):
+        if not isinstance(answer.get(name, kind()), kind):
+            raise ValueError(f"{path.name} has {answer[name]!r} for {name}; allowed: {words}; mend it or leave it out")
+    return answer
+
+
+def _json(path: Path) -> Any:
+    try:
+        # Some editors and languages begin a text with a mark of its encoding.
+        return json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path.name} is not JSON ({error}); the program has to write one JSON object") from error
+
+
+def _csv(path: Path) -> dict[str, Any]:
+    """The last row under the names of the first; an empty cell has no value, and outcome is a column like others."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            names, *rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
+        last = {name.strip(): cell.strip() for name, cell in zip(names, rows[-1], strict=True)}
+        outcome = {"outcome": last.pop("outcome")} if "outcome" in last else {}
+        outputs = {name: float(cell) for name, cell in last.items() if cell}
+    except (ValueError, IndexError, csv.Error) as error:
+        raise ValueError(
+            f"{path.name} is no CSV of numbers ({error}); the program has to write names, and below them numbers"
+        ) from error
+    return {**outcome, "outputs": outputs}
+
+
+def _yaml(path: Path) -> Any:
+    yaml = extra_library("yaml", f"PyYAML, which reads {path.name},", "yaml")
+    try:
+        return yaml.safe_load(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, yaml.YAMLError) as error:
+        words = " ".join(str(error).split())
+        raise ValueError(f"{path.name} is not YAML ({words}); the program has to write names with numbers") from error
+
+
+def _hdf5(path: Path) -> dict[str, Any]:
+    """Data sets of one number at the top or in the group `outputs`; the outcome is an attribute of the file."""
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            group = file["outputs"] if isinstance(file.get("outputs"), h5py.Group) else file
+            sets = {str(name): entry for name, entry in group.items() if isinstance(entry, h5py.Dataset)}
+            outputs = {name: entry[()].item() for name, entry in sets.items() if entry.size == 1}
+            outcome = {"outcome": str(file.attrs["outcome"])} if "outcome" in file.attrs else {}
+    except (OSError, AttributeError) as error:
+        raise ValueError(f"{path.name} is not HDF5 ({error}); the program has to write data sets by name") from error
+    return {**outcome, "outputs": outputs}
+
+
+DECODERS: dict[str, Callable[[Path], Any]] = {
+    ".json": _json,
+    ".csv": _csv,
+    **dict.fromkeys((".yaml", ".yml"), _yaml),
+    **dict.fromkeys((".h5", ".hdf5"), _hdf5),
+}
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max
+
 
 ANSWER = "outputs.json"
 # How long to wait for the last of what a program printed, where something that it left running may print on [s].
@@ -61,14 +151,15 @@ class Command:
     def ask(self, question: Mapping[str, Any]) -> dict[str, Any]:
         """Write `inputs.json` for a program, run it, and return what it wrote."""
         with self._run_folder(run_key(question["inputs"], question["seed"], 0, {})[:16]) as folder:
+            # NaN and infinity are no JSON: what Python writes for them stops the parsers of other languages.
             text = json.dumps(question, indent=2, allow_nan=False)
             (folder / "inputs.json").write_text(text + "\n", encoding="utf-8")
             for template in self.templates:
                 fill_template(template, folder, question)
             code = _made(self.words(), folder)
             if code:
-                said = last_words(folder / "log.txt")
-                raise RuntimeError(f"the program ended with {_how(code)}; its last words: {said}")
+                how, said = f"exit code {code}" if code > 0 else f"signal {-code}", last_words(folder / "log.txt")
+                raise RuntimeError(f"the program ended with {how}; its last words: {said}")
             return read_answer(folder / self.answer)
 
     def words(self) -> list[str]:
@@ -94,6 +185,7 @@ class Command:
         self.folder.mkdir(parents=True, exist_ok=True)
         for left_over in self.folder.glob(f"{name}.*"):
             shutil.rmtree(left_over, ignore_errors=True)
+        # Named like the run, but unique: the loop above finds what an interrupted try has left.
         draft = Path(tempfile.mkdtemp(prefix=f"{name}.", dir=self.folder))
         try:
             yield draft
@@ -109,6 +201,8 @@ def _made(words: list[str], folder: Path) -> int:
 
     Raises OSError when it cannot be started or the log cannot be written.
     """
+    # Without standard input, as a program that asks for something would wait on the terminal of the campaign;
+    # unbuffered, so that the last words of a program that is killed are in its log.
     program = subprocess.Popen(
         words, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, bufsize=0
     )
@@ -149,10 +243,6 @@ def absolute_words(command: str, folder: Path) -> list[str]:
     """
     # A link stays one: the interpreter of a virtual environment is a link, and finds its packages from where it lies.
     return [os.path.abspath(folder / word) if os.path.isfile(folder / word) else word for word in shlex.split(command)]
-
-
-def _how(code: int) -> str:
-    return f"exit code {code}" if code > 0 else f"signal {-code}"
 
 
 def fill_template(template: Path, folder: Path, question: Mapping[str, Any]) -> None:

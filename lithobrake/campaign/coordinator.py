@@ -9,13 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from lithobrake.campaign.executors import WorkerDiedError, submit_limited
 from lithobrake.campaign.ledger import Ledger
-from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.local_executor import WorkerDiedError, submit_limited
-from lithobrake.campaign.main_module import MainModuleError
-from lithobrake.campaign.record import RunStatus
-from lithobrake.campaign.run_counts import Tally, common_reasons
-from lithobrake.campaign.single_run import Model, run_model
+from lithobrake.campaign.record import RunStatus, Tally, common_reasons
+from lithobrake.campaign.single_run import Limits, Model, run_model
+from lithobrake.campaign.worker import MainModuleError
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
 _SUBMITTED_PER_WORKER = 2
@@ -40,17 +38,12 @@ class PendingRun:
     attempts: int
 
 
-def _nothing_follows(key: str) -> Mapping[str, PendingRun]:
-    """No run is to be made because another has ended."""
-    return {}
-
-
 @dataclass
 class Coordinator:
     """A campaign under way.
 
     pending: the runs to make, by their keys; retry_count: further tries of a failed one; follow: gives the runs to make
-    because the one with this key has ended, which the ledger has queued by then.
+    because the one with this key has ended, which the ledger has queued by then; none, by default.
     """
 
     ledger: Ledger
@@ -60,12 +53,14 @@ class Coordinator:
     limits: Limits
     retry_count: int
     progress: Callable[[Tally], None]
-    follow: Callable[[str], Mapping[str, PendingRun]] = _nothing_follows
+    follow: Callable[[str], Mapping[str, PendingRun]] = lambda key: {}
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
         self.waiting = deque(sorted(self.pending))
         self.attempts = {key: run.attempts for key, run in self.pending.items()}
+        # Runs that have failed before are no random part of the design: they likely fail again. Of ten runs or fewer
+        # there is nothing to save by giving up.
         fresh = [key for key in self.waiting if not self.attempts[key]]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
@@ -102,10 +97,11 @@ class Coordinator:
             future = submit_limited(self.executor, self.limits, run_model, run.model, run.inputs, run.seed, run.log)
             self.submitted[future] = key
             self._not_begun.append(future)
+            # Called in a thread of the executor: the queue is all that it shares with this one, so the ledger has one
+            # writer.
             future.add_done_callback(self._ended.put)
 
     def _collect(self) -> None:
-        """Wait for a run to end, or for a moment, and take in all that have ended."""
         try:
             ended = [self._ended.get(timeout=_POLL_INTERVAL)]
         except queue.Empty:
@@ -133,6 +129,7 @@ class Coordinator:
         if result["status"] == RunStatus.FAILED:
             self._failed.add(key)
         else:
+            # One success shows that the model works; what fails from here on is a matter of single runs.
             self._trial.clear()
         for one, run in self.follow(key).items():
             self.pending[one], self.attempts[one] = run, run.attempts
@@ -146,6 +143,8 @@ class Coordinator:
         left = len(self.waiting) + len(self.submitted)
         if not self._trial or not self._trial <= self._failed or not left:
             return
+        # The cause is in the model or its installation; with their tries used up these runs would be holes in the
+        # design of the corrected study.
         self.ledger.forget_tries(self._failed)
         reasons = common_reasons(record.reason for record in self.ledger.find(self._failed).values())
         raise ValueError(

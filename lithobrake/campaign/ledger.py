@@ -10,10 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from os import PathLike
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
-from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.record import (
     CHECKSUM,
     COLUMNS,
@@ -32,6 +30,7 @@ from lithobrake.campaign.record import (
     row_hash,
     utc_now,
 )
+from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.files.atomic import locked
 from lithobrake.vocabulary.plain_text import one_line
 
@@ -43,6 +42,7 @@ _REASON_LENGTH, _OUTCOME_LENGTH = 1000, 100
 #           run drew by chance); an output that has no value is absent
 # version   of the code that made the run; started, ended: UTC
 # sha256    of the rest of the row of an ended run, attempts left out: a row that was edited is known by it
+# WITHOUT ROWID stores the key, which is a long text, once, and not in the table and in an index.
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS runs (
     key TEXT PRIMARY KEY, status TEXT NOT NULL, outcome TEXT, inputs TEXT NOT NULL, draws TEXT, outputs TEXT,
@@ -79,6 +79,8 @@ class Ledger:
         refusal = f"another campaign is at work on {self.path}{{who}}; wait for it, or choose another ledger"
         try:
             self._note = self._open.enter_context(locked(lock_path(self.path), refusal))
+            # Transactions are begun by statements: those of the module would take the write lock only at the first
+            # change.
             self._database = sqlite3.connect(self.path, isolation_level=None)
             self._open.callback(self._database.close)
             self._database.create_function("row_hash", len(HASHED), row_hash, deterministic=True)
@@ -178,6 +180,8 @@ class Ledger:
         """The runs with these keys that have ended, by key; a warning names those whose row was changed since."""
         wanted, columns = set(keys), ", ".join((*COLUMNS, CHECKSUM))
         with reading_ledger(self.path):
+            # SQLite bounds the number of values of a query, and a design may have a million keys, so they are matched
+            # here.
             rows = self._database.execute(f"SELECT {columns} FROM runs WHERE status IN (?, ?)", ENDED)
             return {record.key: record for record in intact_records(self.path, (r for r in rows if r[0] in wanted))}
 
@@ -204,11 +208,7 @@ class Ledger:
         self._open.close()
 
     def __enter__(self) -> Self:
-        """Give the ledger itself."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Close the file."""
+    def __exit__(self, *error: object) -> None:
         self.close()

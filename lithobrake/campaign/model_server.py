@@ -56,6 +56,7 @@ class ModelServer:
             with opener.open(request) as response:
                 text = response.read()
         except urllib.error.HTTPError as error:
+            # A server of UM-Bridge sends its refusal as JSON with a status of HTTP that is an error.
             text = error.read()
         except OSError as error:
             raise ConnectionError(

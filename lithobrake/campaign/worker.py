@@ -1,4 +1,4 @@
-"""One process that takes calls through a pipe: the coordinator's side of it, and its own."""
+"""One process that takes calls through a pipe, and the script that its model stands in."""
 
 import contextlib
 import gc
@@ -6,17 +6,110 @@ import io
 import multiprocessing
 import os
 import pickle
+import pickletools
+import runpy
 import signal
 import subprocess
 import sys
 import threading
+import types
 from concurrent.futures import Future
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
-from lithobrake.campaign.limits import Limits
-from lithobrake.campaign.main_module import MAIN, MainModule, Source, main_source, refuse_while_importing
+from lithobrake.campaign.single_run import Limits
+
+MAIN = "__main__"
+# The script goes by this name in a worker process, so that what stands under `if __name__ == "__main__":` is not run.
+_IMPORTED = "__mp_main__"
+# How a process finds a script: "name" or "path", and which.
+Source = tuple[str, str]
+
+
+class MainModuleError(ValueError):
+    """A model of a script that no worker process can import."""
+
+
+class MainModule:
+    """The script of the coordinator in a worker process, imported when it is asked for the first time."""
+
+    importing = False
+
+    def __init__(self, source: Source | None) -> None:
+        self._source = source
+        self._is_there = False
+
+    def ensure(self) -> None:
+        """Import it as `__main__`. Raises MainModuleError where there is none, or it starts a campaign itself."""
+        if self._is_there:
+            return
+        if self._source is None:
+            raise MainModuleError(_UNREACHABLE)
+        kind, where = self._source
+        MainModule.importing = True
+        try:
+            run = runpy.run_module if kind == "name" else runpy.run_path
+            names = run(where, run_name=_IMPORTED)
+        finally:
+            MainModule.importing = False
+        module = types.ModuleType(_IMPORTED)
+        module.__dict__.update(names)
+        # Calls refer to what the script defines by the first name, objects that are made here by the second.
+        sys.modules[MAIN] = sys.modules[_IMPORTED] = module
+        self._is_there = True
+
+
+_UNREACHABLE = (
+    "the model is defined in a notebook, an interactive session or a piped script, which worker processes cannot "
+    "import; write it to a file, say model.py, and import it from there"
+)
+
+
+def main_source() -> Source | None:
+    """How a process of its own finds the script that is run here; None where it cannot, as in a notebook."""
+    module = sys.modules.get(MAIN)
+    spec = getattr(module, "__spec__", None)
+    # Of a package that is run there is no module to import beside the program itself.
+    if spec is not None:
+        return None if spec.name.rpartition(".")[2] == MAIN else ("name", spec.name)
+    path = getattr(module, "__file__", None)
+    return ("path", os.path.abspath(path)) if path and os.path.isfile(path) else None
+
+
+def refuse_unreachable(sent: bytes) -> None:
+    """Raise MainModuleError for a pickle with something of the script that is run here, where none can import that."""
+    if MAIN.encode() not in sent or main_source() is not None:
+        return
+    # The search of the bytes above saves going through the operations of every pickle.
+    if any(argument == MAIN for _, argument, _ in pickletools.genops(sent)):
+        raise MainModuleError(_UNREACHABLE)
+
+
+def pickled(what: str, content: object) -> bytes:
+    """The pickle that is sent to a process of its own; what: the content in words, as "the model".
+
+    Raises ValueError for what cannot be sent, MainModuleError where no process can import it.
+    """
+    try:
+        sent = pickle.dumps(content)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise ValueError(
+            f"{what} cannot be sent to a process ({error}); a model may be a function of a file, outside of any other "
+            "function, or an object whose attributes can be sent"
+        ) from error
+    refuse_unreachable(sent)
+    return sent
+
+
+def refuse_while_importing() -> None:
+    """Raise MainModuleError where a script that a worker process imports would start a campaign of its own."""
+    if MainModule.importing:
+        raise MainModuleError(
+            "worker processes import this script, because it defines the model, and would start the campaign again; "
+            'what starts it belongs under: if __name__ == "__main__":, or the model into a file of its own'
+        )
+
 
 # One run fills one core; a numerical library that starts threads of its own would only slow the others down.
 _THREAD_COUNTS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -52,15 +145,16 @@ class Worker:
     """
 
     def __init__(self) -> None:
-        """Start the process."""
         refuse_while_importing()
         self.connection, calls = Pipe()
         # With the only other end in the coordinator, this one tells its end, however it ends.
         life, self._life = Pipe(duplex=False)
         ends = [calls.fileno(), life.fileno()]
+        # Options of this interpreter, as for warnings, are those of the process too.
+        options = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
         # It leads a session of its own: Ctrl-C is the coordinator's, which keeps what is finished and then ends it.
         self._process = subprocess.Popen(
-            [sys.executable, *_interpreter_options(), "-c", _START, *map(str, ends)],
+            [sys.executable, *options, "-c", _START, *map(str, ends)],
             stdin=subprocess.DEVNULL,
             pass_fds=ends,
             env=os.environ | dict.fromkeys(_THREAD_COUNTS, "1"),
@@ -86,8 +180,8 @@ class Worker:
         return True
 
     def kill(self) -> None:
-        """End the process and all that it has started."""
         with contextlib.suppress(ProcessLookupError):
+            # The worker leads its session, so a program that its model has started ends with it.
             os.killpg(self.number, signal.SIGKILL)
         self._process.kill()
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -101,17 +195,10 @@ class Worker:
         self.kill()
 
     def ended(self) -> str:
-        """How the process ended, in words."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=5)
         code = self._process.returncode
         return f"signal {-code}" if code is not None and code < 0 else f"exit code {code}"
-
-
-def _interpreter_options() -> list[str]:
-    """Options of this interpreter that a process of its own takes too, as for warnings."""
-    options: list[str] = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
-    return options
 
 
 def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main: Source | None) -> None:
@@ -143,7 +230,6 @@ class _CallUnpickler(pickle.Unpickler):
         self._script = script
 
     def find_class(self, module_name: str, global_name: str) -> Any:
-        """What a name of a module stands for."""
         if module_name == MAIN:
             self._script.ensure()
         return super().find_class(module_name, global_name)

@@ -1,15 +1,59 @@
-"""The multivariate orthonormal basis: products of the polynomials of each input, at given points."""
+"""The multivariate orthonormal basis: its multi-indices, their number, and its values at given points."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from math import comb
+from numbers import Real
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.multi_index import Indices, multi_index_set
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import Recurrence
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import numbers, whole_number
+
+Indices = NDArray[np.int64]
+
+# Terms that are looked at for one more input: with more, neither they nor any matrix of them would fit into memory.
+LOOKED_AT = 20_000_000
+
+
+def multi_index_set(
+    input_count: int, degree: int, *, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None
+) -> Indices:
+    """Multi-indices with `(sum i_r**q)**(1/q) <= degree`, shape [term_count, input_count], ordered by total degree.
+
+    q_norm: 1 is the total degree; smaller drops interactions. max_degrees: highest degree of each input, [input_count].
+    Raises ValueError for a negative degree or q_norm outside (0, 1], and for more terms than a fit could ever have.
+    Source: [Landings-PCE], Eq 13; [Blatman-2011], Eq 22 (hyperbolic sets).
+    """
+    total = whole_number("degree", degree, 0, LOOKED_AT)
+    if not isinstance(q_norm, Real) or not 0.0 < q_norm <= 1.0:
+        raise ValueError(f"q_norm is {q_norm!r}, but must be above 0 and at most 1")
+    highest = [total] * input_count
+    if max_degrees is not None:
+        highest = [min(whole_number("an entry of max_degrees", one, 0), total) for one in max_degrees]
+    if len(highest) != input_count:
+        raise ValueError(f"max_degrees has {len(highest)} entries, but must have one for each of {input_count} inputs")
+    # Terms on the border of the set would otherwise be in or out by the rounding of their powers.
+    budget = float(degree) ** q_norm * (1.0 + 1e-12)
+    rows = np.zeros((1, 0), dtype=np.int64)
+    used = np.zeros(1)
+    # Inputs are added one at a time and hopeless rows dropped at once, so the full tensor is never formed.
+    for limit in highest:
+        if len(rows) * (limit + 1) > LOOKED_AT:
+            raise ValueError(
+                f"degree is {degree}, which for {input_count} inputs gives too many terms to look at: {len(rows)} by "
+                f"{limit + 1} for one input more, of which {LOOKED_AT} fit into memory; lower it or q_norm"
+            )
+        powers = np.arange(limit + 1)
+        spent = used[:, None] + powers[None, :].astype(float) ** q_norm
+        row, power = np.nonzero(spent <= budget)
+        rows = np.column_stack([rows[row], powers[power]])
+        used = spent[row, power]
+    keys = [-rows[:, column] for column in reversed(range(input_count))]
+    return np.ascontiguousarray(rows[np.lexsort([*keys, rows.sum(axis=1)])])
+
 
 # Limits computed by a user in another order of operations may differ from ours in the last digits.
 ROUNDING = 1e-12
@@ -85,6 +129,7 @@ def recurrences_of(inputs: Mapping[str, Distribution], indices: Indices) -> list
 def basis_matrix(inputs: Mapping[str, Distribution], indices: Indices, points: Array) -> Array:
     """All terms at points in physical units; result [count, term_count] (H of [Landings-PCE], Eq 17), column-major."""
     germs = germs_of(inputs, points)
+    # Terms are rows while they are made, so that each product runs along memory; LAPACK takes the transpose.
     matrix = np.ones((len(indices), len(points)))
     for column, (recurrence, germ) in enumerate(zip(recurrences_of(inputs, indices), germs, strict=True)):
         if recurrence.degree == 0:
@@ -109,6 +154,7 @@ def condition_number(
     if matrix.shape[0] < matrix.shape[1]:
         return float("inf")
     values = np.linalg.svd(matrix, compute_uv=False)
+    # The tolerance of numpy.linalg.matrix_rank: singular values below it are rounding.
     limit = values[0] * max(matrix.shape) * np.finfo(float).eps
     return float(values[0] / values[-1]) if values[-1] > limit else float("inf")
 
@@ -139,3 +185,33 @@ def input_tables(inputs: Mapping[str, Distribution], indices: Indices) -> dict[s
     return {
         "is_log": is_log.astype(float), "germ_zero": zero, "germ_slope": slope, "germ_quantiles": quantiles, **tables,
     }  # fmt: skip
+
+
+def term_count(input_count: int, degree: int) -> int:
+    """Number of terms of total degree up to `degree`, C(n + d, d). Source: [Landings-PCE], below Eq 14."""
+    whole_number("degree", degree, 0)
+    return comb(whole_number("input_count", input_count, 1) + int(degree), int(degree))
+
+
+def smolyak_count(input_count: int, level: int) -> int:
+    """Number of distinct nodes of the sparse grid, by the nodes that each level adds. Source: [Smolyak-1963]."""
+    check_level(level)
+    whole_number("input_count", input_count, 1)
+    # The number of nodes with k inputs away from the middle, summed over ways to share the levels among them.
+    total = 0
+    ways = {0: 1}
+    for inputs_moved in range(min(input_count, level) + 1):
+        total += comb(input_count, inputs_moved) * sum(ways.values())
+        following: dict[int, int] = {}
+        for spent, count in ways.items():
+            for extra in range(1, level - spent + 1):
+                # Clenshaw-Curtis nodes that a level adds to the one below: m(0) = 1, m(l) = 2**l + 1.
+                added = 2 if extra == 1 else 2 ** (extra - 1)
+                following[spent + extra] = following.get(spent + extra, 0) + count * added
+        ways = following
+    return total
+
+
+def check_level(level: int) -> None:
+    """Refuse a level of a sparse grid with a ValueError when it is out of range."""
+    whole_number("level", level, 0, 20)

@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos import sensitivity
-from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.degree_selection import best_terms, with_low_degrees
+from lithobrake.chaos import moments
+from lithobrake.chaos.basis import Indices, basis_matrix
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
-from lithobrake.chaos.multi_index import Indices
+from lithobrake.chaos.least_squares import best_terms, with_low_degrees
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.training import Training, checked_training
+from lithobrake.chaos.training import Training, checked_training, one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 
@@ -75,6 +73,7 @@ def sobol_estimates(
         refit = _refit_of(surrogate, training, output)
         coefficients = refit.coefficients(refit.fitted[:, None] + refit.residuals[rows].T)
         estimate, low, high = (_basic if refit.shrinks else _debiased)(refit, coefficients, level)
+        # Distances that are turned round may miss the estimate, and leave the range of a share.
         found.append(np.clip([estimate, np.minimum(low, estimate), np.maximum(high, estimate)], 0.0, 1.0))
     table = np.stack(found, axis=-1)
     return {"first": surrogate.shaped(table[:, 0]), "total": surrogate.shaped(table[:, 1])}
@@ -168,7 +167,7 @@ def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tupl
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
     """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
-    return np.stack([sensitivity.first_order(indices, coefficients), sensitivity.total_order(indices, coefficients)])
+    return np.stack([moments.first_order(indices, coefficients), moments.total_order(indices, coefficients)])
 
 
 def _check_resampling(count: int, level: float) -> None:
@@ -183,6 +182,7 @@ def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
     method = entry.get("method")
     coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[:, output]
+    # The expansion holds the terms of all outputs together; those that this one does not have are 0.
     indices = surrogate.multi_indices[(coefficients != 0.0) | (surrogate.multi_indices.sum(axis=1) == 0)]
     if method in ("lars", "omp") and "candidate_degree" in entry:
         return _sparse_refit(training, output, entry["rmse_estimate"], indices)
@@ -208,6 +208,7 @@ def _least_squares_refit(training: Training, output: int, indices: Indices) -> R
         return np.linalg.solve(triangle, orthogonal.T @ values)
 
     truth = _indices_of(indices, coefficients(y[:, None]))[..., 0]
+    # Divided by their leverage residuals no longer add up to 0, and would shift every draw.
     return Refit(indices, coefficients, y, fitted, truth, residuals - residuals.mean())
 
 

@@ -7,10 +7,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.basis import germs_of, recurrences_of
+from lithobrake.chaos.basis import Indices, germs_of, recurrences_of
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation_loop import Loop, compiled_loop
-from lithobrake.chaos.multi_index import Indices
 from lithobrake.chaos.polynomials import Recurrence
 from lithobrake.vocabulary.arrays import Array
 

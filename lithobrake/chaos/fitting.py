@@ -1,22 +1,128 @@
-"""The one entry: from runs to an expansion."""
+"""The one entry, from runs to an expansion, and the default way of fitting."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.degree_selection import best_terms, solve_ols
-from lithobrake.chaos.model_selection import best_solutions, process_solution
-from lithobrake.chaos.multi_index import multi_index_set
-from lithobrake.chaos.noise import replicates, with_noise
-from lithobrake.chaos.solution import Solution, joined, summary, with_progress
-from lithobrake.chaos.sparse_regression import solve_sparse
+from lithobrake.chaos.basis import multi_index_set
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.gaussian_process import GaussianProcess, expansion_of, families_for, fit_process, fresh_germs
+from lithobrake.chaos.least_squares import (
+    Solution,
+    best_terms,
+    joined,
+    ols_by_degree,
+    solve_ols,
+    summary,
+    with_progress,
+)
+from lithobrake.chaos.scores import replicates, with_noise
+from lithobrake.chaos.sparse_regression import is_structured, solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.threads import one_thread
-from lithobrake.chaos.training import Training, checked_training
+from lithobrake.chaos.training import Training, checked_training, one_thread
+
+# A process costs the cube of the number of points; with more of them least squares is accurate enough.
+PROCESS_LIMIT = 2000
+PROCESS_FROM = 5
+MARGIN, MARGIN_IN_TAILS = 0.95, 0.3
+# The sum of squared polynomials up to this degree is 121 at the ends of a uniform input, 2900 for a normal one cut
+# at three standard deviations.
+TAIL_DEGREE, TAIL_GROWTH, TAIL_DISTANCE = 10, 2000.0, 3.0
+CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
+
+
+def _as_solution(process: GaussianProcess, training: Training) -> Solution:
+    indices, coefficients, cut = expansion_of(process, training.inputs)
+    # The error of cutting the projection adds to that of the process.
+    expected = float(np.hypot(process.expected_error(fresh_germs(training.inputs)[1]), cut))
+    facts = {"noise_std": process.scale * float(np.sqrt(process.noise)), "covariance": process.covariance.name}
+    return Solution("gaussian_process", indices, coefficients, expected, "leave-one-out and predicted variance", facts)
+
+
+def _constant(training: Training, output: int) -> bool:
+    return bool(np.ptp(training.y[:, output]) == 0.0)
+
+
+def process_solution(training: Training, output: int) -> Solution:
+    if training.count < PROCESS_FROM or training.count > PROCESS_LIMIT:
+        raise ValueError(
+            f"{training.count} points are given, but gaussian_process takes {PROCESS_FROM} to {PROCESS_LIMIT}: use ols"
+        )
+    if _constant(training, output):
+        return ols_by_degree(training)[0][output]
+    candidates = [
+        _as_solution(fit_process(training, output, family), training)
+        for family in families_for(list(training.inputs.values()))
+    ]
+    return min(candidates, key=lambda one: one.expected_error)
+
+
+def has_long_tails(entry: Distribution) -> bool:
+    """Whether the ends of an input are so rare that polynomials fitted to few runs are free to grow there."""
+    if not entry.bounded:
+        return True
+    table = entry.recurrence(int(min(TAIL_DEGREE, entry.highest_degree))).values(entry.germ(np.array(entry.support)))
+    # Of samples that sum is at most their number, so for them the distance from the mean in standard deviations tells.
+    far = np.isfinite(entry.highest_degree) and float(np.abs(table[1]).max()) > TAIL_DISTANCE
+    return bool(far) or float((table**2).sum(axis=0).max()) > TAIL_GROWTH
+
+
+def _preferred(candidates: list[Solution], margin: float) -> Solution:
+    """The smallest expected error; but least squares and the pursuit must beat a process by a margin.
+
+    Where scatter makes many candidates nearly equal the smallest estimate is partly luck, and the processes, which
+    shrink what the data do not support, lose least by it; the more so in long tails, of which no estimate knows much.
+    """
+    processes = [one for one in candidates if one.method == "gaussian_process"]
+    best = min(candidates, key=lambda one: one.expected_error)
+    if not processes:
+        return best
+    process = min(processes, key=lambda one: one.expected_error)
+    return best if best.expected_error < margin * process.expected_error else process
+
+
+def best_solutions(training: Training, progress: Callable[[int, int], None]) -> tuple[list[Solution], dict[str, Any]]:
+    """The best solution of each output, and for the report all candidates and the challenger, scored alike.
+
+    Candidates are least squares of every degree that the points determine and the projections of the processes, scored
+    by leave-one-out, which is honest for both (few parameters are learnt from many points), and by what they predict
+    where no run stands; and orthogonal matching pursuit, scored by folds over its whole path. On a grid, where folds
+    extrapolate, the pursuit does not take part.
+    """
+    ladder = ols_by_degree(training)
+    grid = is_structured(training.x)
+    # The likelihood of a process has no place for weights.
+    use_processes = PROCESS_FROM <= training.count <= PROCESS_LIMIT and training.weights is None
+    margin = MARGIN_IN_TAILS if any(has_long_tails(entry) for entry in training.inputs.values()) else MARGIN
+    chosen: list[Solution] = []
+    table: dict[str, dict[str, float]] = {}
+    challenger: dict[str, float | None] = {}
+    for output in with_progress(range(len(training.output_names)), progress):
+        name = training.output_names[output]
+        scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
+        challenger[name] = None
+        if use_processes and not _constant(training, output):
+            for family in families_for(list(training.inputs.values())):
+                process = fit_process(training, output, family)
+                scores[f"gaussian_process {family.name}"] = _as_solution(process, training)
+                if family.name == "matern":
+                    challenger[name] = process.expected_error(fresh_germs(training.inputs)[1])
+            if not grid:
+                scores["omp"] = solve_sparse(training, output, "omp", degree=None, q_norm=None)
+        best = _preferred(list(scores.values()), margin)
+        scatter = [one for one in scores.values() if "noise_std" in one.facts]
+        if scatter and "noise_std" not in best.facts:
+            # The nugget of the best process tells the scatter whichever expansion is taken.
+            likeliest = min(scatter, key=lambda one: one.expected_error)
+            best = replace(best, facts={**best.facts, "noise_std": likeliest.facts["noise_std"]})
+        chosen.append(best)
+        table[name] = {label: one.expected_error for label, one in scores.items()}
+    return chosen, {"candidates": table, "challenger": {"model": CHALLENGER, "rmse_estimate": challenger}}
+
 
 METHODS = ("ols", "lars", "omp", "gaussian_process")
 
@@ -78,7 +184,6 @@ def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: A
 
 
 def _assembled(training: Training, solutions: list[Solution], extra: dict[str, Any]) -> Surrogate:
-    """Join the solutions of all outputs and the facts about the data into the result."""
     indices, coefficients = joined(solutions)
     report = {**summary(solutions, training.output_names, training.y), **extra}
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.

@@ -5,11 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.basis import germs_of
-from lithobrake.chaos.counts import term_count
+from lithobrake.chaos.basis import Indices, germs_of, multi_index_set, term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
-from lithobrake.chaos.multi_index import Indices, multi_index_set
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training import Training
 from lithobrake.vocabulary.arrays import Array
 
@@ -110,6 +108,7 @@ def fit_process(training: Training, output: int, family: type[Covariance]) -> Ga
     inverse = cho_solve((lower, True), np.eye(len(z)))
     errors = weights / np.diag(inverse)
     for rows in training.groups:
+        # Equal runs are left out together, or each would be predicted by its twins.
         errors[rows] = np.linalg.solve(inverse[np.ix_(rows, rows)], weights[rows])
     return GaussianProcess(covariance, theta, noise, weights, lower, germs, scale * errors, shift, scale)
 
@@ -131,6 +130,7 @@ def _factor(matrix: Array, noise: float) -> tuple[Array, float]:
 def _learning_set(germs: Array, z: Array) -> tuple[Array, Array]:
     if len(z) <= LEARN_FROM:
         return germs, z
+    # A seed of its own, so that the same runs give the same parameters.
     chosen = np.sort(np.random.default_rng(0).permutation(len(z))[:LEARN_FROM])
     return germs[:, chosen], z[chosen]
 
@@ -193,6 +193,8 @@ def expansion_of(process: GaussianProcess, inputs: dict[str, Distribution]) -> t
     indices = multi_index_set(len(degrees), max(degrees), max_degrees=degrees)
     coefficients = process.coefficients(indices)
     order = np.argsort(-np.where(indices.sum(axis=1) == 0, np.inf, coefficients**2), kind="stable")
+    # Summed up from the smallest term, as beside the largest ones the small ones would be lost; the constant stays
+    # whatever its size.
     tail = np.cumsum(coefficients[order][::-1] ** 2)[::-1]
     allowed = DROPPED_FRACTION * float(np.mean(process.leave_one_out**2))
     kept = np.sort(order[: max(1, min(KEPT_LIMIT, int(np.sum(tail > allowed))))])

@@ -1,14 +1,27 @@
-"""Inputs whose orthonormal polynomials have no name and are computed: truncated normal, and samples as they are."""
+"""Inputs whose orthonormal polynomials are computed, and the list of all distributions."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import NO_CHOICES, Distribution, Limited, Support
+from lithobrake.chaos.distributions import (
+    NO_CHOICES,
+    Beta,
+    Distribution,
+    Exponential,
+    Gamma,
+    Limited,
+    LogNormal,
+    LogUniform,
+    Normal,
+    Support,
+    Uniform,
+)
 from lithobrake.chaos.polynomials import Recurrence, discretised
 from lithobrake.vocabulary.arrays import Array
 
@@ -129,6 +142,8 @@ class TruncatedNormal(Distribution):
         edges = np.linspace(low, high, PANELS + 1)[:, None]
         z = (0.5 * (edges[:-1] + edges[1:]) + 0.5 * (edges[1:] - edges[:-1]) * nodes).ravel()
         mode = min(max(0.0, low), high)
+        # Over its largest value: (z - m)(z + m) does not underflow where the limits lie far out in a tail, as exp(-z^2
+        # / 2) would.
         density = np.tile(weights, PANELS) * np.exp(-0.5 * (z - mode) * (z + mode))
         return discretised(degree, self.germ(self.mean + self.std * z), density / density.sum())
 
@@ -194,7 +209,6 @@ class Empirical(Limited):
 
     @cached_property
     def _polynomials(self) -> Recurrence:
-        """Polynomials of all degrees that the samples determine."""
         nodes, weights = self._measure()
         made = discretised(min(len(nodes) - 1, SAMPLE_DEGREE), nodes, weights)
         # Degrees beyond the usable ones may overflow; they are left out just below.
@@ -217,3 +231,41 @@ class Empirical(Limited):
                 f"values, which determine polynomials up to degree {made.degree}: lower the degree or give more samples"
             )
         return Recurrence(made.center[:degree], made.spread[:degree])
+
+
+KINDS: dict[str, type[Distribution]] = {
+    entry.kind: entry
+    for entry in (Uniform, LogUniform, Normal, LogNormal, TruncatedNormal, Beta, Gamma, Exponential, Empirical)
+}
+
+
+def distribution(kind: str, **parameters: Any) -> Distribution:
+    """Build a distribution from its name, for instance distribution("uniform", lower=0, upper=1).
+
+    Raises ValueError for an unknown name, a missing, a surplus or a wrong parameter.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"distribution is {kind!r}, but must be one of {', '.join(KINDS)}; {NO_CHOICES}")
+    maker = KINDS[kind]
+    allowed = [field.name for field in fields(maker)]  # type: ignore[arg-type]
+    surplus = sorted(set(parameters) - set(allowed))
+    if surplus:
+        raise ValueError(f"distribution {kind!r} has no parameter {', '.join(surplus)}: it takes {', '.join(allowed)}")
+    try:
+        return maker(**parameters)
+    except TypeError:
+        missing = [name for name in allowed if name not in parameters]
+        raise ValueError(f"distribution {kind!r} lacks {', '.join(missing)}: it takes {', '.join(allowed)}") from None
+
+
+def checked_inputs(inputs: Any) -> dict[str, Distribution]:
+    """Check a mapping of input names to distributions and give it back as an ordered dict."""
+    if not hasattr(inputs, "items") or not inputs:
+        raise ValueError("inputs must be a dict of at least one name with its distribution, for instance Uniform(0, 1)")
+    for name, entry in inputs.items():
+        if not isinstance(entry, Distribution):
+            raise ValueError(
+                f"input {name!r} is {entry!r}, but must be a distribution "
+                f"({', '.join(known.__name__ for known in KINDS.values())}); {NO_CHOICES}"
+            )
+    return dict(inputs)

@@ -23,7 +23,6 @@ class Recurrence:
 
     @property
     def degree(self) -> int:
-        """Highest degree that can be evaluated."""
         return len(self.center)
 
     def values(self, germ: Array) -> Array:

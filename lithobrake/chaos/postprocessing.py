@@ -10,7 +10,7 @@ from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.threads import one_thread
+from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, whole_number
 
@@ -82,6 +82,7 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
     values = [one.values(germ)[indices[:, k]] for k, (one, germ) in enumerate(zip(recurrences, germs, strict=True))]
     result = np.empty((len(points), coefficients.shape[1], len(values)))
     for k, entry in enumerate(surrogate.inputs.values()):
+        # The other factors are multiplied again, since a term cannot be divided by a factor that is 0 at a point.
         product = recurrences[k].derivatives(germs[k])[indices[:, k]] * entry.germ_derivative(points[:, k])
         for other in range(len(values)):
             if other != k:
@@ -118,6 +119,7 @@ def density(
     if output is not None and output not in names:
         raise ValueError(f"output is {output!r}, but must be one of {', '.join(names)}")
     samples = sampled_outputs(surrogate, count, seed=seed).reshape(count, -1)[:, names.index(output) if output else 0]
+    # 1.34 is the interquartile range of a normal over its standard deviation; the smaller of both resists long tails.
     spread = min(np.std(samples), np.subtract(*np.quantile(samples, [0.75, 0.25])) / 1.34)
     if spread <= 0.0:
         raise ValueError(f"output {output or names[0]!r} does not vary, so it has no density")

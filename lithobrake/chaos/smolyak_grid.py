@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.counts import check_level, smolyak_count
-from lithobrake.chaos.distribution_registry import checked_inputs
+from lithobrake.chaos.basis import check_level, smolyak_count
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.vocabulary.arrays import Array
 
 MOST_NODES = 10_000_000
@@ -25,6 +25,7 @@ def new_nodes(level: int) -> Array:
         return np.array([-1.0, 1.0])
     half = 2 ** (level - 1)
     steps = np.arange(1 - half, half, 2)
+    # The sine of an angle counted from the middle is odd to the last bit, so the nodes are symmetric; a cosine is not.
     return np.sin(np.pi * steps / (2.0 * half))
 
 

@@ -10,10 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.basis import basis_matrix
-from lithobrake.chaos.degree_selection import solve_ols, terms_to_try
-from lithobrake.chaos.multi_index import Indices, multi_index_set
-from lithobrake.chaos.solution import Solution
+from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
+from lithobrake.chaos.least_squares import Solution, solve_ols, terms_to_try
 from lithobrake.chaos.training import Training
 from lithobrake.vocabulary.arrays import Array
 
@@ -39,8 +37,6 @@ def is_structured(x: Array) -> bool:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The terms that a sparse method may choose from: those of a total degree and a norm."""
-
     degree: int
     q_norm: float
     indices: Indices

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.fitting import fit
-from lithobrake.chaos.model_selection import PROCESS_FROM, PROCESS_LIMIT
-from lithobrake.chaos.noise import equal_rows, replicates
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.fitting import PROCESS_FROM, PROCESS_LIMIT, fit
+from lithobrake.chaos.scores import equal_rows, replicates
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
@@ -45,6 +44,7 @@ class StochasticSurrogate:
         The scatter is taken as normal around the mean.
         """
         mean, std = np.asarray(self.mean(x)), self.scatter_std(x)
+        # No Cholesky factor: with fewer degrees of freedom than outputs the matrix is singular.
         values, vectors = np.linalg.eigh(self.correlation)
         root = vectors * np.sqrt(np.maximum(values, 0.0))
         draws = random_numbers(seed).normal(size=(len(mean), len(root))) @ root.T

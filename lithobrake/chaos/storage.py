@@ -9,10 +9,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.distribution_registry import distribution
-from lithobrake.chaos.multi_index import LOOKED_AT, Indices
-from lithobrake.files.atomic import atomic_path
+from lithobrake.chaos.basis import LOOKED_AT, Indices
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import distribution
+from lithobrake.files.atomic import write_whole
 from lithobrake.files.reading import UNREADABLE
 from lithobrake.vocabulary.arrays import Array
 
@@ -25,6 +25,7 @@ def data_hash(x: Array, y: Array) -> str:
     """Hash of training data x [count, input_count] and y [count, output_count], the same on every machine."""
     digest = hashlib.sha256()
     for array in (x, y):
+        # The shape counts, or arrays of the same numbers in other rows would have one hash; the byte order is fixed.
         digest.update(str(array.shape).encode() + np.ascontiguousarray(array, dtype="<f8").tobytes())
     return digest.hexdigest()
 
@@ -37,8 +38,7 @@ def write(kind: str, content: dict[str, Any], path: str | os.PathLike[str]) -> N
     from lithobrake import __version__
 
     heading = {"format": kind, "format_version": FORMAT_VERSION, "written_by": f"lithobrake {__version__}"}
-    with atomic_path(path) as draft:
-        draft.write_text(_readable({**heading, **content}) + "\n", encoding="utf-8")
+    write_whole(path, _readable({**heading, **content}) + "\n")
 
 
 def inputs_to_json(inputs: Mapping[str, Distribution]) -> list[dict[str, Any]]:

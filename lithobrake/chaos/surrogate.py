@@ -9,13 +9,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos import noise, scores, sensitivity
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.basis import outside_count, points_of
-from lithobrake.chaos.distribution_registry import checked_inputs
+from lithobrake.chaos import moments, scores
+from lithobrake.chaos.basis import Indices, outside_count, points_of
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
-from lithobrake.chaos.multi_index import Indices
+from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.storage import (
     indices_from_json,
     inputs_from_json,
@@ -25,7 +24,7 @@ from lithobrake.chaos.storage import (
     read,
     write,
 )
-from lithobrake.chaos.threads import one_thread
+from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
@@ -113,6 +112,7 @@ class Surrogate:
         count, sentence = outside_count(self.inputs, points)
         if count:
             text = f"{count} of {len(points)} points are outside the support of the inputs (first: {sentence})"
+            # Where an input enters by its logarithm there is nothing to extrapolate to at or below 0.
             undefined = any(
                 entry.logarithmic and bool((points[:, k] <= 0.0).any()) for k, entry in enumerate(self.inputs.values())
             )
@@ -130,12 +130,12 @@ class Surrogate:
     @property
     def mean(self) -> Any:
         """Mean of each output [output_count], or a number. Source: [Landings-PCE], Eq 18."""
-        return self.shaped(sensitivity.mean_of(self.multi_indices, self._coefficients))
+        return self.shaped(moments.mean_of(self.multi_indices, self._coefficients))
 
     @property
     def variance(self) -> Any:
         """Variance of each output [output_count], or a number. Source: [Landings-PCE], Eq 21."""
-        return self.shaped(sensitivity.variance_of(self.multi_indices, self._coefficients))
+        return self.shaped(moments.variance_of(self.multi_indices, self._coefficients))
 
     @cached_property
     def _shape_moments(self) -> ShapeMoments:
@@ -154,20 +154,20 @@ class Surrogate:
     @property
     def sobol_first(self) -> Array:
         """First-order Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(sensitivity.first_order(self.multi_indices, self._coefficients))
+        return self.shaped(moments.first_order(self.multi_indices, self._coefficients))
 
     @property
     def sobol_total(self) -> Array:
         """Total Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(sensitivity.total_order(self.multi_indices, self._coefficients))
+        return self.shaped(moments.total_order(self.multi_indices, self._coefficients))
 
     def sobol_group(self, names: Sequence[str]) -> Array:
         """Share of the variance in all terms of these inputs only, [output_count] or a number."""
-        return self.shaped(sensitivity.group_share(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(moments.group_share(self.multi_indices, self._coefficients, self.columns(names)))
 
     def sobol_interaction(self, names: Sequence[str]) -> Array:
         """Sobol index of exactly this set of inputs (any order), [output_count] or a number."""
-        return self.shaped(sensitivity.interaction(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(moments.interaction(self.multi_indices, self._coefficients, self.columns(names)))
 
     def columns(self, names: Sequence[str]) -> list[int]:
         """Column of each named input. Raises ValueError for an unknown name."""
@@ -198,7 +198,7 @@ class Surrogate:
 
     def runs_needed(self, target: float) -> dict[str, dict[str, Any]]:
         """How many more runs would bring the expected error to `target` (in units of the spread), by output name."""
-        return noise.runs_needed(self.report, target)
+        return scores.runs_needed(self.report, target)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""

@@ -1,16 +1,18 @@
-"""The data of a fit, checked once: points inside the support, outputs finite, missing runs dropped and counted."""
+"""The data of a fit, checked once, and linear algebra on one thread."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_weights, outside_count, points_of
-from lithobrake.chaos.distribution_registry import checked_inputs
-from lithobrake.chaos.noise import equal_rows
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import checked_inputs
+from lithobrake.chaos.scores import equal_rows
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
 
@@ -43,7 +45,6 @@ class Training:
 
     @property
     def count(self) -> int:
-        """Number of points in use."""
         return len(self.x)
 
 
@@ -65,6 +66,7 @@ def checked_training(
     table = outputs[:, None] if one_dimensional else outputs
     if table.ndim != 2 or len(table) != len(points) or table.shape[1] == 0:
         raise ValueError(f"y has shape {outputs.shape}, but must be [{len(points)}] or [{len(points)}, output_count]")
+    # A run that failed has no output at all; a row with some of them is more likely an error in the data.
     missing: NDArray[np.bool_] = np.all(np.isnan(table), axis=1)
     kept, rows = table[~missing], points[~missing]
     if not np.all(np.isfinite(kept)):
@@ -73,6 +75,7 @@ def checked_training(
             f"{wrong} rows of y hold NaN or infinity in some outputs: a missing run must be NaN in all outputs, "
             "so set the whole row to NaN or leave it out"
         )
+    # Before anything is squared: variances of larger numbers would overflow silently.
     check_magnitude("y", kept)
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
@@ -123,3 +126,23 @@ def _names(output_names: Sequence[str] | None, count: int, one_dimensional: bool
     if len(names) != count or len(set(names)) != count:
         raise ValueError(f"output_names is {names}, but must be {count} different names")
     return names
+
+
+@cache
+def _libraries() -> Any:
+    """The linear algebra libraries of this process; to find them takes milliseconds, so they are found once."""
+    # SciPy brings a library of its own, which must be loaded to be found.
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]
+
+    return ThreadpoolController()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Hold the linear algebra libraries to one thread; what was set before comes back at the end.
+
+    Several threads split a matrix product by their number, and so add its terms in another order.
+    """
+    with _libraries().limit(limits=1):
+        yield

@@ -1,12 +1,133 @@
-"""Arguments and options that several commands take, and the application that the commands add themselves to."""
+"""Arguments that several commands take, and what a command writes to the terminal."""
 
+import errno
+import os
+import shlex
+import shutil
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 
 from lithobrake import __version__
-from lithobrake.cli.terminal import BAD_INPUT, leave
+from lithobrake.vocabulary.plain_text import plain, wrapped
+from lithobrake.vocabulary.progress import Progress
+
+# 2 is the exit code of Click for wrong arguments, and 130 that of shells for a command ended by SIGINT (128 + 2).
+BAD_INPUT, INTERRUPTED = 2, 130
+
+
+@contextmanager
+def one_sentence() -> Iterator[None]:
+    """Turn an error that a user can fix into its sentence and exit code 2, and Ctrl-C into exit code 130."""
+    try:
+        yield
+    # Any other exception is a fault of this program, and keeps its traceback.
+    except (ValueError, FloatingPointError, ImportError, OSError) as error:
+        full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
+        remedy = "; all finished work is kept: make room on the disk and run the same command again"
+        # Every relative path fails in a folder that is gone, and the error names the path alone.
+        if isinstance(error, FileNotFoundError) and not _has_current_folder():
+            leave("the current folder was removed; change to one that exists", BAD_INPUT)
+        leave(f"{error}{remedy if full else ''}", BAD_INPUT)
+    except KeyboardInterrupt:
+        command = command_line(*sys.argv[1:])
+        leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
+
+
+def _has_current_folder() -> bool:
+    try:
+        return bool(os.getcwd())
+    except FileNotFoundError:
+        return False
+
+
+def command_line(*words: str | Path) -> str:
+    """A command line that a shell takes as it stands, blanks in paths included."""
+    return shlex.join(["lithobrake", *map(str, words)])
+
+
+def leave(sentence: str, code: int) -> NoReturn:
+    print(fitted(plain(sentence), sys.stderr), file=sys.stderr)
+    raise typer.Exit(code)
+
+
+def fitted(text: str, stream: TextIO) -> str:
+    """A text as wide as the terminal that a stream writes to; as it is for any other stream."""
+    return wrapped(text, shutil.get_terminal_size().columns) if stream.isatty() else text
+
+
+def tell(lines: Iterable[str]) -> None:
+    """Print lines without escape sequences; those that a terminal would break within a word are broken at blanks."""
+    with reader_may_leave():
+        for line in lines:
+            print(fitted(plain(line), sys.stdout))
+
+
+def tell_json(content: Any) -> None:
+    """Print JSON; it has no word for what is not a number, and neither has the content."""
+    from json import dumps
+
+    with reader_may_leave():
+        print(plain(dumps(content, indent=2, allow_nan=False)))
+
+
+def tell_result(is_json: bool, content: Any, lines: Iterable[str]) -> None:
+    """Print a result as JSON or in lines, as the user chose."""
+    if is_json:
+        tell_json(content)
+    else:
+        tell(lines)
+
+
+@contextmanager
+def reader_may_leave() -> Iterator[None]:
+    """Write to standard output for as long as it is read; a reader that stops early (`| head`) is no error.
+
+    Ends the command with a sentence where standard output takes nothing, as a file on a full disk.
+    """
+    try:
+        yield
+        # A closed pipe or a full disk shows when the buffer is written, which would otherwise be after the command has
+        # ended.
+        print(end="", flush=True)
+    except OSError as error:
+        # What is still buffered would be tried again at the end, and fail again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            leave(f"standard output cannot be written ({error.strerror}); make room, or write elsewhere", BAD_INPUT)
+
+
+@contextmanager
+def shown_progress(title: str) -> Iterator[Progress]:
+    """How far something is that takes its time, as a landing made again; nothing is shown before it begins."""
+    from lithobrake.progress import study_progress
+
+    with study_progress() as shown:
+        # Without a bar for what ends at once or is refused.
+        begun = False
+
+        def tell_progress(done: float, what: str) -> None:
+            nonlocal begun
+            if not begun:
+                shown.begin(title, 1, 1)
+            begun = True
+            shown.progress(done, 1.0, what)
+
+        yield tell_progress
+
+
+def study_headline(folder: Path) -> list[str]:
+    with one_sentence():
+        from lithobrake.results import open_study
+
+        headline = open_study(folder).headline
+    page = (folder / "report" / "index.html").resolve()
+    return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
+
 
 # Groups of commands in the help, in this order.
 START, RUN, LOOK = "Start", "Run a study", "Look at results"
@@ -28,6 +149,7 @@ def _show_version(asked: bool) -> None:
 @app.callback()
 def main(
     version: Annotated[
+        # Eager, so that it is answered before a missing command is complained of.
         bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
@@ -68,6 +190,7 @@ StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder 
 def study_folder(study: Path, out: str | None) -> Path:
     """The folder of a study: the one that is given, or runs/<study name>; a file in its place is refused."""
     folder = Path("runs") / study.stem if out is None else given_folder(out)
+    # The nearest path that exists decides: below a file no folder can be made.
     there = next((path for path in (folder, *folder.parents) if path.exists()), None)
     if there is not None and not there.is_dir():
         leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
@@ -86,7 +209,6 @@ def given_folder(out: str) -> Path:
 
 
 def refuse_written(path: Path, force: bool) -> None:
-    """Raise ValueError for a file that exists, unless it may be replaced."""
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
@@ -103,4 +225,5 @@ def scheduler_of(executor: str, scheduler: str | None) -> str | None:
 
 def run_of(text: str) -> str | int:
     """A row among the runs, or the key of one or how that begins, from what was written for either."""
+    # A key may begin with digits alone; the keys that are listed have twelve characters, so a short number is a row.
     return int(text) if text.isascii() and text.isdigit() and len(text) < 6 else text

@@ -1,12 +1,32 @@
-"""Commands that write results of a study as files of other programs, and as the beginning of another study."""
+"""Commands that write results as files of other programs, as the next study, or as a map of sites."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from lithobrake.cli.arguments import EXPORT, Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
-from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
+from lithobrake.cli.arguments import (
+    EXPORT,
+    LOOK,
+    ExecutorName,
+    Force,
+    Json,
+    OutPath,
+    Scheduler,
+    StudyDirectory,
+    StudyPath,
+    Workers,
+    app,
+    given_folder,
+    one_sentence,
+    refuse_written,
+    run_of,
+    scheduler_of,
+    shown_progress,
+    study_folder,
+    tell,
+    tell_result,
+)
 
 Kinds = Annotated[
     list[str],
@@ -77,10 +97,7 @@ def export(
             again = None if run is None else run_of(run)
             choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
             written = export_study(results, place, to, choices)
-    if json:
-        tell_json({"files": [str(path.resolve()) for path in written]})
-    else:
-        tell(f"Wrote {path}" for path in written)
+    tell_result(json, {"files": [str(path.resolve()) for path in written]}, (f"Wrote {path}" for path in written))
 
 
 @app.command(
@@ -111,3 +128,41 @@ def push(
 
         count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
     tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
+
+
+@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
+def sites(
+    study: StudyPath,
+    cells: Annotated[int, typer.Option("--cells", metavar="N", help="Number of sites (cells of equal area).")] = 120,
+    landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per site.")] = 200,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """Map one delivery over a body: fraction at rest, time, distance, slope and light by site. Writes DIR/sites."""
+    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        source = StudySource.read(study)
+        from lithobrake.export.maps import site_cells_file, write_site_cells
+        from lithobrake.files.atomic import refuse_existing
+        from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
+        from lithobrake.progress import study_progress
+        from lithobrake.results.json_values import to_json
+
+        place = folder / "sites"
+        written = () if force else (*site_map_files(place), site_cells_file(place))
+        # Before the landers are followed, which takes minutes.
+        refuse_existing(written, "move it away, or replace it with --force")
+        with study_progress() as shown:
+            found = map_sites(
+                source, folder, cell_count=cells, lander_count=landers, worker_count=workers, scheduler=address,
+                shown=shown,
+            )  # fmt: skip
+        paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
+    beside = ", ".join(one.name for one in paths[1:])
+    tell_result(json, to_json(found), [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"])

@@ -16,10 +16,13 @@ from lithobrake.cli.arguments import (
     OutPath,
     StudyPath,
     app,
+    one_sentence,
     refuse_written,
+    shown_progress,
     study_folder,
+    tell,
+    tell_result,
 )
-from lithobrake.cli.terminal import one_sentence, shown_progress, tell, tell_json
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
@@ -64,10 +67,7 @@ def land(
         values = landing_inputs(checked, change or (), number)
         found = _landed if checked.journey is None else _followed
         told, lines = found(checked, values, out, show, force, json)
-    if json:
-        tell_json(told)
-    else:
-        tell(lines)
+    tell_result(json, told, lines)
 
 
 @app.command(rich_help_panel=EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242")
@@ -91,6 +91,7 @@ def serve(
     """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
     folder = study_folder(study, out)
     with one_sentence():
+        # Refused before the imports below, which take seconds.
         from lithobrake.serve.clients import refuse_empty_host
 
         refuse_empty_host(host)
@@ -121,10 +122,7 @@ def doctor(
         from lithobrake.doctor import examine
 
         found = examine(quick)
-    if json:
-        tell_json(found.to_json())
-    else:
-        tell(found.lines())
+    tell_result(json, found.to_json(), found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
 
@@ -132,11 +130,11 @@ def doctor(
 def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
-    """Land once; give what came out as JSON values and in lines."""
     from lithobrake.pipeline import land_one
     from lithobrake.view import refuse_other_kinds
 
     if out is not None:
+        # Refused before the landing, which may need a bed to be poured first.
         if out.suffix != ".h5":
             refuse_other_kinds(out)
         refuse_written(out, force)
@@ -150,7 +148,7 @@ def _followed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
-    from lithobrake.cli.one_journey import follow, refuse_journey_file, show_touchdowns
+    from lithobrake.cli.results import follow, refuse_journey_file, show_touchdowns
 
     if out is not None:
         refuse_journey_file(out, force, (".h5",))
@@ -165,7 +163,7 @@ def _motion_lines(paths: list[Path]) -> list[str]:
 
 
 def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
-    """Write a motion to a file of the kind that its name says, and open a window on it."""
+    # The file of a landing needs no library of the extra [view].
     if out is not None and out.suffix == ".h5":
         landed.save(out)
         out = None

@@ -1,4 +1,4 @@
-"""Commands that show the results of a study."""
+"""Commands that show the results of a study, and one journey of it."""
 
 import shutil
 import sys
@@ -8,23 +8,71 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import LOOK, Force, Json, StudyDirectory, app, given_folder, refuse_written, run_of
-from lithobrake.cli.one_journey import refuse_journey_file, show_touchdowns
-from lithobrake.cli.terminal import (
+from lithobrake.cli.arguments import (
     BAD_INPUT,
+    LOOK,
+    Force,
+    Json,
+    StudyDirectory,
+    app,
+    given_folder,
     leave,
     one_sentence,
     reader_may_leave,
+    refuse_written,
+    run_of,
     shown_progress,
     study_headline,
     tell,
     tell_json,
-)  # fmt: skip
+    tell_result,
+)
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.pipeline import OneJourney
+    from lithobrake.results import JourneyMotion
+    from lithobrake.results.motions import MovingBodies
     from lithobrake.results.study_results import StudyResults
+    from lithobrake.study import Study
+
+
+def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> None:
+    """Raise ValueError for a file of another kind, but for these, and for one that exists unless it may be replaced."""
+    from lithobrake.view import refuse_other_kinds
+    from lithobrake.view.motion_files import JOURNEY_KINDS, written_over
+
+    refuse_other_kinds(out, (*JOURNEY_KINDS, *also))
+    for path in written_over(out):
+        refuse_written(path, force)
+
+
+def follow(
+    study: "Study", values: dict[str, float], out: Path | None, is_told: bool
+) -> "tuple[OneJourney, list[Path]]":
+    """Follow a lander to its end and keep its motion; is_told: whether lines are printed as it goes."""
+    from lithobrake.pipeline import follow_one
+    from lithobrake.view.motion_files import touchdown_paths, write_journey
+
+    with shown_progress("journey") as progress:
+        found = follow_one(study, values, (lambda line: tell([line])) if is_told else (lambda line: None), progress)
+        if is_told:
+            tell([found.track.end_words])
+        if out is None:
+            return found, []
+        if out.suffix == ".h5":
+            paths = touchdown_paths(out, len(found.landings))
+            found.save(paths)
+            return found, paths
+        return found, write_journey(found.motion(), out, progress=progress)
+
+
+def show_touchdowns(motion: "JourneyMotion") -> None:
+    from lithobrake.view import show
+
+    for bodies in motion.bodies:
+        show(bodies)
+
 
 JourneyNumber = Annotated[
     int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
@@ -78,6 +126,7 @@ def runs(
         with reader_may_leave():
             write_csv(records, sys.stdout, units)
         return
+    # Of one width where there is no terminal, so that a list in a file is the same wherever it was made.
     width = min(shutil.get_terminal_size().columns, LISTED) if sys.stdout.isatty() else LISTED
     tell(run_lines(records, units, width, TOLD))
 
@@ -133,20 +182,26 @@ def film(
     force: Force = False,
 ) -> None:
     """Simulate a landing or a journey of a study again, and write it as a film."""
-    if journey is not None:
-        _film_journey(folder, journey, run, out or folder / f"journey_{journey}.mp4", seconds, force)
-        return
-    path = out or folder / "landing.mp4"
+    what = "landing" if journey is None else "journey"
+    path = out or folder / ("landing.mp4" if journey is None else f"journey_{journey}.mp4")
     with one_sentence():
+        _refuse_both(journey, run)
         from lithobrake.results import open_study
-        from lithobrake.view import refuse_other_kinds, write_motion
+        from lithobrake.view import refuse_other_kinds, write_journey, write_motion
 
-        refuse_other_kinds(path)
-        refuse_written(path, force)
-        with shown_progress("landing") as progress:
-            bodies = _landing(open_study(folder), run, progress)
-            write_motion(bodies, path, seconds, progress)
-    tell([f"Film: {path.resolve()}"])
+        if journey is None:
+            refuse_other_kinds(path)
+            refuse_written(path, force)
+        else:
+            refuse_journey_file(path, force)
+        paths = [path]
+        with shown_progress(what) as progress:
+            results = open_study(folder)
+            if journey is None:
+                write_motion(_landing(results, run, progress), path, seconds, progress)
+            else:
+                paths = write_journey(results.journey(journey).motion(progress=progress), path, seconds, progress)
+    tell(f"Film: {one.resolve()}" for one in paths)
 
 
 @app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
@@ -167,28 +222,11 @@ def compare(
             refuse_written(path, force)
         comparison = compare_studies(first, second)
         page, numbers = write_compared(comparison, place)
-    if json:
-        tell_json(to_json(comparison))
-    else:
-        tell([*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"])
-
-
-def _film_journey(folder: Path, number: int, run: str | None, path: Path, seconds: float, force: bool) -> None:
-    """Make all touchdowns of a journey again, and write them as the name of the file says."""
-    with one_sentence():
-        _refuse_both(number, run)
-        from lithobrake.results import open_study
-        from lithobrake.view import write_journey
-
-        refuse_journey_file(path, force)
-        with shown_progress("journey") as progress:
-            motion = open_study(folder).journey(number).motion(progress=progress)
-            paths = write_journey(motion, path, seconds, progress)
-    tell(f"Film: {path.resolve()}" for path in paths)
+    lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]
+    tell_result(json, to_json(comparison), lines)
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
-    """Open a page about a journey in the browser, or windows on its touchdowns."""
     page = folder / "report" / f"journey_{number}.html"
     with one_sentence():
         _refuse_both(number, run)
@@ -200,18 +238,18 @@ def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> No
         if solid:
             show_touchdowns(motion)
             return
+        # A study that has not come to its report has no such folder yet.
         page.parent.mkdir(exist_ok=True)
         write_journey(motion, page)
     _open(page.resolve())
 
 
-def _refuse_both(number: int, run: str | None) -> None:
-    if run is not None:
+def _refuse_both(number: int | None, run: str | None) -> None:
+    if number is not None and run is not None:
         raise ValueError(f"--run {run} and --journey {number} are given, and one thing is shown; omit one of them")
 
 
 def _open(page: Path) -> None:
-    """Open a page in the browser, or say where it is."""
     import webbrowser
 
     if not webbrowser.open(page.as_uri()):
@@ -219,7 +257,6 @@ def _open(page: Path) -> None:
 
 
 def _landing(results: "StudyResults", run: str | None, progress: Progress = silent) -> "MovingBodies":
-    """The landing of a run, made again, or the one that the study keeps."""
     if run is None:
         return results.median_landing
     return results.landing_bodies(run_of(run), progress=progress)

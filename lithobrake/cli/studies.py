@@ -1,4 +1,4 @@
-"""Commands that begin, plan, make and watch a study."""
+"""Commands that begin, plan, make and watch a study, and those for single stages of it."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lithobrake.cli.arguments import (
+    EXPERT,
     RUN,
     START,
     ExecutorName,
@@ -18,13 +19,18 @@ from lithobrake.cli.arguments import (
     StudyPath,
     Workers,
     app,
+    command_line,
+    one_sentence,
     scheduler_of,
+    shown_progress,
     study_folder,
+    study_headline,
+    tell,
+    tell_result,
 )
-from lithobrake.cli.terminal import command_line, one_sentence, study_headline, tell, tell_json
 
 if TYPE_CHECKING:
-    from lithobrake.study.shipped import Shipped
+    from lithobrake.study.reader import Shipped
 
 BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
 # Width of the column of names in the list of examples.
@@ -58,6 +64,7 @@ def new(
         from lithobrake.study.template import template
 
         given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
+        # The template has no place for these options; ignored silently they would be missed only in its results.
         if first_bounce and (full or any(given.values())):
             raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
         text = template() if first_bounce else _journeys(body, lander, at, shape, full)
@@ -66,10 +73,7 @@ def new(
 
 
 def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) -> str:
-    """The text of a study of journeys."""
-    from lithobrake.study.known_bodies import known_body
-    from lithobrake.study.known_landers import known_lander
-    from lithobrake.study.short_study import aim_point, all_keys, short_study
+    from lithobrake.study.short_study import aim_point, all_keys, known_body, known_lander, short_study
 
     return short_study(known_body(body), known_lander(lander), aim_point(at), shape) + (all_keys() if full else "")
 
@@ -77,6 +81,7 @@ def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) ->
 def _write_new(path: Path, text: str) -> None:
     """Write a study file where there is none. Raises ValueError where there is one, or where none can be."""
     try:
+        # Mode x leaves no moment between the check and the write in which another process could make the file.
         with path.open("x", encoding="utf-8") as file:
             file.write(text)
     except FileExistsError:
@@ -94,7 +99,7 @@ def examples(
 ) -> None:
     """List the studies and examples that come with the package, or copy one to the current folder."""
     with one_sentence():
-        from lithobrake.study.shipped import shipped, shipped_by_name
+        from lithobrake.study.reader import shipped, shipped_by_name
 
         if name is None:
             tell(_listed(shipped().values()))
@@ -107,7 +112,6 @@ def examples(
 
 
 def _listed(known: Iterable["Shipped"]) -> list[str]:
-    """Studies and examples in two blocks, each on a line."""
     lines = ["Studies; run one with `lithobrake run NAME`, or copy it here with `lithobrake examples NAME`:"]
     known = list(known)
     lines += [f"  {one.name:<{NAMES}}{one.title}" for one in known if one.is_study]
@@ -116,7 +120,6 @@ def _listed(known: Iterable["Shipped"]) -> list[str]:
 
 
 def study_command(name: str, what: str, group: str, until: str | None = None) -> None:
-    """Add the command that runs a study up to a stage to a group of the help."""
     last = until or name
 
     def command(
@@ -153,10 +156,7 @@ def plan(
         from lithobrake.pipeline import plan_lines, plan_study
 
         found = plan_study(study, folder, workers, infers=infer)
-    if json:
-        tell_json(found.to_json())
-    else:
-        tell(plan_lines(found))
+    tell_result(json, found.to_json(), plan_lines(found))
 
 
 study_command("run", "Run a study from its file to its report.", RUN, until="report")
@@ -170,21 +170,81 @@ def status(folder: StudyDirectory, json: Json = False) -> None:
 
         found = study_status(folder)
         lines, content = found.lines(), found.to_json()
-    if json:
-        tell_json(content)
-    else:
-        tell(lines)
+    tell_result(json, content, lines)
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
-    """Make the files of a study up to a stage, with two lines of progress."""
     with one_sentence():
         from lithobrake.study import StudySource
 
-        # A study that is refused is refused at once: what follows brings NumPy and the compiler.
+        # A study that is refused is refused at once: what follows brings the engine and its compiler.
         source = StudySource.read(study)
         from lithobrake.pipeline import run_study
         from lithobrake.progress import study_progress
 
         with study_progress() as shown:
             run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)
+
+
+@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500")
+def rare(
+    study: StudyPath,
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Name of a limit state of the study.", show_default=False)
+    ],
+    landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings per level.")] = 500,
+    out: OutPath = None,
+    workers: Workers = None,
+    executor: ExecutorName = "local",
+    scheduler: Scheduler = None,
+) -> None:
+    """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
+    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
+    with one_sentence():
+        from lithobrake.study import StudySource
+
+        source = StudySource.read(study)
+        from lithobrake.pipeline import rare_failure
+        from lithobrake.progress import study_progress
+
+        with study_progress() as shown:
+            found = rare_failure(
+                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
+            )
+    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
+
+
+@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv")
+def infer(
+    folder: StudyDirectory,
+    bounce: Annotated[
+        Path | None,
+        typer.Option(
+            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
+        ),
+    ] = None,
+) -> None:
+    """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
+    with one_sentence():
+        from lithobrake.pipeline import InferredStudy, infer_study
+
+        study = InferredStudy.open(folder)
+        with shown_progress("inference") as progress:
+            progress(0.0, "identifiability")
+            plan = study.plan().lines()
+            if bounce is not None:
+                progress(0.5, "posterior")
+            found = None if bounce is None else infer_study(folder, bounce)
+    tell(plan)
+    if found is not None:
+        written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
+        tell([line for line in (found["statement"], found["beds"], written) if line])
+
+
+study_command("bed", "Pour and settle the beds, and simulate a preview landing.", EXPERT, until="landing")
+study_command("screen", "Paper method: run the screening design and fit an expansion in all inputs.", EXPERT)
+study_command("refine", "Paper method: run the refined design and fit an expansion in the kept inputs.", EXPERT)
+study_command("test", "Paper method: run the test points and score the expansions on them.", EXPERT)
+study_command("sample", "Take Monte Carlo samples of the emulator (paper method: of the refined expansion).", EXPERT)
+study_command("fly", "Fly the samples that leave the surface to their next impact.", EXPERT)
+study_command("rest", "Follow samples from bounce to bounce until they come to rest.", EXPERT)

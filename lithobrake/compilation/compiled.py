@@ -74,6 +74,8 @@ def large_kernel(function: Function) -> Function:
 def _compile(function: Function, options: dict[str, bool]) -> Function:
     if numba.config.DISABLE_JIT:
         return function
+    # The lock of the interpreter is released, as threads work side by side on one engine and on parts of the flights;
+    # in NumPy's error model a division by 0 raises nothing.
     always = {"nopython": True, "error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
     result: Any = Kernel(function, targetoptions={**always, **options})
     return result
@@ -87,7 +89,6 @@ class Kernel(CPUDispatcher):
     """
 
     def __init__(self, py_func: Callable[..., Any], *others: Any, **options: Any) -> None:
-        """Prepare a function, with arguments as Numba's."""
         super().__init__(py_func, *others, **options)
         self._cache = KernelCache(py_func, "python")
         COUNT.made(_part_of(py_func), py_func)
@@ -121,7 +122,6 @@ class Kernel(CPUDispatcher):
         return self._for_caller().get_call_template([types.unliteral(arg) for arg in args], kws)
 
     def get_overload(self, sig: Any) -> Any:
-        """Give a kernel what it calls."""
         return self._for_caller().get_overload(sig)
 
     def compile(self, sig: Any) -> Any:
@@ -147,13 +147,11 @@ class KernelCount:
     """How many kernels of a part there are, and how many of them this process has compiled while it was watched."""
 
     def __init__(self) -> None:
-        """Know of none."""
         self._all: dict[str, set[Any]] = {}
         self._done: set[Any] = set()
         self._watched, self._tell = "", lambda done, total: None
 
     def made(self, part: str, function: Callable[..., Any]) -> None:
-        """Count one that may be compiled."""
         self._all.setdefault(part, set()).add(function)
 
     def note(self, part: str, function: Callable[..., Any]) -> None:
@@ -185,16 +183,13 @@ class KernelCache(NullCache):
         self.name = f"{function.__module__.partition('.')[2]}.{function.__qualname__}-{caller}"
 
     def has(self, sig: Any, target_context: Any) -> bool:
-        """Whether a form lies on disk."""
         return self._disk.has(self._file(sig, target_context.codegen()))
 
     def has_any(self) -> bool:
-        """Whether any form lies on disk."""
         folder = self._disk.folder
         return folder is not None and any(folder.glob(f"{self.name}-*"))
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
-        """Read a form, if it lies on disk."""
         target_context.refresh()
         content = self._disk.read(self._file(sig, target_context.codegen()))
         return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
@@ -205,12 +200,12 @@ class KernelCache(NullCache):
             self._disk.write(self._file(sig, data.codegen), dumps(data._reduce()))
 
     def _file(self, sig: Any, codegen: Any) -> str:
+        # The processor is part of the name: machine code for another may have instructions that this one lacks.
         form = hashlib.sha256(f"{sig} {codegen.magic_tuple()}".encode()).hexdigest()[:16]
         return f"{self.name}-{form}"
 
 
 def lies_on_disk(function: Any) -> bool:
-    """Whether a compiled function, called from Python, lies on disk in some form."""
     return isinstance(function, Kernel) and function._cache.has_any()
 
 

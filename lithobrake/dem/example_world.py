@@ -1,13 +1,12 @@
 """A world of two grains above a plane: stepped once, it has the kernels compiled that any other world calls."""
 
-from lithobrake.dem.bodies.material import Material
+from lithobrake.dem.bodies.rigid_body import Material
 from lithobrake.dem.bodies.shape import Box
 from lithobrake.dem.world import World
 from lithobrake.dem.world_state import NOTHING_WATCHED
 
 
 def two_grains() -> World:
-    """The world, in which nothing has been stepped."""
     rock = Material(density=2000.0, young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5)
     world = World(gravity=(0.0, 0.0, -1.0))
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)

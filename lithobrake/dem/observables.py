@@ -6,14 +6,45 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.dem import energy
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs, Step
-from lithobrake.dem.bodies.period import NO_PERIOD
+from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Floats, Pairs, Step
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody, vector
+from lithobrake.dem.bodies.vectors import NO_PERIOD
 from lithobrake.dem.stepping.engine import Engine
-from lithobrake.dem.stepping.stability import largest_step
-from lithobrake.dem.stepping.time_step import shortest_contact
+from lithobrake.dem.stepping.time_step_stability import largest_step, shortest_contact
 from lithobrake.dem.world_state import WorldState
+
+
+def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:
+    """Return the kinetic energy [J] of bodies, shape [...], from vectors of shape [..., 3]."""
+    energy: Floats = 0.5 * (mass * (velocity * velocity).sum(axis=-1) + (spin * angular_momentum).sum(axis=-1))
+    return energy
+
+
+def ledger(
+    moving: float, mass: Floats, position: Floats, gravity: Floats, pairs: Pairs, lost: Floats
+) -> dict[str, float]:
+    """Return the energies [J] of a world from that of its motion, `moving`: kinetic, potential, elastic, cohesive, what
+    damping, friction and rolling took, and the total.
+
+    A Hertz contact holds 2/5 force times overlap, cohesion minus force times overlap, a spring half its force squared
+    over its stiffness.
+    """
+    potential = -float((mass[:, None] * position * gravity).sum())
+    touching = pairs.tangential_stiffness > 0.0
+    spring_square = (pairs.spring[touching] ** 2).sum(axis=1)
+    elastic = 0.4 * float((pairs.elastic_force * pairs.overlap).sum())
+    elastic += 0.5 * float((spring_square / pairs.tangential_stiffness[touching]).sum())
+    twisting = pairs.twist_stiffness > 0.0
+    elastic += 0.5 * float((pairs.twist[twisting] ** 2 / pairs.twist_stiffness[twisting]).sum())
+    rolling = pairs.roll_stiffness > 0.0
+    elastic += 0.5 * float(((pairs.roll[rolling] ** 2).sum(axis=1) / pairs.roll_stiffness[rolling]).sum())
+    parts = {
+        "kinetic": moving, "potential": potential, "elastic": elastic,
+        "cohesive": -float((pairs.cohesion * pairs.overlap).sum()), "damping": float(lost[DAMPING]),
+        "friction": float(lost[FRICTION]), "rolling": float(lost[ROLLING]),
+    }  # fmt: skip
+    return {**parts, "total": float(np.sum(list(parts.values())))}
+
 
 CONTACT = np.dtype(
     [
@@ -37,7 +68,7 @@ class BodyMotion(NamedTuple):
     @property
     def kinetic_energy(self) -> float:
         """Kinetic energy [J]."""
-        return float(energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum))
+        return float(kinetic(self.mass, self.velocity, self.spin, self.angular_momentum))
 
 
 def contacts_of(bodies: Bodies, pairs: Pairs) -> NDArray[Any]:
@@ -46,6 +77,7 @@ def contacts_of(bodies: Bodies, pairs: Pairs) -> NDArray[Any]:
     result = np.zeros(len(touching), dtype=CONTACT)
     result["body_a"], result["body_b"] = pairs.first[touching], pairs.second[touching]
     for name, members in (("a", "first"), ("b", "second")):
+        # Planes have numbers below 0, which would count bodies from the end.
         number, part = result[f"body_{name}"], getattr(pairs, f"{members}_part")[touching]
         result[f"part_{name}"] = np.where(number < 0, 0, part - bodies.part_start[np.maximum(number, 0)])
     for name in ("point", "normal", "overlap", "normal_force", "tangential_force"):
@@ -185,10 +217,10 @@ class Observables:
     @property
     def kinetic_energy(self) -> Floats:
         """Kinetic energy of each body [J], shape [body_count]."""
-        return energy.kinetic(self.mass, self.velocity, self.spin, self.angular_momentum)
+        return kinetic(self.mass, self.velocity, self.spin, self.angular_momentum)
 
     def energy(self) -> dict[str, float]:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
         engine = self._read()
         kinetic = float(self.kinetic_energy.sum())
-        return energy.ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())
+        return ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())

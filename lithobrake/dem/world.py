@@ -9,20 +9,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.arrays import Floats
-from lithobrake.dem.bodies.material import Material
-from lithobrake.dem.bodies.period import period_of, refuse_tilted_plane
-from lithobrake.dem.bodies.rigid_body import Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.rigid_body import Material, Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
-from lithobrake.dem.checkpoint import read_checkpoint, write_checkpoint
-from lithobrake.dem.law.material_pair import contact_options
-from lithobrake.dem.local_stepping.contact_plans import FEWEST_STEPS
+from lithobrake.dem.bodies.vectors import period_of, refuse_tilted_plane
+from lithobrake.dem.law.restitution import contact_options
+from lithobrake.dem.local_stepping.agenda import FEWEST_STEPS
 from lithobrake.dem.local_stepping.local_engine import Setting
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.stepping.assembly import rotation_matrices
-from lithobrake.dem.stepping.time_loop import DIVERGED, STEP_TOO_LARGE
-from lithobrake.dem.stepping.time_step import Clock, checked_count, checked_step, chosen_step
-from lithobrake.dem.stepping.watch import FIRST_CONTACT, LAST_CONTACT, PEAK_FORCE, STEPS, TOUCHED, new_record
-from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState
+from lithobrake.dem.stepping.engine import rotation_matrices
+from lithobrake.dem.stepping.time_loop import (
+    DIVERGED,
+    FIRST_CONTACT,
+    LAST_CONTACT,
+    PEAK_FORCE,
+    STEP_TOO_LARGE,
+    STEPS,
+    TOUCHED,
+    new_record,
+)
+from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
+from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
 
 
 class StepTooLargeError(ValueError):
@@ -232,6 +238,8 @@ class World(Observables):
             )
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
+        # No part of the setting: both follow the speed of the lander from call to call, and another setting has all
+        # plans made anew.
         local.slow_down(resolved_speed)
         local.hold(held_speed, reach)
         if not local.run(duration):
@@ -239,7 +247,6 @@ class World(Observables):
         self.time = local.time
 
     def _refuse(self, reason: int) -> None:
-        """Say why the time loop could not go on."""
         if reason == STEP_TOO_LARGE:
             raise StepTooLargeError(
                 f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
@@ -286,6 +293,7 @@ class World(Observables):
         lasted = float(self._watch_record[LAST_CONTACT] - self._watch_record[FIRST_CONTACT])
         if math.isnan(lasted):
             return None
+        # Common steps are counted, and the first and the last one of the touch both belong to it.
         return lasted if self._state.local is not None else (lasted + 1.0) * self.time_step
 
     @property
@@ -296,6 +304,7 @@ class World(Observables):
         """Return an instant [s] from what a record says of it."""
         if self._state.local is not None:
             return float(clock)
+        # Counted back from the present, as `time` may have been set since the record began.
         return float(self.time - (self._state.watch_record[STEPS] - clock) * self.time_step)
 
     # --- on disk -------------------------------------------------------------------------------------------------

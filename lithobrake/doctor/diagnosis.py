@@ -1,16 +1,147 @@
-"""All that was found out about an installation, in words and as JSON values."""
+"""What is installed and what this machine offers, in words and as JSON values."""
 
+import os
 import platform
-from collections.abc import Iterator
+import re
+import shutil
+import sys
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, requires, version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lithobrake import __version__
-from lithobrake.doctor.libraries import EXTRAS, NeededLibrary, needed_libraries
-from lithobrake.doctor.machine import FoundCache, FoundMachine
 
 if TYPE_CHECKING:
     from lithobrake.doctor.speed import MeasuredSpeed
+
+# What each extra is for; those that only serve the making of this package are left out.
+EXTRAS = {
+    "dask": "runs on a cluster",
+    "spice": "NAIF's kernels of shape, spin and place",
+    "thin": "meshes of millions of facets",
+    "yaml": "answers of your own program as YAML",
+    "infer": "inference where few points carry weight",
+    "data": "results as pandas and xarray",
+    "view": "windows and films of landings",
+}
+_REQUIREMENT = re.compile(
+    r"(?P<name>[\w.-]+)[^;>]*(?:>=\s*(?P<lowest>[\d.]+))?"  # numpy>=1.26
+    r"[^;]*(?:;.*extra\s*==\s*[\"'](?P<extra>\w+))?"  # ; extra == "data"
+)
+
+
+@dataclass(frozen=True)
+class NeededLibrary:
+    """A library that the package asks for: lowest version that serves, version found (None: not there), its extra."""
+
+    name: str
+    lowest: str
+    version: str | None
+    extra: str
+
+    @property
+    def serves(self) -> bool:
+        """Whether it is there and new enough."""
+        return self.version is not None and _numbers(self.version) >= _numbers(self.lowest)
+
+    @property
+    def state(self) -> str:
+        """Its version, or what is the matter with it."""
+        if self.version is None:
+            return "missing"
+        return self.version if self.serves else f"{self.version} is too old; needed: {self.lowest} or newer"
+
+    @property
+    def remedy(self) -> str:
+        return f'pip install --upgrade "lithobrake{f"[{self.extra}]" if self.extra else ""}"'
+
+
+def needed_libraries() -> list[NeededLibrary]:
+    """What the installed package asks for, its extras included; nothing where it only lies in a folder."""
+    try:
+        return list(parsed(requires("lithobrake") or ()))
+    except PackageNotFoundError:
+        return []
+
+
+def parsed(requirements: Iterable[str]) -> Iterable[NeededLibrary]:
+    """Read requirements such as 'pandas>=2.0; extra == "data"', and look up what is installed of each."""
+    for requirement in requirements:
+        found = _REQUIREMENT.match(requirement)
+        if found is None:
+            raise ValueError(f"the package asks for {requirement!r}, which is no requirement; install it again")
+        name, extra = found["name"], found["extra"] or ""
+        if not extra or extra in EXTRAS:
+            yield NeededLibrary(name, found["lowest"] or "0", _installed(name), extra)
+
+
+def _installed(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _numbers(version: str) -> list[int]:
+    """The numbers that a version begins with, for comparison."""
+    return [int(number) for number in re.match(r"\d*(?:\.\d+)*", version)[0].split(".") if number]  # type: ignore[index]
+
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+
+
+@dataclass(frozen=True)
+class FoundCache:
+    """The folder of compiled kernels, gravity tables and beds (None: none to be trusted), and what it has of them."""
+
+    folder: str | None
+    is_kept: bool
+    is_compiled: dict[str, bool]
+
+    @classmethod
+    def look(cls) -> "FoundCache":
+        """Look at it, which takes NumPy and the compiler."""
+        from lithobrake.compilation.compiled import lies_on_disk
+        from lithobrake.compilation.disk_cache import DiskCache
+        from lithobrake.dem.stepping.time_loop import advance
+        from lithobrake.smallbody.integration import integrate_flights
+
+        cache = DiskCache("beds", "beds")
+        compiled = {"soft-surface engine": lies_on_disk(advance), "flights": lies_on_disk(integrate_flights)}
+        return cls(str(cache.folder.parent) if cache.folder else None, cache.keeps, compiled)
+
+
+@dataclass(frozen=True)
+class FoundMachine:
+    """A machine as it was found.
+
+    load: of the last minute; None where the system tells none. free_bytes: in the current folder. cache: None where a
+    library is missing that would tell.
+    """
+
+    system: str
+    cores: int
+    load: float | None
+    free_bytes: int
+    browser: str | None
+    cache: FoundCache | None
+
+    @classmethod
+    def look(cls, has_libraries: bool) -> "FoundMachine":
+        """Look at this machine, with its cache where the libraries are all there."""
+        from lithobrake.campaign import available_cores
+
+        return cls(
+            system=f"{platform.machine()}, {sys.platform}",
+            cores=available_cores(),
+            load=os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+            free_bytes=shutil.disk_usage(Path.cwd()).free,
+            browser=next(filter(None, map(shutil.which, BROWSERS)), None),
+            cache=FoundCache.look() if has_libraries else None,
+        )
+
 
 # A load above this part of the cores is other work, which makes all of this slower.
 BUSY = 0.7
@@ -46,7 +177,6 @@ class Diagnosis:
 
     def to_json(self) -> dict[str, Any]:
         """The same for a program."""
-        machine, cache = self.machine, self.machine.cache
         return {
             "version": __version__,
             "python": platform.python_version(),
@@ -55,7 +185,7 @@ class Diagnosis:
                  "serves": one.serves, "remedy": None if one.serves else one.remedy}
                 for one in self.libraries
             ],
-            "machine": asdict(machine) | {"cache": cache and cache.to_json()},
+            "machine": asdict(self.machine),
             "speeds": [asdict(one) for one in self.speeds],
         }  # fmt: skip
 

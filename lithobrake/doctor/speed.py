@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.dem import Material, Sphere
-from lithobrake.pipeline.planning.pace import EDGE, REFERENCE, STEPS, probe
+from lithobrake.pipeline.planning.expected_time import EDGE, REFERENCE, STEPS, probe
 from lithobrake.smallbody import dimorphos, fly
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
 
@@ -29,11 +29,6 @@ class MeasuredSpeed:
     what: str
     here: float
     reference: float
-
-    @property
-    def ratio(self) -> float:
-        """Speed here over that of the reference machine."""
-        return self.here / self.reference
 
 
 def measured_speeds() -> Iterator[MeasuredSpeed]:

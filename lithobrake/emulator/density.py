@@ -1,11 +1,16 @@
-"""Density of observed outputs by an emulator: a kernel about each residual row."""
+"""Density of observed outputs by an emulator, alone or beside others on their bed."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from lithobrake.emulator.law import log_row_weights, smoothing
+from lithobrake.emulator.storage import Parts
+from lithobrake.emulator.training import with_slope
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.given_numbers import finite_number
 
 # Rows times points that are looked at together: bounds the memory.
 _BLOCK = 1 << 20
@@ -55,6 +60,7 @@ class Kernels:
             covariance = covariance + blur[:, :, None] ** 2 * np.eye(len(columns))
         factor = np.linalg.inv(np.linalg.cholesky(covariance))
         whitened = np.einsum("pij,pj->pi", np.broadcast_to(factor, (len(standard), *factor.shape[1:])), standard)
+        # All distances of points to rows are then one product of matrices, without an array [point, row, output].
         squares = self._squares(whitened, np.ascontiguousarray(factor @ seen))
         determinant = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
         step = max(1, _BLOCK // len(self.rows))
@@ -78,7 +84,6 @@ class Kernels:
 
 
 def _rows_of(table: Array, block: slice) -> Array:
-    """A block of points of a table, or its one row for all of them."""
     return table if len(table) == 1 else table[block]
 
 
@@ -90,3 +95,152 @@ def _log_sum(logarithms: Array, log_chances: Array) -> Array:
     np.exp(logarithms, out=logarithms)
     total: Array = np.log(logarithms.sum(axis=1)) + nearest
     return total
+
+
+# Of the variance of a direction that beds may have at most: with all of it runs on one bed would be alike.
+MOST_OF_BED = 0.95
+
+
+@dataclass(frozen=True)
+class BedEffect:
+    """A bed's effect given the runs that were seen on it, normal, in the coordinates of covariance 1.
+
+    mean [point_count or 1, output_count], covariance [point_count or 1, output_count, output_count]; before
+    [output_count, output_count]: covariance over all beds.
+    """
+
+    mean: Array
+    covariance: Array
+    before: Array
+
+    @classmethod
+    def unseen(cls, before: Array) -> "BedEffect":
+        return cls(np.zeros((1, len(before))), before[None], before)
+
+    @classmethod
+    def none(cls, output_count: int) -> "BedEffect":
+        """That of a bed which no other run shares."""
+        return cls.unseen(np.zeros((output_count, output_count)))
+
+    @classmethod
+    def of_groups(cls, rows: Array, weights: Array, group: NDArray[np.int64]) -> "BedEffect":
+        """Before any run is seen, by analysis of variance of rows [row_count, output_count] of covariance 1.
+
+        weights: how often each row counts [row_count], in a bed alike; a bed that counts twice is two beds. The
+        covariance is cut to between 0 and nearly all. Raises ValueError where no bed has two rows, or none but one.
+        """
+        there = weights > 0.0
+        bed = np.unique(group[there], return_inverse=True)[1]
+        values, weight = rows[there], weights[there]
+        runs, total = np.bincount(bed), np.bincount(bed, weight)
+        beds, whole = float((total / runs).sum()), float(total.sum())
+        if whole - beds <= 0.0 or len(runs) < 2:
+            raise ValueError(
+                "no bed of the emulator has two runs with outputs, so nothing is known of what runs on one bed have in "
+                "common; leave the bed of each bounce out, or fit the emulator with groups"
+            )
+        means = np.column_stack([np.bincount(bed, weight * one) / total for one in values.T])
+        inside, between = values - means[bed], means - total @ means / whole
+        within = (inside.T * weight) @ inside / (whole - beds)
+        of_means = (between.T * total) @ between / (beds - 1.0)
+        runs_of_bed = (whole - float(total @ runs) / whole) / (beds - 1.0)
+        shares, vectors = np.linalg.eigh((of_means - within) / runs_of_bed)
+        return cls.unseen((vectors * np.clip(shares, 0.0, MOST_OF_BED)) @ vectors.T)
+
+    @property
+    def spread(self) -> Array:
+        """Root of the covariance of the next run about its mean, [point_count or 1, output_count, output_count]."""
+        values, vectors = np.linalg.eigh(self._next)
+        # Rounding must not turn the first run on a bed.
+        if (self.covariance == self.before).all():
+            return np.broadcast_to(np.eye(len(self.before)), self.covariance.shape)
+        return (vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ vectors.transpose(0, 2, 1)
+
+    def given(self, root: Array, columns: Sequence[int], left: Array, blur: Array) -> "BedEffect":
+        """The effect after one more run: left [point_count, len(columns)], what its standardised outputs are beyond
+        the mean; blur likewise: their errors; root: as in `Kernels`.
+        """
+        seen = root[list(columns)]
+        expected = seen @ self._next @ seen.T
+        if blur.any():
+            expected = expected + blur[:, :, None] ** 2 * np.eye(len(columns))
+        gain = self.covariance @ seen.T @ np.linalg.inv(expected)
+        moved = np.einsum("pij,pj->pi", np.broadcast_to(gain, (len(left), *gain.shape[1:])), left)
+        return replace(self, mean=self.mean + moved, covariance=self.covariance - gain @ seen @ self.covariance)
+
+    @property
+    def _next(self) -> Array:
+        return np.eye(len(self.before)) - self.before + self.covariance
+
+
+# Of an observation: the squares of larger ones overflow, and these say nothing either.
+LARGEST_ERROR = 1e100
+
+
+def kernels_of(model: Parts) -> Kernels:
+    return Kernels.of(model.law.rows, *smoothing(model.law.rows, model.law.weights, DENSITY_FACTOR))
+
+
+def observed_density(
+    model: Parts,
+    observed: Mapping[str, float],
+    matrix: Array,
+    errors: Mapping[str, float],
+    outcome: str | None,
+    bounds: tuple[ArrayLike | None, ArrayLike | None],
+    bed: BedEffect,
+) -> tuple[Array, BedEffect]:
+    """Logarithm of the density of an observed run at terms [point_count, term_count], and what it says of its bed.
+
+    observed, errors, outcome, bounds (lower and upper): as in `Emulator.log_density`. bed: its effect as far as other
+    runs show it. An outcome without outputs has its chance alone, and says nothing of the bed.
+    """
+    linear = matrix[:, : len(model.runs.inputs)]
+    ended = _checked_outcome(model, observed, errors, outcome)
+    chance = np.log(np.maximum(model.classes.chances(matrix)[:, ended], np.finfo(float).tiny))
+    if not observed:
+        return chance, bed
+    low, high = model.runs.bounds_at(*bounds, len(matrix))
+    columns = [model.runs.output_names.index(name) for name in observed]
+    y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
+    possible = np.all((y > low[:, columns]) & (y < high[:, columns]), axis=1)
+    bent_low, bent_high = model.runs.bending(low, high)
+    coordinate, slope = with_slope(y, bent_low[:, columns], bent_high[:, columns])
+    places = [model.runs.modelled.index(column) for column in columns]
+    location, scale = (one[:, places] for one in model.law.at(matrix))
+    # What lies beyond a bound at some point cannot have come from there.
+    inside = possible & np.all(np.isfinite(coordinate), axis=1)
+    kernels = kernels_of(model)
+    standard = (np.where(inside[:, None], coordinate, 0.0) - location) / scale
+    blur = slope * [errors.get(name, 0.0) for name in observed] / scale
+    left = standard - bed.mean @ kernels.root[places].T
+    chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
+    found = kernels.log_density(places, left, blur, chances, bed.spread)
+    steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
+    density: Array = np.where(inside, chance + found + steepness, -np.inf)
+    return density, bed.given(kernels.root, places, left, blur)
+
+
+def _checked_outcome(
+    model: Parts, observed: Mapping[str, float], errors: Mapping[str, float], outcome: str | None
+) -> int:
+    """Place of the outcome of an observation. Raises ValueError for names and values that cannot be."""
+    modelled = [model.runs.output_names[column] for column in model.runs.modelled]
+    if not (isinstance(observed, Mapping) and isinstance(errors, Mapping)):
+        raise ValueError(f"outputs and errors must be dicts by name; outputs that may be observed: {modelled}")
+    for name, value in observed.items():
+        if name not in modelled:
+            raise ValueError(f"{name} is observed as {value}; allowed: finite numbers of {', '.join(modelled)}")
+        finite_number(f"observed {name}", value)
+    for name, error in errors.items():
+        if name not in observed:
+            raise ValueError(f"the error of {name} is {error}; allowed: 0 or more, of what was observed")
+        finite_number(f"the error of {name}", error, at_least=0.0, at_most=LARGEST_ERROR)
+    if outcome is None:
+        return model.runs.output_outcome
+    if outcome not in model.runs.outcome_names:
+        raise ValueError(f"outcome is {outcome!r}; allowed: {', '.join(model.runs.outcome_names)}")
+    ended = model.runs.outcome_names.index(outcome)
+    if observed and ended != model.runs.output_outcome:
+        raise ValueError(f"outcome is {outcome!r}, which has no outputs: leave {', '.join(observed)} out")
+    return ended

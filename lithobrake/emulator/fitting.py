@@ -1,22 +1,69 @@
-"""The one entry: from the runs of a stochastic model to an emulator of it."""
+"""The one entry: from the runs of a stochastic model to an emulator, with the bounds that its coordinates need."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import special
 
-from lithobrake.chaos.abstract_distribution import Distribution
-from lithobrake.chaos.multi_index import Indices
-from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.distant_bounds import with_distant_bounds
-from lithobrake.emulator.law import Choices, fit_law
+from lithobrake.chaos.basis import Indices
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.training import one_thread
+from lithobrake.emulator.law import Choices, ClassChoice, best_choices, best_class_choice, fit_classes, fit_law
+from lithobrake.emulator.mean_law import Terms, candidate_terms
 from lithobrake.emulator.model import Emulator
-from lithobrake.emulator.outcome_classes import ClassChoice, best_class_choice, fit_classes
 from lithobrake.emulator.ridge_ladder import TermTable
-from lithobrake.emulator.scores import folds_of
-from lithobrake.emulator.terms import Terms, candidate_terms
-from lithobrake.emulator.training import checked_runs
-from lithobrake.emulator.validation import choices_by_groups
+from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
+from lithobrake.emulator.validation import choices_by_groups, folds_of, mean_by_groups
+from lithobrake.vocabulary.arrays import Array
+
+# Of a normal law without bounds, the share that may lie beyond them.
+MOST_BEYOND = 0.02
+# Deviations of the scatter from the nearer bound.
+DISTANT = 3.0
+FOLDS = 5
+
+
+def with_distant_bounds(runs: TrainingRuns, indices: Indices, matrix: Array) -> TrainingRuns:
+    """The runs with the outputs named whose bounds bend no coordinate; matrix: terms [output_run_count, term_count].
+
+    A logarithm or logit bends a law that may need no bound. Folds are left out: where a law of the output itself keeps
+    the median run far from its bounds, puts next to nothing beyond them, and has a logarithmic score that is not worse
+    by more than a standard error, its draws are only kept inside.
+    """
+    design, group = TermTable(indices, matrix, np.ones(len(matrix))), runs.group[runs.has_outputs]
+    bounded = [k for k in runs.modelled if (np.isfinite(runs.lower[:, k]) | np.isfinite(runs.upper[:, k])).any()]
+    return replace(runs, distant=tuple(k for k in bounded if _is_distant(runs, k, design, group)))
+
+
+def _is_distant(runs: TrainingRuns, column: int, design: TermTable, group: NDArray[np.int64]) -> bool:
+    y, lower, upper = (table[:, column] for table in (runs.y, runs.lower, runs.upper))
+    coordinate, slope = with_slope(y, lower, upper)
+    fold, (gain, beyond, away) = folds_of(group, FOLDS), np.empty((3, len(y)))
+    for number in range(int(fold.max()) + 1):
+        test = fold == number
+        bent, straight = (_law(design, one, test) for one in (coordinate, y))
+        scores = [_log_normal_density(one[test], *law) for one, law in ((coordinate, bent), (y, straight))]
+        # Densities of the output and of its coordinate are compared in one unit, to which the slope leads.
+        gain[test] = scores[1] - scores[0] - np.log(slope[test])
+        location, scale = straight
+        sides = np.array([location - lower[test], upper[test] - location]) / scale
+        beyond[test], away[test] = special.ndtr(-sides).sum(axis=0), sides.min(axis=0)
+    mean, error = mean_by_groups(gain, group)
+    return bool(mean > -error and beyond.mean() < MOST_BEYOND and np.median(away) > DISTANT)
+
+
+def _law(design: TermTable, coordinate: Array, test: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Location and scale of a coordinate [run_count] at runs that they have not seen, each [count]."""
+    rest, kept = design.of(~test), coordinate[~test, None]
+    location, scale = fit_law(rest, kept, best_choices(rest, kept, fades=False)).at(design.matrix[test])
+    return location[:, 0], scale[:, 0]
+
+
+def _log_normal_density(y: Array, location: Array, scale: Array) -> Array:
+    return np.asarray(-0.5 * ((y - location) / scale) ** 2 - np.log(scale))
+
 
 OUTCOME_FOLDS = 5
 # A term of which a ridge leaves less than this is left out: it would cost time at every draw.
@@ -69,6 +116,7 @@ def fit(
 
 def used_terms(indices: Indices, choices: Choices, class_choice: ClassChoice) -> NDArray[np.bool_]:
     """Which terms [term_count] any of the ladders leaves more than a trace of, and all linear ones."""
+    # Linear terms always stay: they come first, and are the standardised inputs by which rows are drawn.
     used = (indices.sum(axis=1) == 1) | (class_choice.factors(indices) ** 2 > TRACE * class_choice.inverse_penalty)
     for rung in (rung for ladder in (*choices.location, *choices.scale) for rung in ladder):
         used |= rung.factors(indices) ** 2 > TRACE * rung.penalty

@@ -1,7 +1,7 @@
-"""An emulator: what a stochastic model does at inputs that nobody has run, as draws."""
+"""An emulator: what a stochastic model does at inputs that nobody has run, as draws or as plain tables."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from html import escape
@@ -9,23 +9,18 @@ from html import escape
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.basis import checked_points
+from lithobrake.chaos.basis import checked_points, input_tables
 from lithobrake.chaos.storage import read, write
-from lithobrake.chaos.threads import one_thread
-from lithobrake.emulator.bed_effect import BedEffect
-from lithobrake.emulator.density import Kernels
-from lithobrake.emulator.law import fit_law
-from lithobrake.emulator.mean_law import MeanLaw, mean_law
-from lithobrake.emulator.observed_density import kernels_of, observed_density
-from lithobrake.emulator.outcome_classes import fit_classes
-from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
+from lithobrake.chaos.training import one_thread
+from lithobrake.emulator.density import BedEffect, Kernels, kernels_of, observed_density
+from lithobrake.emulator.law import drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
+from lithobrake.emulator.mean_law import MeanLaw, found_inputs, mean_law
 from lithobrake.emulator.ridge_ladder import TermTable
-from lithobrake.emulator.significance import found_inputs
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
-from lithobrake.vocabulary.html_table import html_table
 from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.plain_text import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
@@ -224,14 +219,11 @@ class Emulator(Parts):
     def _matrix(self, x: ArrayLike) -> Array:
         return self.terms.matrix(checked_points(self.runs.inputs, x))
 
-    def _linear(self, matrix: Array) -> Array:
-        return matrix[:, : len(self.runs.inputs)]
-
     def _block(
         self, matrix: Array, count: int, lower: Array, upper: Array, random: np.random.Generator
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
         """Draws at some points: y, outcome and row, as in Draws."""
-        linear, columns = self._linear(matrix), list(self.runs.modelled)
+        linear, columns = matrix[:, : len(self.runs.inputs)], list(self.runs.modelled)
         outcome = drawn_rows(self.classes.chances(matrix), count, random)
         chances = row_weights(linear, self.row_points, self.law.weights, self.choices.widths)
         row = drawn_rows(chances, count, random)
@@ -253,3 +245,38 @@ def load(path: str | os.PathLike[str]) -> Emulator:
     """Read what `Emulator.save` wrote. Raises ValueError if the file is of another kind, or damaged."""
     parts = read(FORMAT, parts_of, path)
     return Emulator(**{field.name: getattr(parts, field.name) for field in fields(parts)})
+
+
+def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
+    """Tables of emulators that share runs and choices, as refits do; the first axis of a law's own is the emulator.
+
+    multi_indices [term_count, input_count], without the constant; kernel_widths [input_count], infinite where nearness
+    in an input does not count; row_inputs [row_count, input_count], standardised; location, log_scale, scale_limits,
+    rows, row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root
+    [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run, infinite where
+    they bend no coordinate. Raises ValueError for no emulator.
+    """
+    if not models:
+        raise ValueError("models are none, but must be at least one emulator: give those of refits")
+    first, columns = models[0], list(models[0].runs.modelled)
+    linear = first.terms.matrix(first.runs.x)[first.runs.has_outputs, : len(first.runs.inputs)]
+    low, high = first.runs.bending(first.runs.lower, first.runs.upper)
+    smooth = [smoothing(model.law.rows, model.law.weights) for model in models]
+    return {
+        **input_tables(first.runs.inputs, first.terms.indices),
+        "multi_indices": first.terms.indices.astype(float),
+        "kernel_widths": np.array(first.choices.widths),
+        "row_inputs": linear,
+        "location": np.stack([model.law.location for model in models]),
+        "log_scale": np.stack([model.law.log_scale for model in models]),
+        "scale_limits": np.stack([model.law.scale_limits for model in models]),
+        "rows": np.stack([model.law.rows for model in models]),
+        "row_weights": np.stack([model.law.weights for model in models]),
+        "smoothing_size": np.array([size for size, _ in smooth]),
+        "smoothing_root": np.stack([root for _, root in smooth]),
+        "class_intercepts": np.stack([model.classes.intercepts for model in models]),
+        "class_slopes": np.stack([model.classes.slopes for model in models]),
+        "class_never": np.stack([model.classes.never for model in models]),
+        "lower": low[0, columns],
+        "upper": high[0, columns],
+    }

@@ -1,10 +1,4 @@
-"""Location and scale: ridges that walk from no inputs to all of them, and one that learns how its terms fade.
-
-A rung says how far each input counts, how much less each further degree of it does, up to which total degree, and under
-what penalty. Rungs are averaged by their evidence, the marginal likelihood of the data with the terms' coefficients as
-normal: one rung alone would follow the luck of its choice. The average is a polynomial chaos expansion again.
-Source: [Hoerl-1970] (ridge); [Hoeting-1999] (averaging).
-"""
+"""Location and scale: ridges that walk from no inputs to all of them, and one that learns how its terms fade."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,10 +6,69 @@ from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import linalg, optimize
 
-from lithobrake.chaos.multi_index import Indices
-from lithobrake.emulator.fading_ridge import exponents, learnt
+from lithobrake.chaos.basis import Indices
 from lithobrake.vocabulary.arrays import Array
+
+# Logarithms of amplitudes, fades and penalty in units of the number of runs: first values and bounds. The likelihood of
+# a smooth law and that of one that bends have peaks of their own, so fades start at two.
+AMPLITUDE, AMPLITUDES = -1.0, (-5.0, 2.0)
+FADES_FIRST, FADES = (-0.9, -0.1), (-4.0, 0.2)
+PENALTY, FADING_PENALTIES = -5.0, (-23.0, 2.0)
+STEPS = 60
+# Change of the evidence at which a search ends.
+TOLERANCE = 1e-3
+REFUSED = 1e10
+
+
+def exponents(indices: Indices) -> Array:
+    """Powers of amplitudes and of fades in the deviation of each term, [term_count, 2 * input_count]."""
+    return np.hstack([indices > 0, np.maximum(indices - 1, 0)]).astype(float)
+
+
+def learnt(indices: Indices, gram: Array, moments: Array, total: float, count: int) -> tuple[float, Array]:
+    """Evidence, the logarithm of the marginal likelihood over that of no inputs, and logarithms of amplitudes, fades
+    and penalty [2 * input_count + 1].
+
+    gram, moments, total: sums of squares of centred terms, with the target, and of the target; of count runs.
+    """
+    inputs, powers = indices.shape[1], exponents(indices)
+
+    def loss(vector: Array) -> tuple[float, Array]:
+        return _loss(powers, vector, gram, moments, total, count)
+
+    bounds = [*[AMPLITUDES] * inputs, *[FADES] * inputs, FADING_PENALTIES]
+    options = {"maxiter": STEPS, "ftol": TOLERANCE / count}
+    found = []
+    for fade in FADES_FIRST:
+        first = np.array([*[AMPLITUDE] * inputs, *[fade] * inputs, PENALTY])
+        found.append(optimize.minimize(loss, first, jac=True, method="L-BFGS-B", bounds=bounds, options=options))
+    best = min(found, key=lambda one: float(one.fun))
+    return -float(best.fun), np.asarray(best.x)
+
+
+def _loss(powers: Array, vector: Array, gram: Array, moments: Array, total: float, count: int) -> tuple[float, Array]:
+    """Negative evidence and its gradient; the deviation of the scatter is that of most evidence."""
+    factors, ridge = np.exp(powers @ vector[:-1]), count * np.exp(vector[-1])
+    scaled = factors[:, None] * gram * factors
+    scaled[np.diag_indices_from(scaled)] += ridge
+    try:
+        lower = linalg.cholesky(scaled, lower=True, check_finite=False)
+    except linalg.LinAlgError:
+        # The search steps back from parameters for which rounding makes the matrix indefinite.
+        return REFUSED, np.zeros_like(vector)
+    weighted = factors * moments
+    slopes = linalg.cho_solve((lower, True), weighted, check_finite=False)
+    # Rounding may leave nothing, or less, of outputs without scatter.
+    unexplained = max(1.0 - float(weighted @ slopes) / total, 1e-12)
+    value = 0.5 * (count - 1.0) * np.log(unexplained)
+    value += np.log(np.diag(lower)).sum() - 0.5 * len(factors) * np.log(ridge)
+    diagonal = np.diag(linalg.lapack.dpotri(lower, lower=1)[0])
+    by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (count - 1.0) / (unexplained * total)
+    # The penalty is one over the square of a factor that all terms have.
+    return float(value), np.append(powers.T @ by_factor, -0.5 * by_factor.sum())
+
 
 # Of a rung that walks: the deviation of a square beside that of a linear term. Finer steps gave the same errors.
 FADE = 0.4
@@ -140,6 +193,7 @@ def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[t
         values = np.maximum(values, 0.0)
         ridges = sums.count * np.array(PENALTIES)[:, None]
         unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=1) / sums.total, 1e-12)
+        # Of a normal law whose scatter is unknown, with the constant integrated out: so count - 1.
         evidences = -0.5 * ((sums.count - 1.0) * np.log(unexplained) + np.log1p(values / ridges).sum(axis=1))
         for penalty, evidence in zip(PENALTIES, evidences.tolist(), strict=True):
             yield evidence, Rung(amplitudes, fades, degree, penalty * FADE**2)

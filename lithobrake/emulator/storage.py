@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.chaos.multi_index import multi_index_set
+from lithobrake.chaos.basis import multi_index_set
 from lithobrake.chaos.storage import (
     indices_from_json,
     inputs_from_json,
@@ -17,10 +17,9 @@ from lithobrake.chaos.storage import (
     names_from_json,
     numbers_from_json,
 )
-from lithobrake.emulator.law import Choices, Law
-from lithobrake.emulator.outcome_classes import ClassChoice, OutcomeClasses
+from lithobrake.emulator.law import Choices, ClassChoice, Law, OutcomeClasses
+from lithobrake.emulator.mean_law import Terms
 from lithobrake.emulator.ridge_ladder import Ladder, Rung
-from lithobrake.emulator.terms import Terms
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
 from lithobrake.vocabulary.arrays import Array
@@ -119,7 +118,6 @@ def parts_of(content: dict[str, Any]) -> Parts:
 
 
 def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
-    """Runs as JSON values."""
     return {
         "inputs": inputs_to_json(runs.inputs),
         "output_names": list(runs.output_names),

@@ -1,4 +1,4 @@
-"""The runs that an emulator is made from, checked."""
+"""The runs that an emulator is made from, checked, and bounded outputs as unbounded coordinates."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,13 +7,56 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.abstract_distribution import Distribution
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.distribution_registry import checked_inputs
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training import check_magnitude
-from lithobrake.emulator.coordinates import from_coordinate, inside, to_coordinate
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
+
+
+def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:
+    """Coordinates of outputs y strictly between bounds of the same shape; an infinite bound is none."""
+    has_lower, has_upper = np.isfinite(lower), np.isfinite(upper)
+    # Where there is no bound the distance is 1, of which the logarithm is 0.
+    above = np.where(has_lower, y - np.where(has_lower, lower, 0.0), 1.0)
+    below = np.where(has_upper, np.where(has_upper, upper, 0.0) - y, 1.0)
+    return np.where(has_lower | has_upper, np.log(above) - np.log(below), y)
+
+
+def with_slope(y: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
+    """Coordinates of any outputs, and derivatives of them by the output; beyond a bound infinite, with derivative 0.
+
+    Bounds broadcast to the shape of y.
+    """
+    low, high = np.broadcast_to(lower, y.shape), np.broadcast_to(upper, y.shape)
+    within = np.clip(y, np.nextafter(low, np.inf), np.nextafter(high, -np.inf))
+    coordinate = np.where(y <= low, -np.inf, np.where(y >= high, np.inf, to_coordinate(within, low, high)))
+    # Of an infinite bound nothing is left; at the smallest numbers a derivative would overflow.
+    with np.errstate(over="ignore"):
+        slope = np.minimum(1.0 / (within - low) + 1.0 / (high - within), np.finfo(float).max)
+    slope = np.where(np.isfinite(low) | np.isfinite(high), slope, 1.0)
+    return coordinate, np.where(np.isinf(coordinate), 0.0, slope)
+
+
+def from_coordinate(coordinate: Array, lower: Array, upper: Array) -> Array:
+    """Outputs of coordinates, strictly between bounds that broadcast to their shape."""
+    has_lower, has_upper = np.isfinite(lower), np.isfinite(upper)
+    start, end = np.where(has_lower, lower, 0.0), np.where(has_upper, upper, 0.0)
+    # Of a coordinate far out no more than the bound itself would be left: the exponent is the smaller one.
+    share = 1.0 / (1.0 + np.exp(-np.clip(coordinate, -700.0, 700.0)))
+    grown = np.exp(np.clip(coordinate, -700.0, 700.0))
+    two_sided = start + (end - start) * share
+    one_sided = np.where(has_lower, start + grown, end - 1.0 / grown)
+    y = np.where(has_lower & has_upper, two_sided, np.where(has_lower | has_upper, one_sided, coordinate))
+    # Rounding may put a draw onto a bound, which no output reaches.
+    return inside(y, lower, upper)
+
+
+def inside(y: Array, lower: Array, upper: Array) -> Array:
+    """Outputs with those beyond bounds put onto the next number inside."""
+    return np.clip(y, np.nextafter(lower, np.inf), np.nextafter(upper, -np.inf))
+
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
 # Fewer residuals than this are no distribution to draw from.
@@ -79,6 +122,7 @@ class TrainingRuns:
             known.append(of_runs[0] if given is None else given)
         tables = checked_bounds(known[0], known[1], (count, len(self.output_names)))
         for name, table, of_runs in zip(("lower", "upper"), tables, (self.lower, self.upper), strict=True):
+            # A bound that is finite at the runs or at new points alone would give the output another coordinate there.
             if (np.isfinite(table) != np.isfinite(of_runs[0])).any():
                 raise ValueError(f"{name} must be finite for the same outputs as in the runs: give it as fit was given")
         return tables

@@ -1,4 +1,4 @@
-"""What a law is worth on groups that it has not seen, beside drawing one of the runs whatever the inputs."""
+"""What a law is worth on groups that it has not seen, by proper scores."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,13 +6,70 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.chaos.multi_index import Indices
-from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, rows_alone
-from lithobrake.emulator.residual_rows import kernels, row_weights
+from lithobrake.chaos.basis import Indices
+from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, kernels, row_weights, rows_alone
 from lithobrake.emulator.ridge_ladder import TermTable
-from lithobrake.emulator.scores import crps, energy_scores, folds_of, mean_by_groups, pit
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.vocabulary.arrays import Array
+
+
+def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """Fold of each run [run_count], whole groups together, numbered from 0."""
+    numbers = np.unique(group, return_inverse=True)[1]
+    # Neighbours in a sequence of runs fall into different folds.
+    return np.asarray(numbers % min(most, int(numbers.max()) + 1), dtype=np.int64)
+
+
+def mean_by_groups(values: Array, group: NDArray[np.int64]) -> tuple[float, float]:
+    """Mean of values [run_count] and its standard error, as groups and not runs are independent; infinite for one."""
+    numbers = np.unique(group, return_inverse=True)[1]
+    sums = np.bincount(numbers, weights=values - values.mean())
+    count = len(sums)
+    if count == 1:
+        return float(values.mean()), np.inf
+    return float(values.mean()), float(np.sqrt(count / (count - 1.0) * (sums**2).sum()) / len(values))
+
+
+def energy_scores(points: Array, weights: Array, scales: Array, observed: Array) -> Array:
+    """Energy score of ensembles that share their members, [weighting_count, case_count]; the smaller, the better.
+
+    points [member_count, output_count], which case i stretches by scales [case_count, output_count]; weights
+    [weighting_count, case_count, member_count] sum to 1; observed [case_count, output_count], from the ensemble's
+    location. Source: [Gneiting-2007], Eq 22.
+    """
+    squares = (points[:, None] - points) ** 2
+    scores = np.empty(weights.shape[:2])
+    for case, (scale, seen) in enumerate(zip(scales, observed, strict=True)):
+        weight = weights[:, case]
+        distances = np.sqrt(((seen - scale * points) ** 2).sum(axis=1))
+        spread = np.sqrt(squares @ scale**2)
+        scores[:, case] = weight @ distances - 0.5 * ((weight @ spread) * weight).sum(axis=1)
+    return scores
+
+
+def crps(values: Array, weights: Array, observed: Array) -> Array:
+    """Continuous ranked probability score of ensembles, [case_count]: values, weights [case_count, member_count].
+
+    Source: [Gneiting-2007], Eq 21.
+    """
+    order = np.argsort(values, axis=1)
+    sorted_values, sorted_weights = (
+        np.take_along_axis(values, order, axis=1),
+        np.take_along_axis(weights, order, axis=1),
+    )
+    # From ranks, so that the mean distance of members costs a sort and not all pairs of them.
+    below = np.cumsum(sorted_weights, axis=1) - 0.5 * sorted_weights
+    spread = (sorted_weights * sorted_values * (2.0 * below - 1.0)).sum(axis=1)
+    return (weights * np.abs(values - observed[:, None])).sum(axis=1) - spread
+
+
+def pit(values: Array, weights: Array, observed: Array) -> Array:
+    """Probability integral transform [case_count]: the ensemble's chance of less than what was observed.
+
+    Uniform between 0 and 1 where ensembles are right.
+    """
+    return (weights * ((values < observed[:, None]) + 0.5 * (values == observed[:, None]))).sum(axis=1)
+
 
 # Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
 MOST_FOLDS = 12
@@ -64,6 +121,7 @@ def choices_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array) -> tu
         energy_of_rows[fold.test] = _energies(runs, matrix, fold, fold.rows, tried[:1])[0]
     energy, widths = np.empty(len(group)), []
     for fold in folds:
+        # The kernel is chosen without the fold that it is scored on, or its luck would count as gain.
         own = _best_kernel(energies[:, ~fold.test], group[~fold.test])
         energy[fold.test] = energies[own, fold.test]
         widths.append(tried[own])

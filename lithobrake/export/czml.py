@@ -3,25 +3,21 @@
 Source: [CZML-2022]
 """
 
-import json
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lithobrake.export.aem import one_sided, sampled
-from lithobrake.export.flight_segments import checked_step, flight_segments
+from lithobrake.export.attitudes import one_sided, sampled, turns_of
+from lithobrake.export.ephemerides import checked_step, flight_segments
 from lithobrake.export.flown import Flown, has_journeys
-from lithobrake.export.frames import RESOLUTION, Frame
-from lithobrake.export.oem import Segment, epoch_texts
-from lithobrake.export.turning import turns_of
-from lithobrake.files.atomic import atomic_path
+from lithobrake.export.oem import RESOLUTION, Frame, Segment, epoch_texts
+from lithobrake.files.atomic import write_json
 from lithobrake.results import StudyResults
-from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 
@@ -61,8 +57,7 @@ def write_czml(
     packets = [_document(axes, begin, end), _body(results, axes)]
     for sample, segments in parts.items():
         packets.append(_lander(results, flights, axes, sample, segments, end))
-    with atomic_path(path) as draft:
-        draft.write_text(json.dumps(packets, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(path, packets, indent=None)
 
 
 def _document(axes: Frame, begin: float, end: float) -> dict[str, Any]:
@@ -144,7 +139,7 @@ def _orientation(results: StudyResults, flights: Flown, axes: Frame, sample: int
     return found
 
 
-def _way(axes: Frame, time: NDArray[np.float64], place: NDArray[np.float64], degree: int) -> dict[str, Any]:
+def _way(axes: Frame, time: Array, place: Array, degree: int) -> dict[str, Any]:
     """A way in an interval; times since the epoch [s], [count], places [m], [count, 3]."""
     return _sampled(axes, "cartesian", np.column_stack([time, place]), degree) | {"referenceFrame": "FIXED"}
 
@@ -155,7 +150,7 @@ def _contact(axes: Frame, before: Segment, after: Segment) -> dict[str, Any]:
     return _way(axes, time, np.array([before.state[-1, :3], after.state[0, :3]]), 1)
 
 
-def _sampled(axes: Frame, name: str, table: NDArray[np.float64], degree: int) -> dict[str, Any]:
+def _sampled(axes: Frame, name: str, table: Array, degree: int) -> dict[str, Any]:
     """A property in an interval from rows of times and values."""
     return {
         "interval": _interval(axes, table[0, 0], table[-1, 0]),

@@ -1,17 +1,85 @@
-"""Flights of a study as Orbit Ephemeris Messages: those of chosen samples, and the mean of the cloud of first ones."""
+"""Flights of chosen samples as Orbit Ephemeris Messages, and as kernels of SPICE (SPK, PCK)."""
 
 import logging
-from collections.abc import Sequence
+import os
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
-from lithobrake.export.flight_segments import checked_step, flight_segments, stepped
 from lithobrake.export.flown import Flown
-from lithobrake.export.frames import Frame
-from lithobrake.export.oem import Segment, write_oem
+from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
+from lithobrake.files.atomic import atomic_path, write_whole
+from lithobrake.geometry.naif_kernels import DAY, NUMBERS, spice
 from lithobrake.results import StudyResults
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
+
+STEPS = 100
+
+
+def checked_step(flown: Flown, step: float | None) -> float:
+    """The time between states [s]; absent: a hundredth of the longest flight. Raises ValueError out of range."""
+    longest = float(flown.end_time.max())
+    step = longest / STEPS if step is None else step
+    if not 10.0 * RESOLUTION <= step <= longest:
+        raise ValueError(f"step is {step} s; allowed: {10.0 * RESOLUTION:g} to {longest:.6g} s, the longest flight")
+    return step
+
+
+def flight_segments(chosen: Flown, axes: Frame, step: float, progress: Progress) -> dict[int, list[Segment]]:
+    """By sample a segment for each flight, from its beginning to its end, in order; times count from the epoch."""
+    keys = _keys(chosen)
+    ends = axes.states(chosen, chosen.end_time, *chosen.ends()) if keys else np.empty((0, 6))
+    last = dict(zip(keys, chosen.end_time.tolist(), strict=True))
+    times: dict[tuple[int, int], list[float]] = {key: [] for key in keys}
+    states: dict[tuple[int, int], list[Array]] = {key: [] for key in keys}
+    for aloft in stepped(chosen, step, 1, progress, "flights of the chosen samples"):
+        here = axes.states(aloft, aloft.time, aloft.position, aloft.velocity)
+        for key, state in zip(_keys(aloft), here, strict=True):
+            # The end is a state of its own, which must not stand twice.
+            if last[key] - aloft.time > RESOLUTION:
+                times[key].append(aloft.time)
+                states[key].append(state)
+    count = Counter(sample for sample, _ in keys)
+    found: dict[int, list[Segment]] = {}
+    for key, begin, end in zip(keys, chosen.begin.tolist(), ends, strict=True):
+        sample, arc = key
+        time = np.array([*times[key], last[key]])
+        segment = Segment(
+            *(f"SAMPLE_{sample}", axes.body, axes.name),
+            *(begin + time, np.array([*states[key], end])),
+            comments=[_sentence(sample, arc, count[sample])],
+            # Hermite's polynomials take two numbers of each state; four states are plenty.
+            interpolation_degree=2 * min(len(time), 4) - 1 if len(time) > 1 else None,
+        )
+        found.setdefault(sample, []).append(segment)
+    return found
+
+
+def stepped(flown: Flown, step: float, fewest: int, progress: Progress, what: str) -> Iterator[Flown]:
+    """The flights that last at each step [s], as long as there are enough of them."""
+    number, ends = 0, np.sort(flown.end_time)
+    last = float(ends[-fewest]) if len(ends) >= fewest else 0.0
+    while len(flown.sample) >= fewest:
+        progress(min(flown.time / last, 1.0) if last > 0.0 else 1.0, what)
+        yield flown
+        number += 1
+        flown = flown.at(number * step)
+
+
+def _keys(flown: Flown) -> list[tuple[int, int]]:
+    """Sample of each flight and its number in the journey of that."""
+    return list(zip(flown.sample.tolist(), flown.arc.tolist(), strict=True))
+
+
+def _sentence(sample: int, arc: int, count: int) -> str:
+    words = "; between flights that do not follow at once the lander slid over the ground" if count > 1 else ""
+    return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
+
 
 log = logging.getLogger(__name__)
 
@@ -100,4 +168,111 @@ def _cloud(flown: Flown, axes: Frame, step: float, progress: Progress) -> Segmen
             f"{counts[0]} flights at the start, and of {counts[-1]} at the end. Flights that have ended count no more, "
             f"so this is no path of one lander; it ends before fewer than {FEWEST} flights are left."
         ],
+    )
+
+
+# Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
+FIRST, FRAME = -1_000_000, 1_400_000
+FLIGHTS, CONSTANTS = "flights.bsp", "body.tpc"
+# Epoch of J2000 as a Julian date.
+J2000 = 2_451_545.0
+
+
+def write_spk(
+    results: StudyResults,
+    folder: Path,
+    samples: Sequence[int],
+    *,
+    epoch: str | None = None,
+    step: float | None = None,
+    body_number: int | None = None,
+    progress: Progress = silent,
+) -> list[Path]:
+    """Write flights.bsp, with a segment for each flight of the chosen samples, and body.tpc; give their paths.
+
+    Segments are of type 13 (Hermite) in the axes J2000, those of ICRF within a tenth of an arc second, about the body,
+    in the time of SPICE (TDB); they are named "SAMPLE N FLIGHT K". Lander N has the number -1000000 - N. The constants
+    have pole, angle of longitude 0 and spin of the body, its name, and its axes as the frame NAME_FIXED.
+
+    samples, epoch, step   as write_ephemerides has them, with frame = "icrf"
+    body_number   of the body in SPICE; absent: that of a built-in body, or of kernel_body in the study
+    Raises ValueError for a body without a number, and as write_ephemerides does; ImportError without spiceypy, pyerfa.
+    """
+    if not samples:
+        raise ValueError("no sample is chosen whose flights are passed on; name some with --flight, from 0")
+    number = _number(results) if body_number is None else body_number
+    axes, flown = Frame.of(results, "icrf", epoch), Flown.of(results)
+    chosen = axes.timed(results, flown.journeys(results, list(dict.fromkeys(samples))))
+    start = ephemeris_time(axes.epoch)
+    segments = flight_segments(chosen, axes, checked_step(flown, step), progress)
+    with atomic_path(folder / FLIGHTS) as draft:
+        _write_segments(draft, segments, number, start)
+    period = float(np.median(flown.spin_period))
+    write_whole(folder / CONSTANTS, _constants(results, axes, number, start, period, list(segments)), "ascii")
+    return [folder / FLIGHTS, folder / CONSTANTS]
+
+
+def ephemeris_time(epoch: datetime) -> float:
+    """Time of SPICE, TDB since J2000 [s], of a UTC epoch. Raises ImportError without pyerfa."""
+    erfa = extra_library("erfa", "pyerfa, which knows the time scales of SPICE,", "spice")
+    second = epoch.second + 1e-6 * epoch.microsecond
+    utc = erfa.dtf2d("UTC", epoch.year, epoch.month, epoch.day, epoch.hour, epoch.minute, second)
+    whole, part = erfa.taitt(*erfa.utctai(*utc))
+    return float(((whole - J2000) + part) * DAY + erfa.dtdb(whole, part, 0.0, 0.0, 0.0, 0.0))
+
+
+def _number(results: StudyResults) -> int:
+    site = results.study["site"]
+    if site["body"] in NUMBERS:
+        return NUMBERS[site["body"]]
+    try:
+        return int(site.get("kernel_body") or "")
+    except ValueError:
+        raise ValueError(
+            f"the body {Path(site['body']).name} has no number in SPICE; give it with --body-number, or write it as "
+            "site.kernel_body"
+        ) from None
+
+
+def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int, start: float) -> None:
+    """Write segments whose times count from a time of SPICE [s]."""
+    library = spice()
+    handle = library.spkopn(os.fspath(path), "lithobrake", 0)
+    for sample, parts in segments.items():
+        for flight, part in enumerate(parts):
+            # A flight that ends as it begins has no way between states.
+            if part.interpolation_degree is None:
+                continue
+            times: Array = start + part.time
+            states, name = np.ascontiguousarray(part.state * 1e-3), f"SAMPLE {sample} FLIGHT {flight}"
+            ends, degree = (times[0], times[-1]), part.interpolation_degree
+            library.spkw13(
+                handle, FIRST - sample, number, "J2000", *ends, name, degree, len(times), states.tolist(), times
+            )
+    library.spkcls(handle)
+
+
+def _constants(
+    results: StudyResults, axes: Frame, number: int, start: float, spin_period: float, samples: Sequence[int]
+) -> str:
+    """Text of the constants; start: the time of SPICE at which site.meridian_deg holds [s]."""
+    right_ascension, declination, meridian = (float(results.study["site"][key]) for key in POLE)
+    at_j2000 = (meridian - 360.0 * start / spin_period) % 360.0
+    frame = FRAME + abs(number) % 100_000
+    assigned = [(axes.body, number), *((f"SAMPLE_{sample}", FIRST - sample) for sample in samples)]
+    names = "".join(
+        f"NAIF_BODY_NAME += ( '{name}' )\nNAIF_BODY_CODE += ( {code} )\n" for name, code in assigned
+    )  # fmt: skip
+    return (
+        "KPL/PCK\n\n"
+        f"Pole, angle of longitude 0 and spin of {axes.body}, from a study of lithobrake; the spin period is the\n"
+        f"median of its samples, {spin_period!r} s. Its axes are the frame {axes.body}_FIXED.\n\n"
+        "\\begindata\n"
+        f"BODY{number}_POLE_RA = ( {right_ascension!r} 0. 0. )\n"
+        f"BODY{number}_POLE_DEC = ( {declination!r} 0. 0. )\n"
+        f"BODY{number}_PM = ( {at_j2000!r} {360.0 * DAY / spin_period!r} 0. )\n"
+        f"FRAME_{axes.body}_FIXED = {frame}\n"
+        f"FRAME_{frame}_NAME = '{axes.body}_FIXED'\nFRAME_{frame}_CLASS = 2\n"
+        f"FRAME_{frame}_CLASS_ID = {number}\nFRAME_{frame}_CENTER = {number}\n"
+        f"{names}\\begintext\n"
     )

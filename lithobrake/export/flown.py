@@ -17,8 +17,8 @@ from lithobrake.results import StudyResults, Table
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
+from lithobrake.vocabulary.arrays import Array
 
-Floats = NDArray[np.float64]
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
     "sample", "arc", "begin", "start_time", "position", "velocity", "mass", "spin_period", "end_time", "duration",
@@ -44,14 +44,14 @@ class Flown:
     time: float
     sample: NDArray[np.int64]
     arc: NDArray[np.int64]
-    begin: Floats
-    start_time: Floats
-    position: Floats
-    velocity: Floats
-    mass: Floats
-    spin_period: Floats
-    end_time: Floats
-    duration: Floats
+    begin: Array
+    start_time: Array
+    position: Array
+    velocity: Array
+    mass: Array
+    spin_period: Array
+    end_time: Array
+    duration: Array
     gravity: str
 
     @classmethod
@@ -132,7 +132,7 @@ class Flown:
         aloft = self._rows(np.flatnonzero(self.end_time > time))
         return replace(aloft._flown(time - self.time), time=time) if len(aloft.sample) else aloft
 
-    def ends(self) -> tuple[Floats, Floats]:
+    def ends(self) -> tuple[Array, Array]:
         """Position [m] and velocity [m/s], body-fixed, [count, 3], at the end of flights that begin here.
 
         They go as the study flew them, in one piece, and so end where it says to the last bit.
@@ -140,7 +140,7 @@ class Flown:
         flown = self._flown(self.duration - self.time)
         return flown.position, flown.velocity
 
-    def inertial(self, time: Floats | float, position: Floats, velocity: Floats) -> tuple[Floats, Floats]:
+    def inertial(self, time: Array | float, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Body-fixed states at times since the start [s] in axes that do not turn, the body's at the touchdown."""
         rate = 2.0 * np.pi / self.spin_period
         spin, angle = np.outer(rate, [0.0, 0.0, 1.0]), rate * (self.begin + time)
@@ -151,7 +151,7 @@ class Flown:
             turned.append(np.column_stack([c * x - s * y, s * x + c * y, z]))
         return turned[0], turned[1]
 
-    def _flown(self, duration: Floats | float) -> "Flown":
+    def _flown(self, duration: Array | float) -> "Flown":
         """Flights that go on for so long [s], or to their end."""
         flights = fly(
             *(self.body, self.position, self.velocity, duration),

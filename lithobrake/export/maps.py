@@ -1,9 +1,5 @@
-"""Where flights end as maps of other programs: GeoTIFF and GeoJSON in a geographic frame of the body's own.
+"""Where flights end, and the sites of a map, in the formats of geographic programs: GeoTIFF and GeoJSON."""
 
-Source: [GeoTIFF-2019], keys of user-defined geographic frames.
-"""
-
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import body_name, has_journeys
-from lithobrake.files.atomic import atomic_path
+from lithobrake.export.flown import body_name, has_journeys, plain_name
+from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
+from lithobrake.results.site_results import SiteMap
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus
 
 if TYPE_CHECKING:
@@ -53,13 +50,11 @@ class MapFrame:
 
     @classmethod
     def of(cls, results: StudyResults) -> "MapFrame":
-        """That of the body of a study."""
         volume = volume_of(*results.body_shape)
         return cls(body_name(results), (0.75 * volume / math.pi) ** (1.0 / 3.0))
 
     @property
     def name(self) -> str:
-        """Name of the frame."""
         return f"{self.body} sphere, planetocentric, east positive"
 
     @property
@@ -95,7 +90,6 @@ def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = 
 
 
 def map_name(results: StudyResults) -> str:
-    """Name of the file of that map."""
     return "rest.tif" if has_journeys(results) else "impacts.tif"
 
 
@@ -209,5 +203,29 @@ def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[An
         **more,
         "features": features,
     }
-    with atomic_path(path) as draft:
-        draft.write_text(json.dumps(content, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(path, content, indent=None)
+
+
+UNITS = "fractions of 1; s; m; deg; m/s2; _lower and _upper: 90 % intervals; _5 and _95: 90 % of the area lies between"
+
+
+def site_cells_file(place: Path) -> Path:
+    """The file of the polygons in the folder of a map."""
+    return place / "sites.geojson"
+
+
+def write_site_cells(site_map: SiteMap, place: Path) -> Path:
+    """Write a polygon for each site of a map, with its numbers, null where it has none; returns the file.
+
+    Borders of sites are lines of constant latitude or longitude, as straight lines in these coordinates are.
+    """
+    radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
+    frame, path = MapFrame(plain_name(site_map.body), radius), site_cells_file(place)
+    features = []
+    for number, site in enumerate(site_map.cells):
+        south, north, west, east = site.bounds_deg
+        ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+        polygon = {"type": "Polygon", "coordinates": [ring]}
+        features.append({"type": "Feature", "id": number, "geometry": polygon, "properties": site.row})
+    write_features(frame, path, "sites", features, note=f"{NOTE}; {UNITS}")
+    return path

@@ -1,6 +1,5 @@
 """A hop of landers at rest: their states just after a commanded push, as the delivery of the next study."""
 
-import csv
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +8,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.export.flown import refuse_rotation
-from lithobrake.files.atomic import atomic_path
-from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.files.atomic import write_rows
+from lithobrake.files.reading import content_hash, hashed_seed
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, Shape
 from lithobrake.vocabulary.given_numbers import finite_number, whole_number
@@ -107,8 +106,5 @@ def write_push(results: StudyResults, path: Path, push: Push) -> int:
     rate[:, 2] += body.spin_rate
     own = Rotation.from_quat(attitude, scalar_first=True).inv().apply(rate)
     rows = np.column_stack([np.zeros(len(chosen)), place, velocity, attitude, own])
-    with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(TITLES)
-        writer.writerows(rows.tolist())
+    write_rows(path, TITLES, rows.tolist())
     return len(chosen)

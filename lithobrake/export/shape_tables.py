@@ -1,18 +1,59 @@
-"""The shape of the body as tables of other programs: its plates, and numbers of each facet in their order."""
+"""The shape of the body as tables of other programs: plates, and numbers of each facet, as text and FITS."""
 
-import csv
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.fits import write_fits_table
 from lithobrake.export.flown import Flown
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_rows, write_whole
 from lithobrake.results import Column, StudyResults, Table
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body
+
+# Files come in blocks of this many bytes; headers in cards of so many characters.
+BLOCK, CARD = 2880, 80
+# Format of the standard and of the file, by kind of number.
+FORMATS = {"i": ("K", ">i8"), "f": ("D", ">f8")}
+
+
+def write_fits_table(path: Path, name: str, columns: Mapping[str, Column]) -> None:
+    """Write columns of whole numbers and floats as a table of this name, with their units and what they are."""
+    kinds = {title: FORMATS[column.values.dtype.kind] for title, column in columns.items()}
+    record = np.dtype([(title, kind[1]) for title, kind in kinds.items()])
+    rows = np.empty(len(next(iter(columns.values())).values), dtype=record)
+    for title, column in columns.items():
+        rows[title] = column.values
+    primary = [("SIMPLE", True, "FITS"), ("BITPIX", 8, ""), ("NAXIS", 0, ""), ("EXTEND", True, "")]
+    table = [
+        ("XTENSION", "BINTABLE", "binary table"), ("BITPIX", 8, ""), ("NAXIS", 2, ""),
+        ("NAXIS1", record.itemsize, "bytes of a row"), ("NAXIS2", len(rows), "rows"),
+        ("PCOUNT", 0, ""), ("GCOUNT", 1, ""), ("TFIELDS", len(columns), "columns"), ("EXTNAME", name, ""),
+    ]  # fmt: skip
+    for number, (title, column) in enumerate(columns.items(), 1):
+        table += [(f"TTYPE{number}", title, column.long_name), (f"TFORM{number}", kinds[title][0], "")]
+        table += [(f"TUNIT{number}", _unit(column.units), "")] if column.units else []
+    data = rows.tobytes()
+    write_whole(path, _header(primary) + _header(table) + data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0"))
+
+
+def _unit(unit: str) -> str:
+    """A unit as the standard writes it: powers with two stars."""
+    return unit.replace("m2", "m**2")
+
+
+def _header(cards: list[tuple[str, Any, str]]) -> bytes:
+    text = "".join([*_cards(cards), "END".ljust(CARD)])
+    return text.ljust(-(-len(text) // BLOCK) * BLOCK).encode("ascii")
+
+
+def _cards(cards: list[tuple[str, Any, str]]) -> Iterator[str]:
+    for key, value, comment in cards:
+        written = f"'{value:<8}'".ljust(20) if isinstance(value, str) else f"{'T' if value is True else value:>20}"
+        # A comment that is too long for its card is cut, as the standard says.
+        yield f"{key:<8}= {written}{f' / {comment}' if comment else ''}"[:CARD].ljust(CARD)
 
 
 def write_facet_csv(results: StudyResults, path: Path) -> None:
@@ -20,11 +61,8 @@ def write_facet_csv(results: StudyResults, path: Path) -> None:
     table = facet_table(results)
     titles = [f"{name} [{column.units}]" if column.units else name for name, column in table.columns.items()]
     columns = [column.values.tolist() for column in table.columns.values()]
-    with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(titles)
-        for row in zip(*columns, strict=True):
-            writer.writerow(["" if value != value else value for value in row])
+    rows = zip(*columns, strict=True)
+    write_rows(path, titles, (["" if value != value else value for value in row] for row in rows))
 
 
 def write_facet_fits(results: StudyResults, path: Path) -> None:
@@ -81,5 +119,4 @@ def write_plates(results: StudyResults, path: Path) -> None:
     lines += [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate((vertices * 1e-3).tolist(), 1)]
     lines += [str(len(faces))]
     lines += [f"{number} {a} {b} {c}" for number, (a, b, c) in enumerate((np.asarray(faces) + 1).tolist(), 1)]
-    with atomic_path(path) as draft:
-        draft.write_text("\n".join(lines) + "\n", encoding="ascii")
+    write_whole(path, "\n".join(lines) + "\n", "ascii")

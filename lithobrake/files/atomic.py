@@ -1,5 +1,6 @@
 """Files that nothing can spoil: written whole or not at all, and by one process at a time."""
 
+import csv
 import errno
 import json
 import os
@@ -36,6 +37,25 @@ def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
         os.replace(draft, final)
     finally:
         draft.unlink(missing_ok=True)
+
+
+def write_whole(path: str | os.PathLike[str], content: str | bytes, encoding: str = "utf-8") -> None:
+    """Write a file, whole or not at all."""
+    with atomic_path(path) as draft:
+        draft.write_bytes(content if isinstance(content, bytes) else content.encode(encoding))
+
+
+def write_json(path: str | os.PathLike[str], content: Any, indent: int | None = 2) -> None:
+    """Write a JSON file, whole or not at all. Raises ValueError for NaN and infinity, which JSON does not have."""
+    write_whole(path, json.dumps(content, indent=indent, allow_nan=False) + "\n")
+
+
+def write_rows(path: str | os.PathLike[str], titles: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
+    """Write a CSV file, whole or not at all."""
+    with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(titles)
+        table.writerows(rows)
 
 
 def refuse_existing(paths: Iterable[Path], remedy: str) -> None:

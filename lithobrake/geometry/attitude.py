@@ -1,8 +1,12 @@
-"""Attitudes, as unit quaternions w, x, y, z that turn a body into place: by chance, multiplied, and as matrices."""
+"""Attitudes as unit quaternions w, x, y, z, and the terms that a lander's symmetry leaves of them."""
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+
+from lithobrake.vocabulary.arrays import Array
 
 
 def uniform_attitude(first: float, second: float, third: float) -> np.ndarray:
@@ -49,3 +53,116 @@ def quaternion_products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     w, v, s, u = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
     scalar = w * s - np.sum(v * u, axis=1, keepdims=True)
     return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=1)
+
+
+# They differ by less than this part.
+ALIKE = 1e-6
+
+
+def alike(first: float, second: float) -> bool:
+    return math.isclose(first, second, rel_tol=ALIKE)
+
+
+UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"
+# The smallest and the largest value of each term.
+RANGES = {UPRIGHT: (0.0, 1.0), LEAN: (-1.0, 1.0), ALONG: (-1.0, 1.0), FACING: (-1.0, 1.0), HEADING: (-1.0, 1.0)}
+CUBE_RANGES = {UPRIGHT: (1.0 / 3.0, 1.0), LEAN: (-0.3, 0.3), ALONG: (-0.5, 0.5)}
+# A law whose terms vary by less than this, squared, has no such term.
+LEAST_VARIANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class AttitudeTerms:
+    """The terms of a lander's attitude.
+
+    axes: [axis_count, 3], fixed to the lander, names: one letter or number for each. has_sides: whether the two ends
+    of an axis differ, as those of a mesh may. is_cube: the terms are sums over three axes that are alike, of fourth
+    degree.
+    """
+
+    axes: Array
+    names: tuple[str, ...]
+    has_sides: bool = False
+    is_cube: bool = False
+
+    @classmethod
+    def of_box(cls, edges: Array, inertia: Array | None = None) -> "AttitudeTerms":
+        """Those of a box of these edges [3], with moments of inertia [3] about its axes where it is not homogeneous."""
+        pairs = [edges] if inertia is None else [edges, inertia]
+        paired = [axis for axis in range(3) if all(alike(one[axis - 2], one[axis - 1]) for one in pairs)]
+        if len(paired) == 3:
+            return cls(np.eye(3), ("x", "y", "z"), is_cube=True)
+        # A prism has one axis of its own; of any other box the terms of the third axis follow from those of two.
+        chosen = paired or [int(np.argmax(edges)), int(np.argmin(edges))]
+        return cls(np.eye(3)[chosen], tuple("xyz"[axis] for axis in chosen))
+
+    @classmethod
+    def of_body(cls, inertia: Array) -> "AttitudeTerms":
+        """Those of a body without symmetry, about its principal axes; inertia: [3, 3]."""
+        axes = np.linalg.eigh(inertia)[1].T
+        # Which way an axis points is of no consequence, but should not change from machine to machine.
+        largest = np.take_along_axis(axes, np.abs(axes).argmax(axis=1)[:, None], axis=1)
+        return cls(axes * np.sign(largest), ("1", "2", "3"), has_sides=True)
+
+    @cached_property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Smallest and largest value of each term, by its name."""
+        if self.is_cube:
+            return dict(CUBE_RANGES)
+        upright = self.names[: 2 if self.has_sides else None]
+        found = {f"{term}_{name}": RANGES[term] for name in upright for term in (UPRIGHT, LEAN, ALONG)}
+        sides = self.names if self.has_sides else ()
+        return found | {f"{term}_{name}": RANGES[term] for term in (FACING, HEADING) for name in sides}
+
+    def at(self, normal: Array, travel: Array) -> Array:
+        """The terms [count, term_count] of normals and directions of travel [count, 3], seen from the lander."""
+        n, t, b = (way @ self.axes.T for way in (normal, travel, np.cross(normal, travel)))
+        if self.is_cube:
+            fourth = (n**4, n**3 * t, n**2 * (t**2 - b**2))
+            return np.column_stack([one.sum(axis=1) for one in fourth])
+        second = [(n[:, k] ** 2, 2.0 * n[:, k] * t[:, k], t[:, k] ** 2 - b[:, k] ** 2) for k in range(len(self.names))]
+        if not self.has_sides:
+            return np.column_stack([one for three in second for one in three])
+        return np.column_stack([*(one for three in second[:2] for one in three), n, t])
+
+    @cached_property
+    def uniform_law(self) -> tuple[Array, Array]:
+        """Mean [term_count] and covariance [term_count, term_count] over attitudes that are uniform over rotations.
+
+        By a product rule that is exact for them: products of two terms are of eighth degree.
+        """
+        # Six Gauss nodes are exact up to degree 11 along the axis, twelve turns for waves up to the eleventh.
+        nodes, weights = np.polynomial.legendre.leggauss(6)
+        turns = np.arange(12) * (2.0 * np.pi / 12)
+        cosine, turn, roll = (one.ravel() for one in np.meshgrid(nodes, turns, turns, indexing="ij"))
+        sine = np.sqrt(1.0 - cosine**2)
+        normal = np.column_stack([sine * np.cos(turn), sine * np.sin(turn), cosine])
+        east = np.column_stack([-np.sin(turn), np.cos(turn), np.zeros(len(turn))])
+        travel = np.cos(roll)[:, None] * east + np.sin(roll)[:, None] * np.cross(normal, east)
+        weight = np.repeat(weights, 144) / (2.0 * 144)
+        terms = self.at(normal, travel)
+        mean = weight @ terms
+        return mean, (terms - mean).T * weight @ (terms - mean)
+
+
+def seen_from_lander(orientation: Array, azimuth: Array) -> tuple[Array, Array]:
+    """Normal of the ground and direction of travel, both [count, 3], seen from the lander.
+
+    orientation: quaternions w, x, y, z [count, 4] that turn the lander into the bed, whose normal is z; azimuth: of the
+    travel in the bed [rad], [count].
+    """
+    into_bed = rotation_matrices(orientation)
+    travel = np.cos(azimuth)[:, None] * into_bed[:, 0] + np.sin(azimuth)[:, None] * into_bed[:, 1]
+    return into_bed[:, 2], travel
+
+
+def orthonormal(terms: Array, law: tuple[Array, Array]) -> Array:
+    """Combinations of terms [count, term_count] with mean 0, variance 1 and no correlation over a law.
+
+    law: mean and covariance. What does not vary under it drops out, so there may be fewer than terms, or none.
+    """
+    mean, covariance = law
+    variances, ways = np.linalg.eigh(covariance)
+    varies = variances > LEAST_VARIANCE
+    found: Array = (terms - mean) @ ways[:, varies] / np.sqrt(variances[varies])
+    return found

@@ -1,6 +1,5 @@
 """What makes a list of triangles the closed surface of one body, what that body weighs, and where its inside is."""
 
-import importlib
 import warnings
 
 import numpy as np
@@ -8,12 +7,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
+from lithobrake.vocabulary.extra_library import extra_library
+
 Vertices = NDArray[np.float64]
 Faces = NDArray[np.int64]
 
 # Height of a triangle over its longest edge, below which it has no usable normal; of a body, over its extent.
 FLATTEST = 1e-10
-INSTALL = 'pip install "lithobrake[thin]"'
 
 
 def closed_faces(vertices: Vertices, faces: Faces, where: str) -> Faces:
@@ -196,10 +196,7 @@ def thinned(vertices: Vertices, faces: Faces, facet_count: int) -> tuple[Vertice
     Edges whose ends move the surface least are drawn together, one after the other. Source: [Garland-1997]
     Raises ImportError, with how to install it, where the package that does so is absent.
     """
-    try:
-        simplification = importlib.import_module("fast_simplification")
-    except ImportError as error:
-        raise ImportError(f"fast-simplification, which thins a mesh, is not installed: {INSTALL}") from error
+    simplification = extra_library("fast_simplification", "fast-simplification, which thins a mesh,", "thin")
     # It takes arrays that it may write to, and corners of 32 bits.
     fewer, corners = simplification.simplify(
         np.array(vertices, order="C"), np.array(faces, dtype=np.int32, order="C"), target_count=facet_count

@@ -1,13 +1,13 @@
-"""What every stage is given."""
+"""What every stage is given, and what a stage is."""
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 
 
@@ -25,8 +25,6 @@ class Progress(Protocol):
 
 
 class Silent:
-    """Shows nothing."""
-
     def begin(self, title: str, number: int, count: int) -> None:
         """Show nothing."""
 
@@ -74,3 +72,30 @@ class Job:
     def say(self, sentence: str) -> None:
         """Tell the user a sentence."""
         self.shown.say(sentence)
+
+
+def no_dependencies(study: Study) -> Any:
+    """Nothing of the study itself, beside what the stages before depend on."""
+    return None
+
+
+def same_files(*names: str) -> Callable[[Study], list[str]]:
+    return lambda study: list(names)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A step of a study.
+
+    files: what it writes. make: writes it. after: stages whose files it reads. dependencies: what of the study it
+    depends on, as JSON values. parts: rooms and files of the package whose code decides what it writes, beside those of
+    the stages before; a change in any other makes no file of it outdated.
+    """
+
+    name: str
+    title: str
+    files: Callable[[Study], list[str]]
+    make: Callable[[Job], None]
+    after: tuple[str, ...] = ()
+    dependencies: Callable[[Study], Any] = no_dependencies
+    parts: tuple[str, ...] = ()

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from lithobrake.files.hashing import json_hash, source_hash
+from lithobrake.files.reading import json_hash, source_hash
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.stages import stages_of, stages_until
 from lithobrake.study import Study
@@ -16,6 +16,8 @@ def stage_keys(study: Study) -> dict[str, str]:
     """The key of each stage: what it reads of the study, its code, and the keys of the stages before it."""
     keys: dict[str, str] = {}
     for stage in stages_of(study):
+        # The keys of the stages before stand for their files, so that none has to be read to know what an edit
+        # outdates.
         before = [keys[name] for name in stage.after]
         keys[stage.name] = json_hash([stage.name, stage.dependencies(study), source_hash(*stage.parts), before])
     return keys
@@ -45,6 +47,7 @@ def make(job: Job, until: str, note: Callable[..., None]) -> None:
         of_stage()
         job.shown.begin(stage.title, number, len(stages))
         files = stage.files(job.study)
+        # File by file: of a thousand beds one that is missing is poured alone.
         wanted = tuple(name for name in files if not job.folder.is_current([name], keys[stage.name]))
         if not wanted:
             kept.append(stage.title)

@@ -8,17 +8,22 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
-from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER, answer_words, answers_of_design, read_shares
-from lithobrake.pipeline.answer.failing_runs import failing_runs
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.fly.run_flights import FILE, RunFlights
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_answers import (
+    ANSWERED_AFTER,
+    answer_words,
+    answers_of_design,
+    failing_runs,
+    read_shares,
+)
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.stages import JOURNEYS as JOURNEY_STAGE
 from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
+from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
-from lithobrake.pipeline.runs.touchdown_runs import known_runs
+from lithobrake.pipeline.stages import FOLLOW_JOURNEYS
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import JOURNEYS_FILE
@@ -32,10 +37,11 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     """
     if study.journey is not None:
         return _at_rest(study, folder)
-    key = folder.key_of(FILE)
+    key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:
         return {}
     shares = read_shares(folder)
+    # The file is of the number of runs that there were, which enters its key; two is the least that a study has.
     made_for = study.with_run_count(max(len(shares), 2))
     if stage_keys(made_for)[ANSWERED_AFTER] != key:
         return {}
@@ -51,7 +57,7 @@ def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
     if key is None or folder.key_of(file_of("drawn")) is None:
         return {}
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
-    if stage_keys(study.with_run_count(max(len(table.end), 2)))[JOURNEY_STAGE.name] != key:
+    if stage_keys(study.with_run_count(max(len(table.end), 2)))[FOLLOW_JOURNEYS.name] != key:
         return {}
     return dict(zip(keys, table.rests[table.numbers["touchdowns"] > 0.0].astype(float).tolist(), strict=True))
 
@@ -76,6 +82,7 @@ def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
     if asked.half_width is None:
         return design
     known, flown = known_runs(study, folder), flown_shares(study, folder)
+    # More than one step where a folder has runs of a larger count already.
     while known.keys() & flown.keys() >= set(design.keys):
         values, bed = answers_of_design(design, known, flown)
         count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
@@ -100,7 +107,6 @@ def grow(job: Job, make_runs: Callable[[Job], None]) -> Job:
 
 
 def width_sentence(job: Job) -> str:
-    """How well the answer is known by the runs of a study, beside what is asked."""
     width, design = _width(job), job.study.design
     known = "not known within any bound yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
@@ -124,5 +130,4 @@ def _width(job: Job) -> float | None:
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:
-    """On how many beds so many runs of a study come down."""
     return lambda run_count: study.with_run_count(run_count).bed_count

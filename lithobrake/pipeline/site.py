@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.geometry.great_circle import angles, directions
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.frames import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
-from lithobrake.study.correlated_keys import drawn_together
-from lithobrake.study.flight_sections import RotationSection
+from lithobrake.study.delivery_checks import drawn_together
+from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ NEARLY_NONE = 0.05
 UNLIKE = 3.0
 
 
+# Compared by identity: a study has dicts, which cannot be hashed, and cached properties belong to one object.
 @dataclass(frozen=True, eq=False)
 class Site:
     """The landing site of a study, made once for it; each property is worked out when it is first asked for."""
@@ -60,7 +61,6 @@ class Site:
 
     @cached_property
     def medians(self) -> dict[str, float]:
-        """The same with uncertain numbers at their median."""
         return {key: median(value) for key, value in self.values.items()}
 
     @property
@@ -84,7 +84,6 @@ class Site:
 
     @cached_property
     def distributions(self) -> "dict[str, Distribution]":
-        """Those of the uncertain numbers among them."""
         return {key: value.to_chaos() for key, value in uncertain(self.values).items()}
 
     @cached_property
@@ -144,7 +143,6 @@ class Site:
         return drawn_together(self.study, self.sampled_apart(count))
 
     def sampled_apart(self, count: int) -> dict[str, np.ndarray]:
-        """The same as if none were correlated with another."""
         from lithobrake.chaos.design import sample_inputs
 
         # The random numbers of an input follow from its name.
@@ -171,7 +169,6 @@ class Site:
 
     @property
     def holds(self) -> bool:
-        """Whether the ground there holds what lies on it."""
         return bool(self.acceleration[2] < 0.0)
 
     @cached_property

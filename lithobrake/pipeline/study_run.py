@@ -7,24 +7,22 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.campaign.main_module import refuse_while_importing
 from lithobrake.campaign.model_server import PREFIX
-from lithobrake.chaos.threads import one_thread
-from lithobrake.pipeline.answer.answer_of_run import ANSWERED_AFTER
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.campaign.worker import refuse_while_importing
+from lithobrake.chaos.training import one_thread
+from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder.notes import NAME
-from lithobrake.pipeline.folder.owner import refuse_others_folder
-from lithobrake.pipeline.folder.state import grouped, read_state
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.folder_state import grouped, read_state
 from lithobrake.pipeline.job import Job, Progress, Silent
 from lithobrake.pipeline.outdated_files import make, setting
-from lithobrake.pipeline.planning.plan_in_words import brief_lines
+from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import Model, function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_until
+from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 
@@ -61,6 +59,7 @@ def run(
             f"progress is {progress!r}, which has no {', '.join(lacking)}; allowed: None, or what "
             "lithobrake.progress.study_progress() gives"
         )
+    # Before the study is read, as the checks of a study depend on whether a function makes its touchdowns.
     function = None if model is None else function_identity(model)
     if isinstance(study, Mapping):
         if out is None:
@@ -69,6 +68,7 @@ def run(
     else:
         source = StudySource.read(Path(study), function)
     folder = Path("runs") / source.stem if out is None else Path(out)
+    # An empty text, as of a variable that is not set, would mean the current folder.
     if not str(out).strip():
         raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
     until = "report" if report else "summary"
@@ -77,7 +77,6 @@ def run(
 
 
 def _say_solver(command: str | None, shown: Progress) -> None:
-    """Say which program or server of the user's the runs ask, if any."""
     if command:
         what = "model of a server, which every remaining run calls"
         if not command.startswith(PREFIX):
@@ -107,6 +106,7 @@ def run_study(
     """
     shown = shown or Silent()
     study = with_site_gravity(source.study, source.name)
+    # Refuses a stage that the method does not have, before anything is made.
     stages_until(study, until)
     Soils(Site(study)).refuse(source.name)
     refuse_others_folder(source, out)
@@ -134,9 +134,8 @@ def run_study(
 
 
 def _make_all(job: Job, source: StudySource, until: str, note: Callable[..., None]) -> None:
-    """Make the stages of a study up to one, with as many runs as its half width turns out to ask for."""
-
     def make_runs(job: Job) -> None:
+        # The setting follows from the number of runs, which grows.
         job.folder.begin(source.path, source.content, setting(job.study), job.say)
         # While further beds are poured, whoever looks still finds the runs that there are.
         job.folder.note_runs("drawn", job.design.keys)

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
-    from lithobrake.report.comparison_report import write_comparison as write_comparison
-    from lithobrake.report.figures.corner_figure import write_corner as write_corner
-    from lithobrake.report.site_report import write_sites as write_sites
+    from lithobrake.report.figures.model_figures import write_corner as write_corner
+    from lithobrake.report.further_reports import write_comparison as write_comparison
+    from lithobrake.report.further_reports import write_sites as write_sites
     from lithobrake.report.study_plots import StudyPlots as StudyPlots
     from lithobrake.report.study_report import write_report as write_report
 else:

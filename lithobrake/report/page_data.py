@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from lithobrake.files.reading import DamagedFileError, reading
 from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
-from lithobrake.results.emulator_results import EmulatorResults
-from lithobrake.results.expansions import OutputErrors
 from lithobrake.results.journey_results import EndShare, JourneyRest
 from lithobrake.results.json_values import from_json
-from lithobrake.results.limit_state_results import RareLimitState
+from lithobrake.results.model_results import EmulatorResults, OutputErrors
+from lithobrake.results.questions import RareLimitState
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 

@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 
-from lithobrake.report.figures.journey_numbers import RestSpread, draw_counts, draw_spread
 from lithobrake.report.figures.place_map import draw_map
-from lithobrake.report.figures.runs_figure import draw_rebounds
-from lithobrake.report.figures.shares import draw_shares
+from lithobrake.report.figures.run_figures import draw_parts, draw_rebounds, part_handles
+from lithobrake.report.figures.share_figures import RestSpread, draw_counts, draw_shares, draw_spread
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.figures.variance_figure import draw_parts, part_handles
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages import drawn_page, journey_page, shared_plots
 from lithobrake.report.words.journey_captions import END_ROWS, END_WORDS
-from lithobrake.vocabulary.screen import in_lines
+from lithobrake.vocabulary.plain_text import in_lines
 
 if TYPE_CHECKING:
     from lithobrake.results import StudyResults

@@ -6,15 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_whole
 from lithobrake.report.content import Content, PageSection, Panel, Plot
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.page_data import DrawnPage, JourneyPage, PaperPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
-from lithobrake.report.pages.html import page
+from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.pages.paper_page import paper_content
-from lithobrake.report.pages.study_files import data_files, picture_files
 from lithobrake.report.tables.paper_tables import provenance
 from lithobrake.report.words import captions
 from lithobrake.results import open_study
@@ -47,10 +46,7 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     whole = replace(content, sections=[*content.sections, files])
     panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"
-    with atomic_path(path) as draft:
-        draft.write_text(
-            page(data.study["title"] or folder.name, captions.facts(data), whole, panels), encoding="utf-8"
-        )
+    write_whole(path, page(data.study["title"] or folder.name, captions.facts(data), whole, panels))
     return path
 
 
@@ -79,8 +75,7 @@ def drawn_panels(
         number += bool(made)
         names = {kind: f"figure_{number}_{plot.name}.{kind}" for kind in made}
         for kind, content in made.items():
-            with atomic_path(place / names[kind]) as draft:
-                draft.write_bytes(content)
+            write_whole(place / names[kind], content)
         panels[plot.name] = Panel(plot.title, plot.sentence, made.get("svg")), list(names.values())
     return panels
 

@@ -6,11 +6,11 @@ from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from lithobrake.results.explorer_tables import ExplorerTables as ExplorerTables
-    from lithobrake.results.journey_again import StudyJourney as StudyJourney
     from lithobrake.results.journey_track import JourneyMotion as JourneyMotion
     from lithobrake.results.journey_track import JourneyTrack as JourneyTrack
+    from lithobrake.results.journey_track import StudyJourney as StudyJourney
     from lithobrake.results.journey_track import TouchdownFacts as TouchdownFacts
-    from lithobrake.results.moving_bodies import MovingBodies as MovingBodies
+    from lithobrake.results.motions import MovingBodies as MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator as NamedEmulator
     from lithobrake.results.study_results import StudyResults as StudyResults
     from lithobrake.results.study_results import open_study as open_study

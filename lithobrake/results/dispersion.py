@@ -1,12 +1,27 @@
-"""Where the landers end: flights to the next impact, ellipses, and journeys until they are at rest."""
+"""Where the landers end: flights, ellipses, journeys until they rest, and regions that hold shares of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from lithobrake.results.json_values import INLINE
-from lithobrake.results.regions import RestRegion
-from lithobrake.results.shares import CountedShare, Level, SampleShares
-from lithobrake.vocabulary.screen import short_repr
+from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.vocabulary.plain_text import short_repr
+
+
+@dataclass(frozen=True)
+class RestRegion:
+    """The smallest region of the ground (highest density) that contains a fraction of the landers: at rest, or at an
+    impact."""
+
+    share: float
+    """that it holds, of 1"""
+    area_m2: float
+    """its area"""
+    largest_extent_m: float
+    """largest distance between two of its points"""
+    outlines: tuple[tuple[tuple[float, float], ...], ...]
+    """latitude and east longitude [deg] along its edges"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)

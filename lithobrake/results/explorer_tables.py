@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lithobrake.files.reading import reading
-from lithobrake.vocabulary.screen import short_repr
+from lithobrake.vocabulary.plain_text import short_repr
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,7 @@ NAMES = ("input_names", "output_names", "outcome_names")
 
 @dataclass(frozen=True)
 class ExplorerAttitude:
-    """What draws the attitudes of a touchdown, as `lithobrake.geometry.attitude_terms` has them.
+    """What draws the attitudes of a touchdown, as `lithobrake.geometry.attitude` has them.
 
     input_names: of the terms; axes [axis_count][3] of the lander; sides: in words, with the directions of the lander
     that are toward the ground.

@@ -1,11 +1,10 @@
-"""Where journeys of landings end: shares of their ends, and where, when and how the landers rest."""
+"""Where journeys of landings end: by side, soil, sky and emulator."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from lithobrake.results.dispersion import GroundResults, LandingEllipses
-from lithobrake.results.regions import RestRegion
-from lithobrake.vocabulary.screen import short_repr
+from lithobrake.results.dispersion import GroundResults, LandingEllipses, RestRegion
+from lithobrake.vocabulary.plain_text import short_repr
 
 
 @dataclass(frozen=True)
@@ -96,3 +95,121 @@ class JourneyRest:
     def grounds(self) -> dict[str, GroundResults]:
         """No samples of the emulator were followed, on any ground."""
         return {}
+
+
+@dataclass(frozen=True)
+class SideResults:
+    """Landers whose first touchdown has this side toward the ground, and all touchdowns with it."""
+
+    words: str
+    """the side in words, of a box with the lengths of its face"""
+    landings: int
+    """first touchdowns in which this side faces the ground: its axis is the nearest to the normal"""
+    speed_ratio: RestQuantile
+    """median of rebound speed / impact speed of these landings"""
+    returns: EndShare
+    """return fraction of these landings; count: landings of which all flights return"""
+    at_rest: EndShare | None = None
+    """with [journey]: fraction of these landers that comes to rest"""
+    time_s: RestQuantile | None = None
+    """with [journey]: median time to rest of these landers [s]"""
+    touchdowns: int | None = None
+    """with [journey]: all touchdowns in which this side faces the ground"""
+    rests: EndShare | None = None
+    """with [journey]: fraction of these touchdowns in which the lander comes to rest"""
+
+
+@dataclass(frozen=True)
+class SoilResults:
+    """The touchdowns in a region of the body with a soil of its own, or elsewhere, on [grain]."""
+
+    area_share: float
+    """fraction of the surface of the body"""
+    touchdowns: int
+    """touchdowns in it"""
+    rests: EndShare | None
+    """fraction of these touchdowns in which the lander comes to rest; null if there are none"""
+    at_rest: EndShare
+    """fraction of all journeys that end at rest there"""
+    outlines: tuple[tuple[tuple[float, float], ...], ...]
+    """latitude and east longitude [deg] along its edges; none for the ground elsewhere"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class Probability:
+    """A mean over the landers at rest of a fraction of the time: the probability for one of them at any time."""
+
+    share: float
+    """of 1"""
+    lower: float | None
+    """lower bound of its 90 % interval, over beds not in the study; null where there is none"""
+    upper: float | None
+    """upper bound"""
+    why: str | None = None
+    """why there is no interval, in a sentence"""
+
+
+@dataclass(frozen=True)
+class SkyResults:
+    """Visibility of the Sun, Earth or the orbiter for the landers at rest (sky.csv). Fractions are of a day of the
+    small body, of a span of dates, or of the times of the orbiter's states."""
+
+    day_fraction: RestQuantile
+    """median over the landers at rest of the fraction of the time in which they see it, of 1"""
+    day_fraction_q05: RestQuantile
+    """5th percentile of it"""
+    least_day_fraction: RestQuantile
+    """median over the landers at rest of that of their worst day in a span of dates"""
+    probability: Probability
+    """probability that a lander at rest sees it at a random time"""
+    never: EndShare
+    """landers at rest that never see it"""
+    sides: Mapping[str, RestQuantile]
+    """by the side of the lander, by its own axes: median fraction of the time in which it is seen and that side faces
+    it; empty for a sphere"""
+    side_probabilities: Mapping[str, Probability]
+    """by side: probability that at a random time it is seen and the side faces it, so that a panel is lit or an antenna
+    sees the orbiter; empty for a sphere"""
+    dark_sides: Mapping[str, EndShare]
+    """by the side: landers at rest on which it never faces the body while that is seen; empty for a sphere"""
+
+
+@dataclass(frozen=True)
+class ControlVariate:
+    """Effect of the emulator's predictions, as a control variate, on the fraction at rest."""
+
+    is_used: bool
+    """whether the fractions of the ends use this control variate: only if it narrows the interval of the fraction at
+    rest"""
+    half_width: float
+    """half-width of the interval of the fraction at rest without it"""
+    half_width_with: float
+    """the same with it"""
+
+
+@dataclass(frozen=True)
+class EmulatedJourneys:
+    """Landers that the emulator of all touchdowns followed from touchdown to touchdown (emulated.csv)."""
+
+    why: str | None
+    """why the touchdowns have no emulator, in a sentence; null where they have one"""
+    count: int
+    """landers"""
+    landings: int
+    """landings simulated outside the training range of the emulator"""
+    most_landings: int
+    """largest number of such landings"""
+    unknown: float
+    """fraction of the landers with unknown end: outside the training range when the largest number of landings was
+    reached"""
+    ends: Mapping[str, EndShare]
+    """ends of the others, as in results.ends; bounds over refits to resampled beds, widened by the unknown fraction"""
+    agrees: bool | None
+    """whether the fractions of all ends agree with those of the journeys within their joint intervals; null without
+    intervals"""
+    control: ControlVariate | None
+    """null where the emulator predicts nothing of the ends"""
+    statement: str
+    """whether the two agree, in a sentence; empty where no landers were followed"""
+    __repr__ = short_repr

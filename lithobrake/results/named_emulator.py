@@ -1,22 +1,24 @@
-"""The emulator of a study, sampled by the names of its inputs."""
+"""The emulator or an expansion of a study, called by the names of its inputs."""
 
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
-from lithobrake.vocabulary.html_table import html_table
+from lithobrake.vocabulary.plain_text import html_table, in_lines
 from lithobrake.vocabulary.quantities import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
-from lithobrake.vocabulary.screen import in_lines
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
     from lithobrake.results.explorer_tables import ExplorerAttitude
 
     Value = float | np.ndarray
+    from lithobrake.chaos import Surrogate
 
 SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
 VELOCITY = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
@@ -126,7 +128,7 @@ class NamedEmulator:
         """Points [point_count, input_count], each with the terms of a random attitude."""
         from scipy.spatial.transform import Rotation
 
-        from lithobrake.geometry.attitude_terms import AttitudeTerms
+        from lithobrake.geometry.attitude import AttitudeTerms
 
         whole_number("seed", seed, 0)
         law = self._attitude
@@ -192,3 +194,31 @@ class NamedEmulator:
             axis *= (found[SPIN] / np.where(length > 0.0, length, math.inf))[:, None]
             found |= dict(zip(SPIN_OUT, axis.T, strict=True))
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
+
+
+class NamedSurrogate:
+    """The expansion of a study; `expansion` is the object of lithobrake.chaos behind it."""
+
+    def __init__(self, expansion: "Surrogate") -> None:
+        """Take over an expansion."""
+        self.expansion = expansion
+
+    @classmethod
+    def read(cls, path: Path) -> "NamedSurrogate":
+        """Read an expansion that a study has saved. Raises ValueError for another file."""
+        from lithobrake.chaos import load
+
+        return cls(load(path))
+
+    def __call__(self, inputs: dict[str, ArrayLike]) -> dict[str, np.ndarray]:
+        """Outputs [SI] by name at inputs by dotted key, in the file's units; numbers or arrays of one shape.
+
+        Raises ValueError for inputs that are not those of the expansion, or outside the ranges that it has learnt.
+        """
+        names = list(self.expansion.input_names)
+        if set(inputs) != set(names):
+            raise ValueError(f"the inputs are {', '.join(inputs) or 'none'}; give exactly {', '.join(names)}")
+        columns = np.broadcast_arrays(*(np.asarray(inputs[name], dtype=float) for name in names))
+        shape = columns[0].shape
+        y = np.asarray(self.expansion(np.column_stack([column.ravel() for column in columns])))
+        return {name: y[:, index].reshape(shape) for index, name in enumerate(self.expansion.output_names)}

@@ -1,8 +1,12 @@
-"""The beds of a study, and the body and the site that it lands on."""
+"""The body and the site that a study lands on, its beds, and what a map of sites holds."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from lithobrake.vocabulary.screen import short_repr
+from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.plain_text import short_repr
 
 
 @dataclass(frozen=True)
@@ -105,3 +109,163 @@ class SiteResults:
     def holds(self) -> bool:
         """Whether the ground holds what lies there."""
         return self.effective_acceleration_outward < 0.0
+
+
+# Names of SiteEnds.
+SHARES = tuple(end.value for end in (JourneyEnd.AT_REST, JourneyEnd.PARTNER, JourneyEnd.ESCAPED, JourneyEnd.UNDER_WAY))
+MEDIANS = ("time_s", "distance_m")
+
+
+@dataclass(frozen=True)
+class SiteSpread:
+    """A number that differs over a site: its mean, and the ends between which it is on 90 % of the area."""
+
+    mean: float
+    """over the site"""
+    low: float
+    """5 % of the area has less"""
+    high: float
+    """5 % of the area has more"""
+
+
+@dataclass(frozen=True)
+class SiteEnds:
+    """What becomes of the landers of a site, by the emulator of the touchdowns.
+
+    Shares are those of the landers of known end; their bounds hold whatever becomes of the others, over other beds and
+    other landers.
+    """
+
+    at_rest: ShareInterval
+    """landers at rest within the longest journey"""
+    partner: ShareInterval
+    """landers that come down on the partner"""
+    escaped: ShareInterval
+    """landers that escape"""
+    under_way: ShareInterval
+    """landers still under way at its end"""
+    time_s: Estimate | None
+    """median time from the first touchdown to rest [s]; null where none rests"""
+    distance_m: Estimate | None
+    """median way over the ground from the aim point to rest [m]; null where none rests"""
+
+
+@dataclass(frozen=True)
+class SiteCell:
+    """A site: a cell of equal area with aim points all over it, and the landers that are delivered there."""
+
+    latitude_deg: float
+    """of its middle"""
+    longitude_deg: float
+    """of its middle"""
+    south_deg: float
+    """latitude of its southern border"""
+    north_deg: float
+    """latitude of its northern border"""
+    west_deg: float
+    """longitude of its western border"""
+    east_deg: float
+    """longitude of its eastern border"""
+    unknown: float
+    """fraction of its landers with an impact that the emulator does not know"""
+    beyond: str
+    """what such impacts are beyond the touchdowns of the study, the most frequent first; empty where there are none"""
+    ends: SiteEnds | None
+    """null where so many ends are unknown that the site is not answered"""
+    not_worse: bool
+    """whether it cannot be told from the site of most landers at rest"""
+    slope_deg: SiteSpread
+    """of the facets against gravity, rotation and the partner's tide"""
+    gravity: SiteSpread
+    """acceleration of what rests there [m/s2]"""
+    light: Mapping[str, SiteSpread]
+    """fraction of a day in which "sun" and "earth" are seen, over area and seasons; those that [sky] asks for"""
+    journeys: int
+    """journeys of the study with their first touchdown there"""
+
+    @property
+    def bounds_deg(self) -> tuple[float, float, float, float]:
+        """South, north, west and east."""
+        return self.south_deg, self.north_deg, self.west_deg, self.east_deg
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """The site as a row of sites.csv; None where it has no such number."""
+        own = ("latitude_deg", "longitude_deg", "south_deg", "north_deg", "west_deg", "east_deg")
+        row: dict[str, Any] = {name: getattr(self, name) for name in own}
+        row |= {"answered": int(self.ends is not None), "unknown": self.unknown, "beyond": self.beyond}
+        for name in (*SHARES, *MEDIANS):
+            found = None if self.ends is None else getattr(self.ends, name)
+            value = None if found is None else getattr(found, "share" if name in SHARES else "value")
+            bounds = (None, None) if found is None else (found.lower, found.upper)
+            row |= dict(zip((name, f"{name}_lower", f"{name}_upper"), (value, *bounds), strict=True))
+        row["not_worse"] = int(self.not_worse)
+        for name, spread in {"slope_deg": self.slope_deg, "gravity": self.gravity, **self.light}.items():
+            row |= {name: spread.mean, f"{name}_5": spread.low, f"{name}_95": spread.high}
+        return row | {"journeys": self.journeys}
+
+
+@dataclass(frozen=True)
+class SiteAgreement:
+    """Landers at rest among the journeys of the study with their first touchdown in a region, by landings and by the
+    emulator, whose refits have not seen the bed of the journey that they follow."""
+
+    latitude_deg: float | None
+    """of the middle of the region; null for the whole body"""
+    longitude_deg: float | None
+    """of the middle of the region; null for the whole body"""
+    journeys: int
+    """how many"""
+    landings: ShareInterval
+    """by landings"""
+    emulator: ShareInterval
+    """by the emulator"""
+    difference: ShareInterval
+    """emulator less landings, of the same landers"""
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the interval of the difference holds 0; None without an interval."""
+        if self.difference.lower is None or self.difference.upper is None:
+            return None
+        return self.difference.lower <= 0.0 <= self.difference.upper
+
+
+@dataclass(frozen=True)
+class SiteMap:
+    """What becomes of landers that are delivered in one way to every site of a body."""
+
+    title: str
+    """of the study"""
+    body: str
+    """name of the body"""
+    statement: str
+    """what the map says, in sentences"""
+    of: str
+    """which landers the numbers hold over, in a sentence"""
+    level: float
+    """probability that each interval stands for"""
+    why: str | None
+    """why there are no intervals, in a sentence; null where there are"""
+    duration_s: float
+    """longest journey [s]"""
+    landers: int
+    """landers of each site, the same in all"""
+    refits: int
+    """refits of the emulator to beds drawn with replacement, of which each lander keeps one"""
+    beds: int
+    """beds that the emulator was fitted to"""
+    touchdowns: int
+    """touchdowns that it was fitted to"""
+    area_m2: float
+    """of a site, on the ball of the body's volume"""
+    at_rest: ShareInterval | None
+    """landers at rest over all answered sites, as large as each other; null where none is answered"""
+    cells: tuple[SiteCell, ...]
+    agreement: tuple[SiteAgreement, ...]
+    """with the journeys of the study: over the whole body, then in regions with enough of them"""
+
+    @property
+    def answered(self) -> int:
+        """How many sites are answered."""
+        return sum(cell.ends is not None for cell in self.cells)

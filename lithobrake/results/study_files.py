@@ -3,18 +3,73 @@
 import math
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.files.reading import DamagedFileError, read_json, read_rows, reading
-from lithobrake.results.intact import KEYS, STUDY_FILE, intact_file
-from lithobrake.results.journey_tables import JOURNEYS
-from lithobrake.vocabulary.quantities import Quantity, quantity
+from lithobrake.files.atomic import lock_holder
+from lithobrake.files.reading import DamagedFileError, content_hash, read_json, read_rows, reading
+from lithobrake.vocabulary.quantities import JOURNEY, JOURNEYS_FILE, TOUCHDOWN_COST, TOUCHDOWNS_FILE, Quantity, quantity
 
 if TYPE_CHECKING:
+    from lithobrake.campaign import Record
     from lithobrake.results.table import Table
+
+# What the folder notes about its files, what is held while a study is at work there, and the copy of its file.
+KEYS, LOCK, STUDY_FILE = "keys.json", ".lock", "study.toml"
+
+
+def intact_file(folder: Path, name: str, remedy: str) -> Path:
+    """The path of a file of a folder, there or not.
+
+    A file of which the folder notes nothing, as in an archive, is taken as it stands, and so is any other while a study
+    is at work there and may be making it. Raises DamagedFileError, with the remedy, for one that changed after it was
+    made, and for a folder, a pipe or a device in its place.
+    """
+    path, keys = folder / name, folder / KEYS
+    # Reading a pipe waits for whoever writes to it, and some devices have no end.
+    if path.exists() and not path.is_file():
+        raise DamagedFileError(f"{path} cannot be read (it is no regular file); {remedy}")
+    if not (path.is_file() and keys.is_file()) or lock_holder(folder / LOCK):
+        return path
+    notes = read_json(keys, dict, remedy)
+    with reading(keys, remedy):
+        noted = notes.get("study", {}) if name == STUDY_FILE else notes.get("files", {}).get(name, {})
+        sha256 = noted.get("sha256")
+    if sha256 and content_hash(path) != sha256:
+        raise DamagedFileError(f"{path} changed after it was made, as its hash in {KEYS} tells; {remedy}")
+    return path
+
+
+JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = JOURNEYS_FILE, TOUCHDOWNS_FILE, "designs/touchdowns.csv"
+# Columns that every table of journeys has; one of an earlier version lacks attitudes.
+NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
+# Columns of the runs that the table of touchdowns has already.
+_TWICE = ("input:journey", "input:touchdown", "key", "outcome")
+
+
+def joined_touchdowns(
+    touchdowns: Sequence[Mapping[str, Any]], runs: Iterable[Mapping[str, Any]], ledger: "Iterable[Record]"
+) -> list[dict[str, Any]]:
+    """Rows of touchdowns.csv, each with the inputs and outputs of its run, by its key, and what that cost.
+
+    A touchdown whose run is in neither has nothing there.
+    """
+    by_key = {row["key"]: {name: cell for name, cell in row.items() if _of_run(name)} for row in runs}
+    costs = {record.key: {name: _cost(record, name) for name in TOUCHDOWN_COST} for record in ledger}
+    return [{**row, **by_key.get(row["key"], {}), **costs.get(row["key"], {})} for row in touchdowns]
+
+
+def _of_run(name: str) -> bool:
+    """Whether a column of a design is only in there."""
+    return name.split(" ")[0] not in _TWICE
+
+
+def _cost(record: "Record", name: str) -> float:
+    value = getattr(record, name)
+    return math.nan if value is None else float(value)
+
 
 SUMMARY_FORMAT = 4
 # Columns that hold no numbers.

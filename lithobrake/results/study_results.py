@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import NUMBER, read_json, reading
-from lithobrake.results.journey_tables import JOURNEYS, TOUCHDOWNS
+from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
 from lithobrake.results.study_tables import StudyTables
-from lithobrake.vocabulary.screen import in_lines
+from lithobrake.vocabulary.plain_text import in_lines
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,11 +18,10 @@ if TYPE_CHECKING:
     from lithobrake.campaign import Record
     from lithobrake.report.study_plots import StudyPlots
     from lithobrake.results.explorer_tables import ExplorerTables
-    from lithobrake.results.journey_again import StudyJourney
-    from lithobrake.results.limit_state_results import RareLimitState
-    from lithobrake.results.moving_bodies import MovingBodies
-    from lithobrake.results.named_emulator import NamedEmulator
-    from lithobrake.results.named_surrogate import NamedSurrogate
+    from lithobrake.results.journey_track import StudyJourney
+    from lithobrake.results.motions import MovingBodies
+    from lithobrake.results.named_emulator import NamedEmulator, NamedSurrogate
+    from lithobrake.results.questions import RareLimitState
     from lithobrake.results.summary import DrawnResults, PaperResults
     from lithobrake.touchdown import Outcome
 
@@ -86,7 +85,7 @@ class StudyResults(StudyTables):
     def rare(self) -> "dict[str, RareLimitState]":
         """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
         from lithobrake.results.json_values import from_json
-        from lithobrake.results.limit_state_results import RareLimitState
+        from lithobrake.results.questions import RareLimitState
 
         remedy, found = "make it again with: lithobrake rare", {}
         for path in sorted(self.folder.glob("rare_*.json")):
@@ -100,7 +99,7 @@ class StudyResults(StudyTables):
 
         number: of the table `journeys`, from 0. Raises ValueError for one that there is not.
         """
-        from lithobrake.results.journey_again import StudyJourney, track_of
+        from lithobrake.results.journey_track import StudyJourney, track_of
 
         count = self.journeys.row_count
         if not 0 <= number < count:
@@ -138,7 +137,7 @@ class StudyResults(StudyTables):
         Raises ValueError for a run that is none of the study or has no outcome, a program of the user's own, other
         code than made the run, and where what comes out is not, bit for bit, what the ledger has.
         """
-        from lithobrake.results.landing_again import land_again
+        from lithobrake.results.motions import land_again
 
         return land_again(self.folder, self._record(run), frame_count, progress)
 
@@ -150,7 +149,7 @@ class StudyResults(StudyTables):
         progress: Callable[[float, str], None] = lambda fraction, what: None,
     ) -> "MovingBodies":
         """The hulls of a touchdown made once more, and how they moved, the lander last; see landing()."""
-        from lithobrake.results.landing_again import bodies_again
+        from lithobrake.results.motions import bodies_again
 
         return bodies_again(self.folder, self._record(run), frame_count, progress)
 
@@ -179,7 +178,7 @@ class StudyResults(StudyTables):
     @cached_property
     def surrogate(self) -> "NamedSurrogate":
         """The refined expansion, called by the names of its inputs; a drawn study has an `emulator` in its place."""
-        from lithobrake.results.named_surrogate import NamedSurrogate
+        from lithobrake.results.named_emulator import NamedSurrogate
 
         self._refuse_drawn("surrogate", "an expansion")
         path = self._file("refined.json")
@@ -250,7 +249,7 @@ class StudyResults(StudyTables):
         return found[0]
 
     def _bodies(self, name: str) -> "MovingBodies":
-        from lithobrake.results.moving_bodies import MovingBodies
+        from lithobrake.results.motions import MovingBodies
 
         path, made = self._file(name), self._noted_files()
         if made and name not in made and not path.exists():
@@ -282,7 +281,7 @@ def _html(results: StudyResults) -> str:
     """What came out, and what can be asked for."""
     from html import escape
 
-    from lithobrake.vocabulary.html_table import html_table
+    from lithobrake.vocabulary.plain_text import html_table
 
     rows = [(name, what) for name, (file, what) in _ASKED.items() if any(results.folder.glob(file))]
     table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)

@@ -5,8 +5,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import reading
-from lithobrake.results.journey_tables import JOURNEYS, NEEDED, TOUCHDOWN_RUNS, TOUCHDOWNS, joined_touchdowns
-from lithobrake.results.study_files import StudyFiles
+from lithobrake.results.study_files import JOURNEYS, NEEDED, TOUCHDOWN_RUNS, TOUCHDOWNS, StudyFiles, joined_touchdowns
 from lithobrake.vocabulary.quantities import (
     ARC,
     BEDS,

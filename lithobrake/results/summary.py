@@ -7,28 +7,46 @@ SI where no unit is named.
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lithobrake.results.aims import AimResults
-from lithobrake.results.dispersion import FlightResults, ImpactNumbers, LandingEllipses, RestResults, WithoutScatter
-from lithobrake.results.emulated_results import EmulatedJourneys
-from lithobrake.results.emulator_results import EmulatorResults
-from lithobrake.results.expansions import (
+from lithobrake.results.dispersion import (
+    FlightResults,
+    ImpactNumbers,
+    LandingEllipses,
+    RestRegion,
+    RestResults,
+    WithoutScatter,
+)
+from lithobrake.results.journey_results import (
+    DeliveryResults,
+    EmulatedJourneys,
+    EndShare,
+    JourneyRest,
+    SideResults,
+    SkyResults,
+    SoilResults,
+)
+from lithobrake.results.model_results import (
     DesignCounts,
+    EmulatorResults,
     ExpansionResults,
     ExpansionSamples,
     MonteCarlo,
     NodeCounts,
     OutputErrors,
 )
-from lithobrake.results.journey_results import DeliveryResults, EndShare, JourneyRest
-from lithobrake.results.limit_state_results import LimitStateResult
-from lithobrake.results.regions import RestRegion
-from lithobrake.results.run_results import OutputDirection, OutputEstimate, OutputRange, RunResults, VarianceParts
-from lithobrake.results.shares import LandingShares, ReturnFraction, RunShares, SampleShares
-from lithobrake.results.side_results import SideResults
+from lithobrake.results.questions import AimResults, LimitStateResult
+from lithobrake.results.run_results import (
+    LandingShares,
+    OutputDirection,
+    OutputEstimate,
+    OutputRange,
+    ReturnFraction,
+    RunResults,
+    RunShares,
+    SampleShares,
+    VarianceParts,
+)
 from lithobrake.results.site_results import BedNumbers, SiteResults
-from lithobrake.results.sky_results import SkyResults
-from lithobrake.results.soil_results import SoilResults
-from lithobrake.vocabulary.screen import short_repr
+from lithobrake.vocabulary.plain_text import short_repr
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.vocabulary.extra_library import extra_library
+from lithobrake.vocabulary.plain_text import names_in_lines, short_repr
 from lithobrake.vocabulary.quantities import Quantity
-from lithobrake.vocabulary.screen import names_in_lines, short_repr
 
 if TYPE_CHECKING:
     import pandas
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 # Rows that a notebook shows.
 SHOWN = 10
-INSTALL = 'pip install "lithobrake[data]"'
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,9 @@ class Table(Mapping[str, np.ndarray]):
 
     def to_pandas(self) -> "pandas.DataFrame":
         """A data frame; `frame.attrs[name]` says what a column is. Raises ImportError where pandas is absent."""
-        try:
-            import pandas
-        except ImportError as error:
-            raise ImportError(f"pandas is not installed; install it with: {INSTALL}") from error
-        frame = pandas.DataFrame({name: column.values for name, column in self.columns.items()})
+        frame = extra_library("pandas", "pandas", "data").DataFrame(
+            {name: column.values for name, column in self.columns.items()}
+        )
         frame.index.name = self.row
         frame.attrs = {name: column.attributes for name, column in self.columns.items()}
         return frame
@@ -90,11 +88,7 @@ class Table(Mapping[str, np.ndarray]):
 
         Raises ImportError where xarray is absent.
         """
-        try:
-            import xarray
-        except ImportError as error:
-            raise ImportError(f"xarray is not installed; install it with: {INSTALL}") from error
-        return xarray.Dataset(
+        return extra_library("xarray", "xarray", "data").Dataset(
             {name: (self.row, column.values, column.attributes) for name, column in self.columns.items()}
         )
 

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from lithobrake.results.expansions import ExpansionResults, OutputErrors
+from lithobrake.results.model_results import ExpansionResults, OutputErrors
 from lithobrake.results.summary import PaperResults
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 

@@ -1,20 +1,23 @@
 """Small bodies: shape, gravity, rotation and flight."""
 
-from lithobrake.smallbody.arcs import Arcs
-from lithobrake.smallbody.attitude_history import AttitudeHistory
 from lithobrake.smallbody.body import Body, Partner
-from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds
+from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds, RestitutionTable
 from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flight_results import Flights
+from lithobrake.smallbody.flight_results import Arcs, Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
-from lithobrake.smallbody.restitution_table import RestitutionTable
-from lithobrake.smallbody.rotation_history import rotation_history
+from lithobrake.smallbody.rotation import AttitudeHistory
+from lithobrake.smallbody.rotation_history import (
+    PartnerPlace,
+    SpinState,
+    read_partner,
+    read_places,
+    read_spin,
+    rotation_history,
+)
 from lithobrake.smallbody.rough_ground import RoughGround, incidence_on, met_normals
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.sky import Screen, circle_places, day_directions, seen_from
-from lithobrake.smallbody.spice_kernels import PartnerPlace, SpinState, read_partner, read_places, read_spin
-from lithobrake.smallbody.sun_and_earth import HeliocentricOrbit, latitudes_over
+from lithobrake.smallbody.sky import HeliocentricOrbit, Screen, circle_places, day_directions, latitudes_over, seen_from
 from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 

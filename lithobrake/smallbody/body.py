@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.attitude_history import AttitudeHistory
-from lithobrake.smallbody.delivered_place import delivered_directions
-from lithobrake.smallbody.gravity_gradient import gradient
-from lithobrake.smallbody.orbit import Entry, Orbit
-from lithobrake.smallbody.shape import Shape
+from lithobrake.smallbody.acceleration import Entry, Orbit
+from lithobrake.smallbody.attraction import gradient
+from lithobrake.smallbody.rotation import AttitudeHistory
+from lithobrake.smallbody.shape import Shape, delivered_directions
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
@@ -77,6 +76,7 @@ class Body:
     @property
     def flattening(self) -> float:
         """(C - (A + B) / 2) / mass [m2] of the moments of inertia, C about the spin axis: J2 times a radius squared."""
+        # Averaged over a turn about z, off-diagonal moments and the difference of the two in the equator drop out.
         first, second, third = np.diag(self.shape.inertia_per_density)
         return float((third - 0.5 * (first + second)) / self.shape.volume)
 
@@ -135,6 +135,7 @@ class Body:
         where time is None, that of the uniform spin.
         """
         p = self._checked(points)
+        # The shape stays, so that gravity goes with the mass.
         ratio = numbers("mass", self.mass if mass is None else mass)[..., None] / self.mass
         periods = numbers("spin_period", self.spin_period if spin_period is None else spin_period)
         if not ((ratio > 0.0).all() and (periods > 0.0).all()):
@@ -230,6 +231,8 @@ class Body:
         longitude = np.radians(longitude_deg)
         if self.partner is None:
             return np.zeros_like(longitude)
+        # Against the ground, which turns as well; a partner over one place for good has no rate, and nothing to divide
+        # by.
         rate = 2.0 * np.pi * (1.0 / self.partner.period - 1.0 / np.asarray(spin_period))
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(rate == 0.0, 0.0, (longitude - self.orbit.angle) / rate)
@@ -272,6 +275,7 @@ class Partner:
         distance = sphere = (total / mean_motion**2) ** (1.0 / 3.0)
         for _ in range(ORBIT_ITERATIONS):
             distance = sphere * (1.0 + 1.5 * (flattening + self.body.flattening) / distance**2) ** (1.0 / 3.0)
+        # Zero times the parameter makes it a number a flight where that is.
         angle = 0.0 * parameter + math.radians(self.longitude_deg)
         mass_fraction = self.body.gravitational_parameter / total
         return Orbit(

@@ -65,19 +65,17 @@ def _dimorphos(extents: Sequence[float] | None = None) -> Body:
     return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
 
 
-def top_shape(
-    extents: Sequence[float], ridge_height: float, *, ridge_width_deg: float = 12.0, name: str = "top"
-) -> Shape:
+def top_shape(extents: Sequence[float], ridge_height: float, *, name: str = "top") -> Shape:
     """An ellipsoid with a ridge around its equator; its bounding box has exactly the given extents [m].
 
-    The ridge adds ridge_height exp(-(latitude / ridge_width)**2) [m] to the radius. The mesh has a row of facets
+    The ridge adds ridge_height exp(-(latitude / 12 degrees)**2) [m] to the radius. The mesh has a row of facets
     standing upright along the equator, so the normal at latitude 0, longitude 0 is +x.
     """
     directions, faces = _rings()
     semi = 0.5 * np.array(extents) - np.array([ridge_height, ridge_height, 0.0])
     radius = 1.0 / np.linalg.norm(directions / semi, axis=1)
     latitude = np.degrees(np.arcsin(directions[:, 2]))
-    vertices = directions * (radius + ridge_height * np.exp(-((latitude / ridge_width_deg) ** 2)))[:, None]
+    vertices = directions * (radius + ridge_height * np.exp(-((latitude / 12.0) ** 2)))[:, None]
     # Facets cut the corners of a smooth curve; half a percent brings the box back to what was published.
     vertices *= np.array(extents) / (vertices.max(axis=0) - vertices.min(axis=0))
     return Shape(vertices, faces, name=name)
@@ -91,6 +89,7 @@ def _rings() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     turns = np.concatenate(angles)
     tilt = np.repeat(0.5 * np.pi - spacing * np.arange(RINGS + 1), [len(a) for a in angles])
     cap = np.stack([np.cos(tilt) * np.cos(turns), np.cos(tilt) * np.sin(turns), np.sin(tilt)], axis=1)
+    # The cosine of a right angle is not 0 to the last bit.
     cap[0] = (0.0, 0.0, 1.0)
     facets = [facet for ring in range(RINGS) for facet in _strip(ring, first)]
     count, size = len(cap), 4 * RINGS
@@ -100,6 +99,7 @@ def _rings() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     band = np.concatenate(
         [np.stack([rim, rim + count, after + count], axis=1), np.stack([rim, after + count, after], axis=1)]
     )
+    # Mirrored facets would face inwards, so their corners run the other way round.
     south = north[:, ::-1] + count
     return np.concatenate([cap, cap * [1.0, 1.0, -1.0]]), np.concatenate([north, south, band])
 

@@ -8,17 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.smallbody.acceleration import Dynamics, Forces
-from lithobrake.smallbody.arrays import Floats
+from lithobrake.smallbody.acceleration import Dynamics, Forces, Orbit
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
+from lithobrake.smallbody.facet_grid import near_heights
 from lithobrake.smallbody.flight_results import ESCAPE_ORBITS, ESCAPE_RADII, STATUSES, Flights, StartStates
 from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
-from lithobrake.smallbody.orbit import Orbit
+from lithobrake.smallbody.rotation import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.signed_distance import near_heights
-from lithobrake.smallbody.turning_ground import into_frame, out_of_frame, refuse_beyond, turning_of
+from lithobrake.smallbody.simd import Floats
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time
@@ -119,7 +118,6 @@ def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
 
 
 def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float) -> Dynamics:
-    """What differs between flights."""
     if not ((mass > 0.0).all() and (spin_period > 0.0).all()):
         raise ValueError("mass and spin_period must be above 0 in every flight.")
     radius = body.shape.radius
@@ -132,6 +130,7 @@ def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.flo
         strength=parameter / body.shape.volume,
         spin_rate=spin_rate,
         partner_strength=np.full(len(mass), 0.0 if other is None else GRAVITATIONAL_CONSTANT * other.density),
+        # Far out both masses hold a flight back.
         parameter=parameter if other is None else parameter + other.gravitational_parameter,
         escape_radius=np.maximum(ESCAPE_RADII * radius, ESCAPE_ORBITS * orbit.distance),
         first_step=0.02 * dynamical_time,
@@ -168,6 +167,7 @@ def _one_each(
         raise ValueError(f"{name} has shape {values.shape} for {count} flights; give one number, or one a flight.")
     if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
+    # A copy, since kernels would be compiled anew for an array of other strides that cannot be written.
     return np.array(np.broadcast_to(values, count))
 
 
@@ -213,7 +213,6 @@ def _refuse_failed(starts: NDArray[np.float64], ends: FlightEnds, tolerance: flo
 
 
 def _starts(position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
-    """Start states, shape [count, 6]."""
     where, rate = (np.atleast_2d(one) for one in (numbers("position", position), numbers("velocity", velocity)))
     if where.shape != rate.shape or where.ndim != 2 or where.shape[1] != 3:
         raise ValueError(f"position has shape {where.shape} and velocity {rate.shape}; both must be [count, 3].")
@@ -262,6 +261,7 @@ def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str)
     position, facet = np.ascontiguousarray(position), np.empty(len(position), dtype=np.int64)
     near_heights(shape.grid, shape.corners, shape.pseudonormals, position, height, facet)
     far = np.flatnonzero(np.isinf(height))
+    # Heights are looked for within a cell of the surface; beyond that the solid angle tells on which side a start lies.
     height[far[shape.contains(position[far])]] = -np.inf
     if (height < -slack).any():
         flight = int(np.flatnonzero(height < -slack)[0])
@@ -276,7 +276,6 @@ def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str)
 def _run(
     part: Callable[[int], None], count: int, threads: int | None, progress: Callable[[float], None] | None
 ) -> None:
-    """Do all parts, each of CHUNK flights, on threads."""
     workers = os.cpu_count() or 1 if threads is None else whole_number("threads", threads, 1)
     firsts = range(0, count, CHUNK)
     if min(workers, len(firsts)) <= 1:
@@ -293,5 +292,6 @@ def _run(
                 if progress:
                     progress(number / len(futures))
         finally:
+            # After an error, or an interrupt, parts that have not begun are not flown any more.
             for future in futures:
                 future.cancel()

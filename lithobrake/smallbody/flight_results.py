@@ -1,15 +1,16 @@
-"""How flights ended."""
+"""How flights ended, and the flights of which journeys are made."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.turning_ground import into_frame
-from lithobrake.vocabulary.html_table import html_table
+from lithobrake.smallbody.rotation import into_frame
 from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.plain_text import html_table
 
 STATUSES = np.array([status.value for status in FlightStatus])
 ESCAPE_RADII = 10.0  # radii of the body beyond which a flight with positive energy has escaped
@@ -129,6 +130,53 @@ class Flights:
         """As Body.jacobi, with the mass and spin of each flight."""
         spin_rate = 2.0 * np.pi / self.start.spin_period
         turning = spin_rate**2 * (position[:, 0] ** 2 + position[:, 1] ** 2)
+        # The shape is one for all flights, so their potentials differ by the mass alone.
         depth = self.body.potential(position) * (self.start.mass / self.body.mass)
         constant: NDArray[np.float64] = 0.5 * ((velocity * velocity).sum(axis=1) - turning) - depth
         return constant
+
+
+@dataclass(frozen=True)
+class Arcs:
+    """Flights of some landers between impacts; every array has one entry or row an arc.
+
+    `fly` from these states for what is left of the journey's time gives the flight of the journey to the last bit.
+
+    lander       row in the journeys
+    begin        since the start of the journey [s], and end
+    clock        at the beginning [s]: start_time of `fly`
+    position     there [m], velocity [m/s], body-fixed, [count, 3]
+    mass         of the body [kg]; spin_period [s]
+    """
+
+    lander: NDArray[np.int64]
+    begin: NDArray[np.float64]
+    end: NDArray[np.float64]
+    clock: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    spin_period: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, flights: Flights, lander: NDArray[np.int64], begin: NDArray[np.float64], landers: int) -> "Arcs":
+        """Those of the first `landers` among flights of these landers, which began at these times [s], [count]."""
+        few, start = lander < landers, flights.start
+        return cls(
+            lander=lander[few],
+            begin=begin[few],
+            end=(begin + flights.time)[few],
+            clock=start.time[few],
+            position=start.position[few],
+            velocity=start.velocity[few],
+            mass=start.mass[few],
+            spin_period=start.spin_period[few],
+        )
+
+    @classmethod
+    def joined(cls, parts: "Sequence[Arcs]") -> "Arcs":
+        """Arcs of one round after the other, lander by lander; at least one part."""
+        # Stable, so that the flights of one lander stay in the order of the rounds.
+        order = np.argsort(np.concatenate([part.lander for part in parts]), kind="stable")
+        names = (field.name for field in fields(cls))
+        return cls(*(np.concatenate([getattr(part, name) for part in parts])[order] for name in names))

@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled, disk_cache
 from lithobrake.smallbody import attraction
-from lithobrake.smallbody.arrays import Floats
 from lithobrake.smallbody.attraction import Gravity
+from lithobrake.smallbody.facet_grid import Grid, near_heights, pseudonormals
 from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
-from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
-from lithobrake.smallbody.signed_distance import near_heights, pseudonormals
+from lithobrake.smallbody.simd import Floats
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time
@@ -46,6 +45,7 @@ def gravity_table_of(
 
     levels: cells and reach of each grid (see gravity_table.LEVELS).
     """
+    # The code has no part in the name: the folder is named by the hash of all sources.
     mesh = polyhedron.vertices.tobytes() + polyhedron.facet_corners.tobytes()
     digest = hashlib.sha256(repr(levels).encode() + mesh).hexdigest()[:24]
     disk, name = disk_cache("smallbody"), f"gravity-{digest}.npz"
@@ -70,7 +70,6 @@ def _plain(array: NDArray[Any]) -> Any:
 
 
 def _file(table: GravityTable, error: TableError) -> bytes:
-    """What is kept of a table."""
     file = io.BytesIO()
     np.savez(file, error=np.array(error, dtype=np.float64), **table._asdict())
     return file.getvalue()
@@ -92,6 +91,7 @@ def _build(polyhedron: PolyhedronTerms, multipole: Multipole, volume: float, lev
             first, last = lower - MARGIN * edge, upper + MARGIN * edge
         else:
             first, last = multipole.centre - reach * multipole.radius, multipole.centre + reach * multipole.radius
+            # Two of its own cells beyond the range of the finer grid, as the rim of a grid serves no points itself.
             first, last = np.minimum(first, served[0] - 2 * edge), np.maximum(last, served[1] + 2 * edge)
         size = np.ceil((last - first) / edge).astype(np.int64) + 1
         nodes = first + edge * np.indices(size).reshape(3, -1).T
@@ -173,9 +173,11 @@ def _measure(table: GravityTable, polyhedron: PolyhedronTerms, multipole: Multip
     facet = random.choice(len(area), 6000, p=area / area.sum())
     weight = random.dirichlet(np.ones(3), len(facet))
     ground = np.einsum("nc,nci->ni", weight, polyhedron.vertices[polyhedron.facet_corners[facet]])
+    # Evenly in the logarithm, as the error is largest near the ground, where flights begin and end.
     rise = multipole.radius * 10.0 ** random.uniform(-4.0, 0.8, len(facet))
     points = ground + rise[:, None] * polyhedron.facet_terms[facet, :3]
     outside = attraction.field(points, exact)
+    # Up the normal of one facet a point may lie in the ground of another.
     free = outside[:, 4] < 1e-3
     difference = attraction.field(points, Gravity(polyhedron, multipole, table))[:, :3] - outside[:, :3]
     scale = np.linalg.norm(attraction.field(ground, exact)[:, :3], axis=1).mean()

@@ -7,14 +7,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.smallbody.arcs import Arcs
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
+from lithobrake.smallbody.facet_grid import near_heights
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flight_results import Flights
-from lithobrake.smallbody.signed_distance import near_heights
+from lithobrake.smallbody.flight_results import Arcs, Flights
+from lithobrake.smallbody.rotation import ground_spin, kept_among_stars
 from lithobrake.smallbody.sliding import OnGround, slide
-from lithobrake.smallbody.turning_ground import ground_spin, kept_among_stars
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
 
@@ -160,7 +159,6 @@ class _State:
 
     @classmethod
     def of(cls, body: Body, launch: Launch, duration: float, friction: ArrayLike, rolls: bool) -> "_State":
-        """The landers at the start."""
         if not (numbers("friction", friction) >= 0.0).all():
             raise ValueError(f"friction is {friction!r}; it must be at least 0 (infinite: a lander rests where it is).")
         position = np.array(np.atleast_2d(numbers("launch: position", launch.position)))
@@ -187,6 +185,7 @@ class _State:
             velocity=each("velocity", launch.velocity, 3),
             spin=each("spin", launch.spin, 3),
             time=np.zeros(count),
+            # As wide as the longest word of JourneyStatus; NumPy would cut a longer one silently.
             status=np.full(count, JourneyStatus.FLYING.value, dtype="<U8"),
             bounce_count=np.zeros(count, dtype=np.int64),
             path_length=np.zeros(count),
@@ -197,7 +196,6 @@ class _State:
         )
 
     def journeys(self, arcs: Arcs) -> Journeys:
-        """What has become of the landers; arcs: on these flights."""
         names = (field.name for field in fields(Journeys) if field.name != "arcs")
         return Journeys(**{name: getattr(self, name) for name in names}, arcs=arcs)
 
@@ -212,7 +210,6 @@ class _State:
         return clock
 
     def fly(self, going: NDArray[np.int64], gravity: str, threads: int | None) -> Flights:
-        """Fly the landers `going` to the ends of their flights, which are given back."""
         flights = fly(
             *(self.body, self.position[going], self.velocity[going], self.duration - self.time[going]),
             gravity=gravity,

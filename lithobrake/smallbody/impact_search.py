@@ -1,27 +1,108 @@
-"""When and where a flight meets the ground within one step of its integration.
-
-The curve of a step is cut into chords that leave it by no more than five times `slack`. Far from the surface the chords
-are as long as the distance allows; near it each is tried against the facets around it, for entries from outside only. A
-flight that starts on the surface is watched by its height instead, until it has risen by more than `slack`.
-
-The ground may be that of a partner, or turn against the frame of the flight: the curve is then looked at from the
-frame of the ground (motion, see orbit; its distance is zero for the body itself).
-"""
+"""When and where a flight meets the ground within one step of Dormand and Prince's pair 5(4)."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.smallbody.arrays import Floats
-from lithobrake.smallbody.dormand_prince import dense_output
-from lithobrake.smallbody.grid import Grid, clearance
-from lithobrake.smallbody.orbit import Motion, into_ground
-from lithobrake.smallbody.ray_facet import first_entry
-from lithobrake.smallbody.signed_distance import height_near
-from lithobrake.smallbody.turning import Turning
+from lithobrake.smallbody.acceleration import Motion, into_ground
+from lithobrake.smallbody.facet_grid import Grid, clearance, first_entry, height_near
+from lithobrake.smallbody.rotation import Turning
+from lithobrake.smallbody.simd import Floats
+
+STAGES = 7
+NODES = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])
+WEIGHTS = np.array(
+    [
+        [0, 0, 0, 0, 0, 0],
+        [1 / 5, 0, 0, 0, 0, 0],
+        [3 / 40, 9 / 40, 0, 0, 0, 0],
+        [44 / 45, -56 / 15, 32 / 9, 0, 0, 0],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0],
+        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+    ]
+)
+ERROR = np.array([71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+DENSE = np.array(
+    [
+        -12715105075 / 11282082432,
+        0,
+        87487479700 / 32700410799,
+        -10690763975 / 1880347072,
+        701980252875 / 199316789632,
+        -1453857185 / 822651844,
+        69997945 / 29380423,
+    ]
+)
+
+
+@kernel
+def stage_state(state: Floats, derivative: Floats, step: Floats, stage: int, count: int, result: Floats) -> None:
+    """Write into result [6, lane] the state where a stage takes its derivative; stage 6 gives the end of the step."""
+    for i in range(6):
+        row = result[i]
+        for j in range(count):
+            row[j] = 0.0
+        for m in range(stage):
+            weight, rate = WEIGHTS[stage, m], derivative[m, i]
+            for j in range(count):
+                row[j] += weight * rate[j]
+        for j in range(count):
+            row[j] = state[i, j] + step[j] * row[j]
+
+
+@kernel
+def step_error(derivative: Floats, step: float, j: int, length: float, speed: float) -> float:
+    """Largest error of lane j over its step, position in units of `length` [m], velocity of `speed` [m/s]."""
+    worst = 0.0
+    for i in range(6):
+        total = 0.0
+        for m in range(STAGES):
+            total += ERROR[m] * derivative[m, i, j]
+        error = abs(step * total) / (length if i < 3 else speed)
+        # A maximum would pass over NaN, and the step would be taken.
+        if not error < np.inf:
+            return np.nan
+        worst = max(worst, error)
+    return worst
+
+
+@kernel
+def next_step(step: float, error: float) -> float:
+    # NaN gives a fifth of the step, whose error may be a number again.
+    if not error > 0.0:
+        return step * 5.0 if error == 0.0 else step * 0.2
+    # The error of the pair goes with the fifth power of the step; with a tenth to spare few steps are refused.
+    return step * min(5.0, max(0.2, 0.9 * error**-0.2))
+
+
+@kernel
+def dense_coefficients(state: Floats, end: Floats, derivative: Floats, step: float, j: int, curve: Floats) -> None:
+    """Write the coefficients curve [5, 6] of the polynomial of lane j between state and end [6, lane]."""
+    for i in range(6):
+        change = end[i, j] - state[i, j]
+        bend = step * derivative[0, i, j] - change
+        total = 0.0
+        for m in range(STAGES):
+            total += DENSE[m] * derivative[m, i, j]
+        curve[0, i] = state[i, j]
+        curve[1, i] = change
+        curve[2, i] = bend
+        curve[3, i] = change - step * derivative[6, i, j] - bend
+        curve[4, i] = step * total
+
+
+@kernel
+def dense_output(curve: Floats, fraction: float, i: int) -> float:
+    remaining = 1.0 - fraction
+    inner = curve[3, i] + remaining * curve[4, i]
+    value: float = curve[0, i] + fraction * (curve[1, i] + remaining * (curve[2, i] + fraction * inner))
+    return value
+
 
 ON_SURFACE, ALOFT = 0, 1
+# Halvings of a fraction of the step, down to its rounding.
 BISECTIONS = 48
 SAGITTA = 5.0  # slacks by which a chord may leave the curve: a graze not deeper than that may be passed over
 
@@ -113,7 +194,6 @@ def _closest_approach(here: Floats, there: Floats) -> float:
 def _fraction_at_plane(
     curve: Floats, ground: Ground, motion: Motion, facet: int, point: Floats, low: float, high: float
 ) -> float:
-    """Fraction between low and high at which the curve passes the plane of a facet."""
     corner, outward = ground.corners, ground.pseudonormals
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -188,9 +268,11 @@ def find_impact(
     _position_at(curve, 0.0, motion, here)
     if phase == ALOFT:
         _position_at(curve, 1.0, motion, there)
+        # A step that clears the sphere around the body needs no look at its facets, as most do against a partner.
         if _closest_approach(here, there) > ground.radius + 0.125 * acceleration * step * step:
             return 1.0, -1, phase
     fastest, longest = _chord_limits(ground, pace, acceleration, step)
+    # A lander on the ground may turn back at once, so the first looks are a few slacks apart.
     stride = min(longest, 4.0 * slack / pace) if pace > 0.0 else longest
     time, height = 0.0, 0.0
     if phase == ON_SURFACE:
@@ -212,6 +294,7 @@ def find_impact(
             gap = clearance(grid, here[0], here[1], here[2])
             until = min(time + (gap / fastest if gap > 0.0 else longest), step)
             _position_at(curve, until / step, motion, there)
+            # A chord within the clearance of its beginning meets no facet, so none is looked at.
             facet = _entered_facet(ground, here, there, chord) if gap == 0.0 else -1
             if facet >= 0:
                 fraction = _fraction_at_plane(curve, ground, motion, facet, there, time / step, until / step)

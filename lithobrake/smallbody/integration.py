@@ -9,22 +9,21 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.acceleration import Forces, accelerate, has_escaped
-from lithobrake.smallbody.arrays import Floats, Integers
+from lithobrake.smallbody.acceleration import Forces, Motion, accelerate, has_escaped, motion_over, own_motion
 from lithobrake.smallbody.attraction import Workspace, workspace
-from lithobrake.smallbody.dormand_prince import (
+from lithobrake.smallbody.impact_search import (
     NODES,
     STAGES,
+    Ground,
     dense_coefficients,
     dense_output,
+    find_impact,
     next_step,
     stage_state,
     step_error,
 )
-from lithobrake.smallbody.impact_search import Ground, find_impact
-from lithobrake.smallbody.orbit import Motion, motion_over, own_motion
 from lithobrake.smallbody.polyhedron_gravity import ROWS
-from lithobrake.smallbody.simd import LANES
+from lithobrake.smallbody.simd import LANES, Floats, Integers
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
 # Of a flight: some 40 000 circuits near the surface at the default tolerance, years about a body of a kilometre.
@@ -32,8 +31,6 @@ MOST_STEPS = 1_000_000
 
 
 class Lanes(NamedTuple):
-    """The flights that are under way."""
-
     state: Floats  # [6, LANES], m and m/s
     derivative: Floats  # [STAGES, 6, LANES], of each stage
     step: Floats  # [LANES], s
@@ -51,8 +48,6 @@ class StepRoom(NamedTuple):
 
 
 class FlightEnds(NamedTuple):
-    """How flights ended, written by integrate_flights."""
-
     status: Integers  # [flight_count]
     time: Floats  # [flight_count], s since the start
     state: Floats  # [flight_count, 6], m and m/s
@@ -66,7 +61,6 @@ class FlightEnds(NamedTuple):
         return cls(*numbers, np.zeros(count, dtype=np.int64))
 
     def of_flights(self, piece: slice) -> "FlightEnds":
-        """Views of those of some flights."""
         return FlightEnds(
             self.status[piece], self.time[piece], self.state[piece], self.facet[piece], self.step_count[piece]
         )
@@ -74,7 +68,6 @@ class FlightEnds(NamedTuple):
 
 @kernel
 def _copy_lane(lanes: Lanes, source: int, target: int) -> None:
-    """Copy one lane onto another."""
     for i in range(6):
         lanes.state[i, target] = lanes.state[i, source]
         lanes.derivative[0, i, target] = lanes.derivative[0, i, source]
@@ -95,7 +88,6 @@ def _fill_lane(lanes: Lanes, j: int, starts: Floats, f: int) -> None:
 
 @kernel
 def _reuse_last_derivative(derivative: Floats, j: int) -> None:
-    """The last derivative of lane j's step is the first of its next."""
     for i in range(6):
         derivative[0, i, j] = derivative[6, i, j]
 
@@ -130,7 +122,6 @@ def _first_impact(
 
 @compiled
 def _new_lanes() -> Lanes:
-    """Lanes without flights."""
     return Lanes(
         np.empty((6, LANES)),
         np.empty((STAGES, 6, LANES)),
@@ -188,7 +179,9 @@ def _finish_step(
     error = step_error(derivative, step[j], j, dynamics.length_tolerance[f], dynamics.speed_tolerance[f])
     taken, last = step[j], step[j] >= duration[f] - clock[j]
     step[j] = next_step(taken, error)
+    # Written so that an error that is no number refuses the step.
     if not error <= 1.0:
+        # A step that no longer moves the clock would be tried without end.
         if clock[j] + step[j] > clock[j] and ends.step_count[f] < MOST_STEPS:
             return False
         ends.status[f] = FAILED
@@ -200,11 +193,13 @@ def _finish_step(
     fraction, ends.facet[f], ends.status[f] = _first_impact(
         room.curve, derivative, taken, j, phase[f], grounds, motions, room.frame
     )
+    # The last stage is that of the end of the step, and `when` still holds its time.
     if ends.status[f] == FLYING and has_escaped(room.end, j, dynamics, f, room.when[j]):
         ends.status[f] = ESCAPED
     _reuse_last_derivative(derivative, j)
     for i in range(6):
         state[i, j] = room.end[i, j]
+    # The end of the time is met to the last bit, which no sum of steps does.
     clock[j] = duration[f] if last else clock[j] + taken
     step[j] = min(step[j], duration[f] - clock[j])
     if ends.status[f] == FLYING and not last:
@@ -235,6 +230,7 @@ def integrate_flights(
     lanes = _new_lanes()
     room = StepRoom(np.empty((6, LANES)), np.empty(LANES), np.empty((5, 6)), np.empty((3, 3)))
     lane = np.zeros(ROWS * LANES)
+    # One workspace for both bodies, with room for the vertices of the larger one.
     scratch = workspace(max(len(forces.gravity.polyhedron.vertices), len(forces.partner_gravity.polyhedron.vertices)))
     active = queued = 0
     for j in range(min(LANES, len(starts))):
@@ -242,6 +238,7 @@ def integrate_flights(
         active, queued = active + 1, queued + 1
     while active > 0:
         _pass_stages(lanes, active, begin, forces, room, lane, scratch)
+        # From the last lane down: the one that moves into a free place has had its turn in this pass.
         for j in range(active - 1, -1, -1):
             if not _finish_step(lanes, j, begin, duration, phase, forces, grounds, room, ends):
                 continue

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled
-from lithobrake.smallbody.arrays import Floats
-from lithobrake.smallbody.simd import LANES, angle, fma, log_ratio
+from lithobrake.smallbody.simd import LANES, Floats, angle, fma, log_ratio
 
 # Rows of a block of points: `lane[row * LANES + j]` belongs to point j. The first three are read, the others written.
 X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
@@ -77,6 +76,7 @@ class PolyhedronTerms(NamedTuple):
 @compiled
 def _distances(lane: Floats, count: int, distance: Floats, vertices: Floats) -> None:
     """Write the distance of every vertex to every point of the block, [vertex_count * LANES]."""
+    # Once for each vertex: some six edges and six facets meet there, and share its distance.
     for v in range(len(vertices)):
         vx, vy, vz = vertices[v, 0], vertices[v, 1], vertices[v, 2]
         row = distance[v * LANES : v * LANES + LANES]
@@ -159,7 +159,6 @@ def field_block(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedr
 
 @compiled
 def _field(points: Floats, result: Floats, polyhedron: PolyhedronTerms) -> None:
-    """Field at many points, block by block."""
     lane = np.zeros(ROWS * LANES)
     distance = np.empty(len(polyhedron.vertices) * LANES)
     for start in range(0, len(points), LANES):

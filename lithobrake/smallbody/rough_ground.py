@@ -38,9 +38,11 @@ def met_normals(velocity: Array, up: Array, roughness: float, uniforms: Array) -
 
     axes = impact_frame(velocity, up)
     along, down = ((axes[:, which] * velocity).sum(axis=1) for which in (0, 2))
+    # The two components share the mean square of the gradient.
     std = math.tan(roughness) / math.sqrt(2.0)
     # A lander that comes in along the ground, or from below it for rounding, meets what rises before it.
     steepness = np.maximum(std * along / np.maximum(-down, 1e-12 * np.linalg.norm(velocity, axis=1)), 0.0)
+    # At 0 and 1 the gradient would be infinite.
     first, second = np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53).T
     rise, aside = std * _met(steepness, first), std * ndtri(second)
     normal = axes[:, 2] - rise[:, None] * axes[:, 0] - aside[:, None] * axes[:, 1]
@@ -58,6 +60,7 @@ def _met(steepness: Array, uniform: Array) -> Array:
 
     def below(x: Array) -> Array:
         density = np.exp(-0.5 * x**2) / math.sqrt(2.0 * math.pi)
+        # The integral in closed form: x exp(-x^2 / 2) is minus the derivative of exp(-x^2 / 2).
         found: Array = ndtr(x) - steepness * density
         return found
 

@@ -9,16 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
-from lithobrake.geometry.mesh_files import read_mesh
-from lithobrake.geometry.mesh_labels import labelled_mesh
+from lithobrake.geometry.mesh_files import labelled_mesh, read_mesh
 from lithobrake.smallbody.attraction import Gravity
+from lithobrake.smallbody.facet_grid import Grid, heights, outermost_hit, pseudonormals
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
-from lithobrake.smallbody.grid import Grid
 from lithobrake.smallbody.multipole import RADII, Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
-from lithobrake.smallbody.ray_facet import outermost_hit
-from lithobrake.smallbody.signed_distance import heights, pseudonormals
 from lithobrake.vocabulary.given_numbers import numbers
 
 FEWEST_FACETS = 100
@@ -55,6 +52,7 @@ class Shape:
         used, index = np.unique(faces, return_inverse=True)
         self.vertices, self.faces = self.vertices[used], np.ascontiguousarray(index.reshape(faces.shape))
         self.volume, self.centroid, self.inertia_per_density = mass_properties(self.vertices, self.faces)
+        # Moments, grids and tables are made from these once, and would be wrong after a change.
         self.vertices.flags.writeable = self.faces.flags.writeable = False
 
     @classmethod
@@ -196,6 +194,7 @@ class Shape:
     def latitude_longitude(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Planetocentric latitude and east longitude in (-180, 180] [deg] of body-fixed points [m], shape [..., 3]."""
         p = self._checked(points)
+        # No arc sine, which loses half of its digits towards the poles.
         latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
         return latitude, np.where(longitude == -180.0, 180.0, longitude)
@@ -256,5 +255,27 @@ class Shape:
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
         p = self._checked(points)
+        # Halfway between 0 outside and 4 pi inside, far above the rounding of the sum.
         inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
         return inside.reshape(p.shape[:-1])
+
+
+def delivered_directions(
+    shape: Shape,
+    latitude_deg: NDArray[np.float64],
+    longitude_deg: NDArray[np.float64],
+    north: NDArray[np.float64],
+    east: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Directions from the centre, shape [count, 3], in which places lie that an error [m] moved north and east."""
+    latitude, longitude = np.radians(latitude_deg), np.radians(longitude_deg)
+    sine, cosine, along, across = np.sin(latitude), np.cos(latitude), np.cos(longitude), np.sin(longitude)
+    up = np.stack([cosine * along, cosine * across, sine], axis=1)
+    northward = np.stack([-sine * along, -sine * across, cosine], axis=1)
+    eastward = np.stack([-across, along, np.zeros_like(along)], axis=1)
+    way = np.hypot(north, east)
+    turn = way / np.linalg.norm(shape.surface_point(latitude_deg, longitude_deg), axis=1)
+    # Errors of 0 have no direction: the caller leaves these places out.
+    ahead = (north / way)[:, None] * northward + (east / way)[:, None] * eastward
+    there: NDArray[np.float64] = np.cos(turn)[:, None] * up + np.sin(turn)[:, None] * ahead
+    return there

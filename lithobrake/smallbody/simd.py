@@ -1,16 +1,12 @@
-"""Arithmetic that a compiler can run on several points at once: no branches, no library calls, the same bits in every
-lane.
-
-The two functions that gravity needs, a logarithm and an arc tangent, are ratios in disguise. Both are reduced with
-their numerator and denominator still apart, so each costs one division. Fused multiply-adds are asked for by name: the
-result is then the same on every machine, whatever the compiler would have liked to contract.
-"""
+"""Types of the arrays of kernels, and arithmetic that a compiler can run on several points at once."""
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled
 
@@ -111,3 +107,8 @@ def angle(y: float, x: float) -> float:
     result = _HALF_PI - result if up > along else result
     result = 2.0 * _HALF_PI - result if x < 0.0 else result
     return -result if y < 0.0 else result
+
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Indices = NDArray[np.int32]

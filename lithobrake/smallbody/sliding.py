@@ -1,20 +1,116 @@
-"""Landers that move along the ground, from facet to facet, until they rest or leave it.
+"""Landers that move along the ground, from facet to facet over their edges, until they rest or leave it."""
 
-The law is Coulomb's: friction times the force that gravity, rotation and the lander's own motion press it on the ground
-with, against the velocity. Where the body does not turn uniformly, its rotation is that at the begin of the slide: a
-slide lasts for minutes, and the body turns over hours.
-"""
-
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body
-from lithobrake.smallbody.facet_edges import first_edge, over_edges, unit
-from lithobrake.smallbody.turning_ground import ground_spin
+from lithobrake.smallbody.rotation import ground_spin
+from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.arrays import Array
 
+Whole = NDArray[np.int64]
+CROSSINGS = 8  # edges that one way may go over
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors [count, 3] over their lengths; zero where they are."""
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
+
+
+def over_edges(
+    shape: Shape, facet: Whole, position: Array, way: Array, velocity: Array, press: Array, braking: Array
+) -> tuple[Array, Array, Whole, NDArray[np.bool_]]:
+    """Fold ways [m] and velocities that leave their facets over the edges: position, velocity, facet, and who leaves.
+
+    Round an outward edge the lander's own motion takes some of its weight off, which saves friction, or all of it, and
+    it flies on; in an inward edge it adds to it (the rope round a post, with either sign). press: what presses it on
+    the ground over its mass [m/s2], and braking, what friction takes of the speed over that, [count].
+    """
+    start, way, velocity, facet = position.copy(), way.copy(), velocity.copy(), facet.copy()
+    lifted = np.zeros(len(position), dtype=bool)
+    on = np.arange(len(position))
+    for _ in range(CROSSINGS):
+        edge, part = first_edge(shape, facet[on], start[on], way[on])
+        on, edge, part = on[edge >= 0], edge[edge >= 0], part[edge >= 0]
+        if not len(on):
+            break
+        start[on] += part[:, None] * way[on]
+        fold = Fold.of(shape, facet[on], edge)
+        across, speed = -np.einsum("ni,ni->n", velocity[on], fold.inward), np.linalg.norm(velocity[on], axis=1)
+        # The bend counts over the way from middle to middle of both facets, so that the fineness of a mesh does not
+        # decide who leaves the ground.
+        off = (across > 0.0) & (across**2 * fold.angle > press[on] * fold.spread)
+        lifted[on[off]], way[on[off]] = True, 0.0
+        on, fold, across, speed = on[~off], fold.of_some(~off), across[~off], speed[~off]
+        share = np.divide(across, speed, out=np.zeros_like(speed), where=speed > 0.0)
+        # The capstan equation, with the sign of the bend.
+        kept = np.exp(braking[on] * fold.angle * np.abs(share))
+        way[on] = fold((1.0 - part[~off])[:, None] * way[on])
+        velocity[on] = kept[:, None] * fold(velocity[on])
+        facet[on] = fold.beyond
+    # A way that turns about a corner for longer ends there.
+    way[on] = 0.0
+    return start + way, velocity, facet, lifted
+
+
+def first_edge(shape: Shape, facet: Whole, start: Array, way: Array) -> tuple[Whole, Array]:
+    """Number of the edge through which each way leaves its facet, -1: none, and the part of the way before it."""
+    corner, inward = shape.corners[facet], shape.inward[facet]
+    # A start that rounding has put beyond an edge counts as on it.
+    before = np.maximum(np.einsum("nei,nei->ne", inward, start[:, None] - corner), 0.0)
+    change = np.einsum("nei,ni->ne", inward, way)
+    out = before + change < -1e-12 * shape.radius
+    part = np.divide(before, -change, out=np.full_like(before, np.inf), where=out)
+    edge = part.argmin(axis=1)
+    return np.where(out.any(axis=1), edge, -1), part[np.arange(len(part)), edge]
+
+
+@dataclass(frozen=True)
+class Fold:
+    """Edges that are gone over: vectors along one facet become the same along the next, as paper is folded.
+
+    along, inward, onward   unit vectors along the edge, and across it along either facet, [count, 3]
+    angle      by which the ground bends, below 0 where it rises [rad], and spread: the way over which it does so [m]
+    beyond     the facet beyond
+    """
+
+    along: Array
+    inward: Array
+    onward: Array
+    angle: Array
+    spread: Array
+    beyond: Whole
+
+    @classmethod
+    def of(cls, shape: Shape, facet: Whole, edge: Whole) -> "Fold":
+        row, beyond = np.arange(len(facet)), shape.neighbours[facet, edge]
+        corner, up, next_up = shape.corners[facet], shape.normals[facet], shape.normals[beyond]
+        side = corner[row, (edge + 1) % 3] - corner[row, edge]
+        along = unit(side)
+        inward, onward = np.cross(up, along), np.cross(along, next_up)
+        # An arc cosine would lose the sign of the bend, and the digits of small ones.
+        angle = np.arctan2(-np.einsum("ni,ni->n", onward, up), np.einsum("ni,ni->n", up, next_up))
+        # A facet's middle lies a third of its height off its edge.
+        far = [
+            np.einsum("nci,ni->nc", shape.corners[one] - corner[row, edge][:, None], to).max(axis=1)
+            for one, to in ((facet, inward), (beyond, onward))
+        ]
+        return cls(along, inward, onward, angle, (far[0] + far[1]) / 3.0, beyond)
+
+    def of_some(self, some: NDArray[np.bool_]) -> "Fold":
+        return Fold(**{field.name: getattr(self, field.name)[some] for field in fields(self)})
+
+    def __call__(self, vectors: Array) -> Array:
+        """Turn vectors [count, 3] from one facet onto the next."""
+        level = np.einsum("ni,ni->n", vectors, self.along)[:, None] * self.along
+        folded: Array = level - np.einsum("ni,ni->n", vectors, self.inward)[:, None] * self.onward
+        return folded
+
+
+# The way across a slope is then right to half a percent.
 TURN = 0.05  # rad by which the velocity may turn in a step
 FACET_STEP = 0.25  # of a facet's size: how far a step may go
 NEAR = 1e-3  # m; a lander that comes to a stop within this does so in one step
@@ -59,7 +155,6 @@ class OnGround:
     rolls: bool = False
 
     def of(self, some: NDArray[np.int64]) -> "OnGround":
-        """Some of them."""
         names = ("facet", "friction", "mass", "spin_period", "time")
         return replace(self, **{name: getattr(self, name)[some] for name in names})
 
@@ -112,6 +207,7 @@ def slide(ground: OnGround, position: Array, velocity: Array, duration: Array) -
     """
     count, corner = len(position), ground.body.shape.corners[ground.facet, 0]
     position, velocity = corner + ground.along(position - corner), ground.along(velocity)
+    # Stopped here, since in the equations infinite friction times a press of 0 is not a number.
     velocity[np.isinf(ground.friction)] = 0.0
     facet, time, length = ground.facet.copy(), np.zeros(count), np.zeros(count)
     rests, leaves = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
@@ -149,6 +245,7 @@ def _step(
     across = np.linalg.norm(push + slowing[:, None] * heading, axis=1)
     shape, facet = ground.body.shape, ground.facet
     with np.errstate(divide="ignore", invalid="ignore"):
+        # fmax and fmin pass over NaN, which stands where nothing turns the way or slows it down.
         turning = np.fmax(TURN * speed / across, _time_to_go(np.full_like(speed, NEAR), speed, slowing))
         stop = np.where((slowing > 0.0) & (speed > 0.0), speed / slowing, np.inf)
     step = np.fmin(turning, _time_to_go(FACET_STEP * shape.facet_sizes[facet], speed, slowing))
@@ -161,11 +258,13 @@ def _step(
     middle = velocity + half * push
     push, _ = ground.acceleration(middle, *ground.forces(position + half * velocity, middle))
     way = step[:, None] * velocity + 0.5 * step[:, None] ** 2 * push
+    # At a stop the velocity is 0 to the last bit, as only then the ground can hold the lander.
     return step, way, np.where((step == stop)[:, None], 0.0, velocity + step[:, None] * push)
 
 
 def _time_to_go(distance: Array, speed: Array, slowing: Array) -> Array:
     """Time [s] in which landers go a distance [m]; more than they have until they stop where they do not get there."""
     with np.errstate(divide="ignore", invalid="ignore"):
+        # The root in the denominator: in the other form all digits cancel where friction takes little of the speed.
         time: Array = 2.0 * distance / (speed + np.sqrt(np.maximum(speed**2 - 2.0 * slowing * distance, 0.0)))
     return np.where(np.isnan(time), np.inf, time)

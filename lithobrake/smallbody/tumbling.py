@@ -1,13 +1,17 @@
-"""Rotation of a rigid body without torque, over any duration at once."""
+"""Rotation without torque over any duration at once: of a body, and of a lander in flight."""
 
+import math
 from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import quaternion_products
-from lithobrake.smallbody.arrays import Floats
+from lithobrake.geometry.frames import about_z, quaternion
+from lithobrake.smallbody.rotation import AttitudeHistory
+from lithobrake.smallbody.simd import Floats
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Principal moments nearer than this part of the largest differ by the rounding of eigenvalues.
@@ -91,12 +95,14 @@ def _principal(inertia: ArrayLike) -> tuple[Floats, Floats]:
     largest = np.abs(matrix).max()
     if largest == 0.0 or np.abs(matrix - matrix.T).max() > 1e-9 * largest:
         raise ValueError("inertia is 0 or not symmetric; give the tensor about the centroid in kg m2")
+    # Over the largest moment, so that inertias of any unit neither overflow nor underflow in their products.
     moments, axes = np.linalg.eigh(0.5 * (matrix + matrix.T) / largest)
     if moments[0] <= 0.0:
         raise ValueError(f"inertia has the principal moment {moments[0] * largest:g}, but each must be above 0")
     moments = moments / moments[2]
     moments[1] = 1.0 if 1.0 - moments[1] <= SAME_MOMENT else moments[1]
     moments[0] = moments[1] if moments[1] - moments[0] <= SAME_MOMENT else moments[0]
+    # Eigenvectors may be left-handed, and no quaternion mirrors.
     axes[:, 2] *= np.sign(np.linalg.det(axes))
     return moments, axes
 
@@ -260,3 +266,28 @@ def _unit(quaternions: Floats) -> Floats:
     """Quaternions [count, 4] of length 1."""
     whole: Floats = quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
     return whole
+
+
+def turned_freely(
+    inertia: Floats,
+    attitude: Rotation,
+    spin: Floats,
+    spin_period: float,
+    time: float,
+    *,
+    ground: AttitudeHistory | None = None,
+    start: float = 0.0,
+) -> tuple[Rotation, Floats]:
+    """Attitude of a lander and its spin against the stars [rad/s], [3], a time [s] later, or earlier where it is below
+    0, from those at its start, all along axes fixed to the body as it then is.
+
+    inertia: of the lander [kg m2], [3, 3]. spin_period: of the body about z [s]. ground: Body.rotation, at a time start
+    [s].
+    """
+    turned, spins = tumble(inertia, np.array([quaternion(attitude)]), spin[None], np.array([time]))
+    # The lander turns among the stars, while the axes that its attitude is against turn on with the body.
+    back = about_z(-2.0 * math.pi / spin_period * time)
+    if ground is not None:
+        begin, end = (Rotation.from_matrix(ground.at(at).axes[0]) for at in (start, start + time))
+        back = end.inv() * back * begin
+    return back * Rotation.from_quat(turned[0], scalar_first=True), back.apply(spins[0])

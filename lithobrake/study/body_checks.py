@@ -1,4 +1,4 @@
-"""What is wrong with the body of a study, found before anything runs: its mesh, its density, its size, the delivery."""
+"""What is wrong with the body of a study and its rotation, found before anything runs."""
 
 import math
 import os
@@ -7,10 +7,9 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.geometry.mesh_labels import labelled_mesh
-from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.geometry.mesh_files import labelled_mesh
+from lithobrake.study.impact_sections import BUILT_IN_BODIES, SiteSection, kernel_problems
 from lithobrake.study.quantity import Scalar, usual_reach
-from lithobrake.study.site_kernels import kernel_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
 
@@ -27,6 +26,7 @@ NAME = r"[A-Za-z0-9][\w -]{0,39}"
 def body_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing wrong; a mesh is read for that, and no kernel is compiled or loaded."""
     site = study.site
+    # Numbers of the site are read from the kernels below, and would raise there.
     if unread := list(kernel_problems(site)):
         yield from unread
         return
@@ -90,7 +90,6 @@ def _spin_problems(study: Study) -> Iterator[str]:
 
 
 def _lacking(study: Study) -> Iterator[str]:
-    """What a body from a mesh needs and has not."""
     if not os.path.isfile(study.site.body):
         names = ", ".join(f'"{name}"' for name in BUILT_IN_BODIES)
         meant = closest(Path(study.site.body).name, BUILT_IN_BODIES)
@@ -108,7 +107,6 @@ def _volume(study: Study) -> float:
         from lithobrake import smallbody
 
         return float(getattr(smallbody, site.body)(partner=False, extents=site.extents).shape.volume)
-    # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.geometry.mesh_files import read_mesh
 
@@ -129,12 +127,13 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
-    from lithobrake.geometry.mesh_units import UNITS, mesh_unit
+    from lithobrake.geometry.mesh_files import UNITS, mesh_unit
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES
     given = "m" if built_in else mesh_unit(labelled_mesh(Path(study.site.body)), study.site.unit)
     diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
+    # A wrong unit is the common slip, and a bulk density shows it: from metres to kilometres it changes by 1e9.
     fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
     if given in fitting:
         return
@@ -176,3 +175,51 @@ def _largest(value: Scalar) -> float:
 def _ball_radius(volume: float) -> float:
     """Radius [m] of the ball of a volume [m3]."""
     return (0.75 * volume / math.pi) ** (1.0 / 3.0)
+
+
+# Built-in bodies that turn once an orbit of their partner.
+SYNCHRONOUS = ("dimorphos",)
+DAY = 86_400.0
+
+
+def rotation_problems(study: Study) -> Iterator[str]:
+    site = study.site
+    if site.rotation is None:
+        if site.rotation_time is not None:
+            yield "site.rotation_time is a time in [site.rotation], and there is none; add it, or leave the key out"
+        return
+    yield from _body_problems(site)
+    yield from _time_problems(site, site.rotation.days)
+    if study.sky.bodies:
+        yield (
+            "[sky] asks what landers at rest see over a day of the body, and with [site.rotation] no day is like "
+            "another; leave one of the two out"
+        )
+
+
+def _body_problems(site: SiteSection) -> Iterator[str]:
+    if site.body not in SYNCHRONOUS or not site.partner:
+        body = f"site.body is {show(site.body)}" if site.partner else "site.partner is false"
+        names = ", ".join(f'"{name}"' for name in SYNCHRONOUS)
+        yield (
+            f"{body}; allowed with [site.rotation]: {names} with its partner, whose torque turns it; change that, or "
+            "leave the table out"
+        )
+        return
+    for key in ("spin_period", "kernels"):
+        if getattr(site, key):
+            yield (
+                f"site.{key} is given; with [site.rotation] the body turns once an orbit in the mean, as the built-in "
+                "one does; leave one of the two out"
+            )
+
+
+def _time_problems(site: SiteSection, days: float) -> Iterator[str]:
+    if site.rotation_time is None:
+        return
+    latest = usual_reach(site.rotation_time)[1]
+    if latest > days * DAY:
+        yield (
+            f"site.rotation_time reaches {latest:.6g} s; allowed: at most {days * DAY:.6g} s, which is "
+            f"site.rotation.days = {days:g}; lower it, or give more days"
+        )

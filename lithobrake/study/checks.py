@@ -7,19 +7,31 @@ import shlex
 import shutil
 from collections.abc import Iterator
 
-from lithobrake.study.aim_checks import aim_problems
-from lithobrake.study.bed_section import Bell, Between, Constant, PowerLaw
-from lithobrake.study.body_checks import body_problems
-from lithobrake.study.boulder_checks import boulder_problems, boulder_width
-from lithobrake.study.contact_checks import contact_problems, size_problems
+from lithobrake.study.body_checks import body_problems, rotation_problems
+from lithobrake.study.delivery_checks import journey_problems
 from lithobrake.study.design_checks import design_problems
-from lithobrake.study.journey_checks import journey_problems
-from lithobrake.study.lander_checks import NAME, inertia_problems, mass_problems, part_problems, shape_problems
-from lithobrake.study.lander_solids import lander_radius, main_radius
-from lithobrake.study.period_checks import TWO_IMAGES, slope_problems, widths_in_grains
+from lithobrake.study.ground_checks import (
+    TWO_IMAGES,
+    boulder_problems,
+    boulder_width,
+    contact_problems,
+    size_problems,
+    slope_problems,
+    soil_problems,
+    widths_in_grains,
+)
+from lithobrake.study.ground_sections import Bell, Between, Constant, PowerLaw
+from lithobrake.study.lander_checks import (
+    NAME,
+    inertia_problems,
+    lander_radius,
+    main_radius,
+    mass_problems,
+    part_problems,
+    shape_problems,
+)
 from lithobrake.study.quantity import reach
-from lithobrake.study.rotation_checks import rotation_problems
-from lithobrake.study.soil_checks import soil_problems
+from lithobrake.study.question_checks import aim_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import show
 
@@ -65,6 +77,7 @@ def _touchdown_problems(study: Study) -> Iterator[str]:
         yield from contact_problems(study)
         yield from slope_problems(study)
     gravity = study.surface.gravity
+    # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).
     if not isinstance(gravity, str):
         yield from settling_problems(study, reach(gravity)[0])
 
@@ -157,6 +170,7 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
 
 def _shape_problems(study: Study) -> Iterator[str]:
     """A lander without a shape or with parts that are none, too large for the bed, or that no body can be."""
+    # Sizes and masses below are those of whole shapes: what is missing here would fail there in other words.
     found = [*shape_problems("lander", study.lander), *part_problems(study.lander)]
     yield from found
     if found:
@@ -256,6 +270,7 @@ def _solver_problems(study: Study) -> Iterator[str]:
     except ValueError as error:
         yield f"solver.command is {solver.command!r}; {str(error).lower()}: close every quotation mark"
         return
+    # The command is printed as the study begins, where escape sequences would act on the terminal.
     if not solver.command.isprintable():
         yield f"solver.command is {solver.command!r}; allowed: what can be shown on one line; write plain words"
         return
@@ -265,12 +280,12 @@ def _solver_problems(study: Study) -> Iterator[str]:
         except ValueError as error:
             yield f"solver.command is {error}"
         return
+    # Looked for on this machine alone; on a worker of a cluster that lacks it the runs fail.
     if not words or shutil.which(words[0]) is None:
         yield f'solver.command begins with "{" ".join(words[:1])}", which is no program here; give its path'
 
 
 def _solver_file_problems(study: Study) -> Iterator[str]:
-    """What is wrong with the files that go to a program and come back."""
     solver = study.solver
     if not solver.templates and solver.answer == "outputs.json":
         return
@@ -278,11 +293,12 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     if not is_program:
         yield "solver.templates and solver.answer are files of a program, and solver.command names none; leave them out"
         return
-    from lithobrake.campaign.decoders import DECODERS
+    from lithobrake.campaign.command import DECODERS
 
     for name in solver.templates:
         if not os.path.isfile(name):
             yield f"solver.templates has {name!r}; no such file; give its path from the study file"
+    # All of them are written to one folder for each run, where the second of one name would replace the first.
     stems = [os.path.basename(name) for name in (*solver.templates, "inputs.json", "log.txt", solver.answer)]
     for name in sorted({stem for stem in stems if stems.count(stem) > 1}):
         yield f"solver.templates and solver.answer: {name} would stand twice in the folder of a run; rename one"

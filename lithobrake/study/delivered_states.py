@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.ephemeris_message import MessageState, is_message, message_states
-from lithobrake.study.flight_sections import BUILT_IN_BODIES, SiteSection
+from lithobrake.study.impact_sections import BUILT_IN_BODIES, SiteSection
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.plain_text import closest, show
 
@@ -51,7 +51,6 @@ class DeliveredStates:
     rates: np.ndarray | None = None
 
     def rows(self, first: int, count: int) -> "DeliveredStates":
-        """So many of them, from one on."""
         part = slice(first, first + count)
         own = (None if one is None else one[part] for one in (self.attitude, self.rates))
         return DeliveredStates(self.source[part], self.time[part], self.position[part], self.velocity[part], *own)
@@ -74,12 +73,14 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
     Raises ValueError with file, line and remedy.
     """
     try:
+        # Spreadsheets begin a CSV file with a byte order mark.
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise ValueError(f"{path.name} cannot be read ({why}); give the path of a CSV or OEM file in UTF-8") from error
     if is_message(text):
         return _of_message(list(message_states(Path(path.name), text)), path.name, frame, epoch, centres)
+    # CCSDS defines the same message in XML, too; as a table its first line would be refused for its titles.
     if text.lstrip().startswith("<"):
         raise ValueError(f"{path.name} is XML; allowed: a message as keyword = value text, or a CSV table; convert it")
     return _of_table(path.name, text)
@@ -122,6 +123,7 @@ def _of_message(
     if len(systems) > 1:
         raise ValueError(f"{name} has the time systems {', '.join(sorted(systems))}; allowed: one in all its segments")
     start = min(state.epoch for state in states) if epoch is None else parsed_time(epoch)
+    # An OEM is in km and km/s [CCSDS-2009].
     numbers = 1e3 * np.array([state.numbers for state in states])
     if not np.isfinite(numbers).all():
         line = states[int(np.flatnonzero(~np.isfinite(numbers).all(axis=1))[0])].line
@@ -161,6 +163,7 @@ def _of_table(name: str, text: str) -> DeliveredStates:
         (number, cells)
         for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and not line.lstrip().startswith("#")
+        # Line by line: quoted cells with line breaks would put the line numbers of later errors off.
         for cells in csv.reader([line], skipinitialspace=True)
     ]
     if len(lines) < 2:
@@ -189,6 +192,7 @@ def _columns(where: str, titles: list[str]) -> dict[str, float]:
         if quantity in columns:
             raise ValueError(f"{where}: {quantity} has two columns; keep one")
         columns[quantity] = factor
+    # An attitude without rates cannot be propagated to the touchdown, so either requires the other.
     wanted = (*NEEDED, *((*ATTITUDE, *RATES) if columns.keys() & {*ATTITUDE, *RATES} else ()))
     lacking = [example for example in EXAMPLES if _stem(example) in wanted and _stem(example) not in columns]
     if lacking:

@@ -1,20 +1,86 @@
-"""What is wrong with a delivery: keys that stand twice, correlations that cannot be, states without a frame."""
+"""What is wrong with a delivery and its journeys: keys that stand twice, correlations, states without a frame."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
-from lithobrake.study.covariance_checks import covariance_problems
-from lithobrake.study.journey_sections import ANY_HEADING, FLOWN, OWN_KEYS, PLACE_KEYS, SURFACE_KEYS, DeliverySection
+from lithobrake.study.delivery_sections import (
+    ANY_HEADING,
+    FLOWN,
+    OWN_KEYS,
+    PLACE_KEYS,
+    SIDE,
+    SURFACE_KEYS,
+    DeliverySection,
+    Matrix,
+    ReleaseSection,
+)
 from lithobrake.study.quantity import Uncertain
-from lithobrake.study.release_section import ReleaseSection
+from lithobrake.study.question_checks import sky_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from lithobrake.chaos import GaussianCopula
+
+# Of numbers that were written with ten digits.
+ROUNDING = 1e-9
+
+
+def covariance_problems(matrix: Matrix) -> Iterator[str]:
+    """What is wrong with a matrix of six rows, after its name; the first thing alone."""
+    pairs = [(row, column) for row in range(SIDE) for column in range(row)]
+    wrong = [text for row in range(SIDE) if (text := _variance(matrix, row))]
+    wrong = wrong or [text for row, column in pairs if (text := _pair(matrix, row, column))]
+    if wrong:
+        yield wrong[0]
+    # Entries that are off by ROUNDING move an eigenvalue by at most SIDE times that.
+    elif (smallest := _smallest(matrix)) < -SIDE * ROUNDING:
+        yield (
+            f"has correlations whose matrix has the eigenvalue {smallest:.3g}; allowed: none below 0 (positive "
+            "semi-definite); weaken correlations that contradict each other, or write more digits"
+        )
+
+
+def _variance(matrix: Matrix, row: int) -> str | None:
+    variance = matrix[row][row]
+    if variance >= 0.0:
+        return None
+    return f"has {variance:g} as the variance in row {row + 1}; allowed: at least 0; mend it"
+
+
+def _pair(matrix: Matrix, row: int, column: int) -> str | None:
+    one, other = matrix[row][column], matrix[column][row]
+    size = math.sqrt(matrix[row][row] * matrix[column][column])
+    where = f"row {row + 1}, column {column + 1}"
+    if abs(one - other) > ROUNDING * max(abs(one), abs(other)):
+        return (
+            f"has {one:g} in {where} and {other:g} in row {column + 1}, column {row + 1}; allowed: a symmetric matrix; "
+            "make the two equal"
+        )
+    if abs(one) > size * (1.0 + ROUNDING):
+        return f"has {one:g} in {where}; allowed: -{size:g} to {size:g}, by the two variances; lower it, or raise these"
+    return None
+
+
+def _smallest(matrix: Matrix) -> float:
+    """The smallest eigenvalue of its correlations; what has no variance is left out by being correlated with nothing"""
+    import numpy as np
+
+    # Of the correlations and not of the covariance: m2 and m2/s2 may differ by ten powers of ten, and no one tolerance
+    # would suit both.
+    variances = np.array([matrix[row][row] for row in range(SIDE)])
+    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    return float(np.linalg.eigvalsh(np.array(matrix) / np.outer(scale, scale))[0])
+
 
 AIM = ("latitude_deg", "longitude_deg")
 ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
 def delivery_problems(study: Study) -> Iterator[str]:
-    """One sentence for each thing that is wrong."""
     delivery = study.delivery
     if delivery is None:
         return
@@ -62,8 +128,6 @@ def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[s
             return
         seen.add(frozenset((one, other)))
     if delivery.correlations:
-        from lithobrake.study.correlated_keys import copula_of, correlated_keys
-
         try:
             copula_of(study, correlated_keys(study))
         except ValueError as error:
@@ -71,7 +135,6 @@ def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[s
 
 
 def _uncorrelated(study: Study, key: str) -> str | None:
-    """Why a key cannot be correlated."""
     if key not in SURFACE_KEYS:
         allowed = ", ".join(SURFACE_KEYS)
         return f"delivery.correlations names {show(key)}{closest(key, SURFACE_KEYS)}; allowed: {allowed}"
@@ -85,12 +148,12 @@ def _uncorrelated(study: Study, key: str) -> str | None:
 
 
 def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
-    """Keys that do not go together with states."""
     name = "delivery.states" if delivery.states is not None else "[delivery.release]"
     if delivery.states is not None and delivery.release is not None:
         yield "delivery.states and [delivery.release] are both given; keep one"
     for key in FLOWN:
         part = "site" if key in PLACE_KEYS else "impact"
+        # A flown study has these where its file gives nothing.
         if getattr(getattr(study, part), key) not in (None, 0.0, ANY_HEADING):
             yield f"{part}.{key} is given, and the flight from {name} tells it; leave it out"
     for key in AIM:
@@ -104,7 +167,6 @@ def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
 
 
 def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Iterator[str]:
-    """Axes that are not named, or not known."""
     if delivery.frame is None:
         yield f'delivery.frame is missing; allowed with {name}: "body_fixed" or "icrf"; write the axes of the states'
     lacking = [key for key in ICRF if getattr(study.site, key) is None]
@@ -120,7 +182,6 @@ def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Itera
         )
     if delivery.epoch is None:
         return
-    # Arrays come with it, and a study without states is read without them.
     from lithobrake.study.delivered_states import parsed_time
 
     try:
@@ -163,3 +224,82 @@ def _release_problems(release: ReleaseSection) -> Iterator[str]:
     elif release.covariance is not None:
         for text in covariance_problems(release.covariance):
             yield f"delivery.release.covariance {text}"
+
+
+def correlated_keys(study: "Study") -> tuple[str, ...]:
+    """The keys of [delivery] that are correlated with another, those of the place before all others."""
+    pairs = () if study.delivery is None else study.delivery.correlations or ()
+    named = {key for one, other, _ in pairs for key in (one, other)}
+    return tuple(key for key in SURFACE_KEYS if key in named)
+
+
+def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
+    """The distribution of these keys together. Raises ValueError for correlations that contradict each other."""
+    import numpy as np
+
+    from lithobrake.chaos import GaussianCopula
+
+    laws, matrix = {}, np.eye(len(keys))
+    for key in keys:
+        value = getattr(study.site if key in PLACE_KEYS else study.impact, key)
+        assert isinstance(value, Uncertain)
+        laws[key] = value.to_chaos()
+    assert study.delivery is not None
+    for one, other, correlation in study.delivery.correlations or ():
+        if one in keys and other in keys:
+            row, column = keys.index(one), keys.index(other)
+            matrix[row, column] = matrix[column, row] = correlation
+    return GaussianCopula(laws, matrix)
+
+
+def drawn_together(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict[str, np.ndarray]":
+    """Columns by key, each [count], of which those that are correlated go together; all else stays as it is.
+
+    columns: independent draws. A key follows from those before it alone, so that the place of a lander is the same
+    whether the rest of its arrival is asked for or not.
+    """
+    keys = tuple(key for key in correlated_keys(study) if key in columns)
+    # One alone goes with nothing here.
+    if len(keys) < 2:
+        return dict(columns)
+    import numpy as np
+
+    table = np.column_stack([columns[key] for key in keys])
+    return {**columns, **dict(zip(keys, copula_of(study, keys).dependent(table).T, strict=True))}
+
+
+def journey_problems(study: Study) -> Iterator[str]:
+    yield from delivery_problems(study)
+    yield from sky_problems(study)
+    if study.journey is None:
+        if study.site.roughness_deg and not study.rest.count:
+            yield (
+                f"site.roughness_deg is {study.site.roughness_deg:g}, and no impact of the study reads it: there is no "
+                "[journey] and rest.count is 0; leave it out, or tilt the landings by surface.slope_deg"
+            )
+        return
+    design = study.design
+    if design.method != "drawn":
+        yield f'[journey] follows drawn landings, and design.method is "{design.method}"; leave one of the two out'
+    if study.journey.count is not None and study.journey.count != design.run_count:
+        yield (
+            f"journey.count is {study.journey.count} and design.run_count {design.run_count}; both are the number of "
+            "journeys: keep one"
+        )
+    if study.surface.gravity != "site":
+        yield (
+            f'surface.gravity is {show(study.surface.gravity)}; allowed with [journey]: "site", as every touchdown '
+            "takes the acceleration of where it is; leave it out"
+        )
+    if study.surface.model_fields_set & {"slope_deg", "slope_azimuth_deg"}:
+        yield "surface.slope_deg is given; with [journey] every touchdown has the slope of where it is; leave it out"
+    if study.has_soil and study.bed.sides != "periodic":
+        yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
+    of_emulator = {
+        "rest": study.rest.model_fields_set,
+        "limit_states": study.limit_states.conditions(),
+        "monte_carlo": study.monte_carlo.model_fields_set,
+    }
+    for name, given in of_emulator.items():
+        if given:
+            yield f"[{name}] asks the emulator of single landings, and [journey] has none; leave one of the two out"

@@ -92,6 +92,8 @@ def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
     from lithobrake.chaos import smolyak_count, term_count
 
     design = study.design
+    # How many inputs the screening will keep is not known yet, so the refined fit must be possible for any number of
+    # them.
     for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
         level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
         point_count, smolyak = getattr(design, f"{stage}_count"), design.points == "smolyak"
@@ -105,6 +107,8 @@ def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
         for count in counts:
             found = smolyak_count(count, level) if smolyak else int(point_count or 0)
             terms = term_count(count, degree)
+            # Sparse fits choose fewer terms than there are runs. Fekete points are chosen from the terms themselves, so
+            # they need as many whatever is fitted.
             if found < terms and (design.fit == "ols" or design.points == "fekete"):
                 where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
                 yield (

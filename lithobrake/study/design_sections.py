@@ -33,6 +33,7 @@ class MethodKey(Section):
 class DrawnKeys(MethodKey):
     """With method = "drawn" only:"""
 
+    # 20 landings on each of 12 beds; with fewer beds Student's t widens the interval (docs/estimates.md).
     run_count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] = 240
     """Number of runs; a larger one keeps the runs of a smaller one, each on its bed."""
     half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
@@ -42,6 +43,7 @@ class DrawnKeys(MethodKey):
     """Name of the limit state to whose probability half_width applies. Absent: it applies to the return fraction."""
     largest_run_count: PointCount = None
     """Largest number of runs with half_width. Absent: ten times run_count."""
+    # Strict, as pydantic would take "yes", "off" and 1 for truth values.
     side_runs: StrictBool = False
     """Whether to make auxiliary runs: up to 20 of the runs again on a second soil, and up to 12 again at a slightly
     shifted impact point. They measure the effects of soil and chaos."""
@@ -50,7 +52,6 @@ class DrawnKeys(MethodKey):
 
     @property
     def most_runs(self) -> int:
-        """Drawn runs at most."""
         if self.half_width is None:
             return self.run_count
         return self.largest_run_count or 10 * self.run_count
@@ -95,7 +96,6 @@ class DesignSection(PaperKeys, DrawnKeys):
 
     @property
     def keys_of_the_other_method(self) -> set[str]:
-        """Keys that mean nothing here."""
         other = PaperKeys if self.method == "drawn" else DrawnKeys
         return other.model_fields.keys() - MethodKey.model_fields.keys()
 

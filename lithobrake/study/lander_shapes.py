@@ -27,7 +27,6 @@ def main_shape(section: LanderSection, values: Mapping[str, float]) -> "Sphere |
 
 
 def part_shape(section: PartSection) -> "Sphere | ConvexHull":
-    """The shape of a part where it stands."""
     from lithobrake.dem import Box, ConvexHull, Sphere, rotation_matrices
     from lithobrake.touchdown import read_hull
 

@@ -32,6 +32,8 @@ DISTRIBUTIONS: dict[str, tuple[str, ...]] = {
 }
 # Whatever parameters these have in their range, their samples lie in it.
 ALWAYS_SAMPLED = ("uniform", "log_uniform")
+# A normal law is unbounded, and an error of delivery is not: plausibility checks take the quantiles of one in a
+# thousand on either side as its ends (docs/decisions/smallbody.md).
 RARE = 1e-3
 # Probability as near to 0, or to 1, as a sample comes.
 LEAST = 2.0**-53
@@ -52,7 +54,6 @@ class Uncertain:
         return (-math.inf if self.distribution == "normal" else 0.0), math.inf
 
     def to_chaos(self) -> "Distribution":
-        """The distribution object that samples and expands this quantity."""
         from lithobrake.chaos import distribution
 
         return distribution(self.distribution, **self.parameters)
@@ -62,7 +63,6 @@ Scalar = float | Uncertain
 
 
 def median(value: Scalar) -> float:
-    """The number itself, or the median of its distribution."""
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
 
 
@@ -86,7 +86,6 @@ def uncertain(values: dict[str, Scalar]) -> dict[str, Uncertain]:
 
 
 def refuse(value: object, allowed: object, remedy: str) -> PydanticCustomError:
-    """The refusal of one value: what it is, what is allowed, what to do."""
     return PydanticCustomError("quantity", "{text}", {"text": f"is {show(value)}; allowed: {allowed}; {remedy}"})
 
 
@@ -105,25 +104,26 @@ class Number:
     word: str | None = None
 
     def __str__(self) -> str:
-        """Say the range in words, with the unit."""
         ends = {"above": self.above, "at least": self.at_least, "below": self.below, "at most": self.at_most}
         words = " and ".join(f"{word} {end:g}" for word, end in ends.items() if math.isfinite(end))
         unit = f" [{self.unit}]" if self.unit else ""
         return f"{words or 'any number'}{unit}" + (f', or "{self.word}"' if self.word else "")
 
     def __get_pydantic_core_schema__(self, _source: object, _handler: object) -> core_schema.CoreSchema:
-        """Let the annotation itself check the value."""
+        # A plain validator takes the place of pydantic's own check of the annotated type, whose messages name neither
+        # unit nor range.
         return core_schema.no_info_plain_validator_function(self.read)
 
     def allow(self, lower: float, upper: float, *, ends: bool = True) -> bool:
         """Tell whether the interval from lower to upper lies in the range; `ends` = it contains its own ends."""
         inside = self.at_least <= lower and upper <= self.at_most
+        # An open end is never sampled: a gamma distribution, whose support begins at 0, fits "above 0", while a uniform
+        # one from 0 does not.
         if ends:
             return inside and (lower > self.above) and (upper < self.below)
         return inside and lower >= self.above and upper <= self.below
 
     def read(self, value: Any) -> Any:
-        """Give back the word, or what the range makes of the value."""
         return value if self.word is not None and value == self.word else self.check(value)
 
     def check(self, value: Any) -> Any:
@@ -139,8 +139,6 @@ class Number:
 
 
 class Whole(Number):
-    """A whole number in its range."""
-
     def check(self, value: Any) -> int:
         """Give back the whole number, also one written as 100.0; refuse anything else."""
         if not is_number(value) or value != int(value) or not self.allow(value, value):
@@ -156,7 +154,6 @@ class Numbers(Number):
     ascending: bool = False
 
     def check(self, value: Any) -> tuple[float, ...]:
-        """Give back the numbers."""
         if not isinstance(value, list | tuple) or len(value) != self.count or not all(map(is_number, value)):
             raise refuse(value, f"{self.count} numbers, each {self}", f"write {self.count} numbers in square brackets")
         if not all(self.allow(entry, entry) for entry in value):
@@ -170,11 +167,9 @@ class Tensor(Number):
     """The moments of a symmetric tensor, three numbers above 0, or all of it: those and its elements xy, xz and yz."""
 
     def __str__(self) -> str:
-        """Say what it takes."""
         return f"three moments above 0, or these and the elements xy, xz, yz [{self.unit}]"
 
     def check(self, value: Any) -> tuple[float, ...]:
-        """Give back the numbers."""
         if not isinstance(value, list | tuple) or len(value) not in (3, 6) or not all(map(is_number, value)):
             raise refuse(value, self, "write 3 or 6 numbers in square brackets")
         if min(value[:3]) <= 0.0:
@@ -186,7 +181,6 @@ class MaybeUncertain(Number):
     """A number in its range, or a distribution whose whole support lies in it."""
 
     def check(self, value: Any) -> Scalar:
-        """Give back the number or the distribution."""
         if isinstance(value, Uncertain):
             return value
         return self._uncertain(value) if isinstance(value, dict) else super().check(value)
@@ -211,6 +205,8 @@ class MaybeUncertain(Number):
         if not self.allow(lower, upper, ends=math.isfinite(upper)):
             allowed = f"{self}, and it reaches from {lower:g} to {upper:g}"
             raise refuse(table, allowed, "bound it within the range (uniform, log_uniform, beta, truncated_normal)")
+        # The support can lie in the range and the samples can still leave it: a gamma law of a tiny shape underflows to
+        # 0.
         if kind not in ALWAYS_SAMPLED:
             self._refuse_extreme(table, uncertain)
         return uncertain
@@ -231,6 +227,8 @@ class MaybeUncertain(Number):
 
 def is_number(value: object) -> bool:
     """Tell whether a value read from TOML is a number that a float can hold (true, false and infinity are not)."""
+    # bool is a subclass of int. TOML has nan, which fails both comparisons, inf, and integers of any length, on which
+    # float() would raise OverflowError.
     largest = sys.float_info.max
     return isinstance(value, int | float) and not isinstance(value, bool) and -largest <= value <= largest
 

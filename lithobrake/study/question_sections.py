@@ -1,13 +1,13 @@
-"""The tables of the study file that say what is asked: ends of a landing (limit states), and aims to choose from."""
+"""The tables of the study file that say what is asked: limit states, aims, and the sky at rest."""
 
 import re
 from dataclasses import dataclass
 from itertools import product
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from lithobrake.study.quantity import Number, Section, Whole, refuse
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole, refuse
 from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
 from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus
 
@@ -20,12 +20,10 @@ _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 
 
 def aim_results(*, is_journey: bool) -> tuple[str, ...]:
-    """What comes of an aim, by the names of its limits."""
     return (AT_REST if is_journey else SETTLED, *AIM_RESULTS)
 
 
 def condition_text(given: object) -> str:
-    """Give back the text of a condition; refuse what is none."""
     if not isinstance(given, str):
         raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
     try:
@@ -40,11 +38,11 @@ class LimitStatesSection(Section):
     Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
     true or false (docs/reliability.md). With design.method = "drawn" only."""
 
+    # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
 
     def conditions(self) -> dict[str, str]:
-        """The conditions by their names."""
         given: dict[str, Any] = self.__pydantic_extra__ or {}
         return dict(given)
 
@@ -101,3 +99,93 @@ class AimLimit:
     def keeps(self, value: float | None) -> bool:
         """Whether a value keeps it; what is not known does not."""
         return value is not None and bool(COMPARED[self.sign](value, self.number))
+
+
+Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
+Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
+SkyBody = Literal["sun", "earth", "orbiter"]
+
+
+class OrbitSection(Section):
+    """Heliocentric orbit of the body, or of the binary that it is in, by osculating elements (ecliptic and equinox of
+    J2000), as a catalogue of small bodies has them. The examples are those of Didymos [SBDB-Didymos]."""
+
+    semi_major_axis_au: Annotated[float, Number("", above=0)] = Field(examples=["1.64271"])
+    """Semi-major axis in astronomical units."""
+    eccentricity: Annotated[float, Number("", at_least=0, below=1)] = Field(examples=["0.383123"])
+    """Eccentricity."""
+    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] = Field(examples=["3.41388"])
+    """Inclination."""
+    node_deg: Turn = Field(examples=["72.9858"])
+    """Longitude of the ascending node."""
+    perihelion_deg: Turn = Field(examples=["319.5807"])
+    """Argument of perihelion."""
+    mean_anomaly_deg: Turn = Field(examples=["260.861"])
+    """Mean anomaly at `epoch`."""
+    epoch: str = Field(examples=['"2026-06-09T00:00:00"'])
+    """Date and time at which these elements hold (UTC)."""
+
+
+class OrbiterSection(Section):
+    """An orbiter that landers communicate with, given in one of three ways: a circle (`altitude`, `inclination_deg`),
+    with all phases of the orbit and of the body's rotation; a table of body-fixed states (`states`); or SPICE
+    (`kernel_name`) from sky.date to sky.until."""
+
+    altitude: Annotated[float, Number("m", above=0)] | None = Field(default=None, examples=["2000.0"])
+    """Height of the circle above the sphere around the body that touches its highest point."""
+    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] | None = Field(
+        default=None, examples=["90.0"]
+    )
+    """Inclination of the circle to the body's equator; absent: 90, over the poles."""
+    states: str | None = Field(default=None, examples=['"orbiter.csv"'])
+    """File of body-fixed states, relative to the study file, in the format of delivery.states; each state represents
+    half the time to each of its neighbours."""
+    kernel_name: str | None = Field(default=None, examples=['"HERA"'])
+    """Name or number, as text, of the orbiter in site.kernels."""
+
+    @property
+    def ways(self) -> list[str]:
+        return [key for key in ("altitude", "states", "kernel_name") if getattr(self, key) is not None]
+
+
+class SkySection(Section):
+    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them; with [journey]
+    only. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
+    season. Either give the latitudes (a distribution represents a year: each lander samples its own), or give `date`,
+    from which they follow by site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by
+    site.kernels. The shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
+    """
+
+    sun_latitude_deg: Latitude | None = None
+    """Latitude at which the Sun is overhead. Absent: no sunlight is computed, unless `date` is given."""
+    earth_latitude_deg: Latitude | None = None
+    """Latitude at which Earth is overhead. Absent: its visibility is not computed, unless `date` is given."""
+    date: str | None = None
+    """UTC date and time, for example "2027-04-20T00:00:00", for the positions of Sun and Earth."""
+    until: str | None = None
+    """End of a time span that begins at `date`, for example a year: fractions are means over 24 days of it, and
+    `sky.csv` also has the fraction of the worst day."""
+    orbit: OrbitSection | None = None
+    orbiter: OrbiterSection | None = None
+    mask_deg: Annotated[float, Number("deg", at_least=0, below=90)] = 0.0
+    """Elevation above the plane of the ground below which Earth and the orbiter are not visible."""
+    beam_deg: Annotated[float, Number("deg", above=0, at_most=90)] = 90.0
+    """Half the opening angle of an antenna's beam about the normal of its side, for Earth and the orbiter."""
+
+    @property
+    def latitudes(self) -> dict[SkyBody, Scalar]:
+        given: dict[SkyBody, Scalar | None] = {"sun": self.sun_latitude_deg, "earth": self.earth_latitude_deg}
+        return {name: latitude for name, latitude in given.items() if latitude is not None}
+
+    @property
+    def bodies(self) -> tuple[SkyBody, ...]:
+        far: tuple[SkyBody, ...] = tuple(self.latitudes) if self.date is None else ("sun", "earth")
+        return far if self.orbiter is None else (*far, "orbiter")
+
+    def mask_of(self, body: SkyBody) -> float:
+        """Least height above the ground [deg]; the Sun is seen down to the ground."""
+        return 0.0 if body == "sun" else self.mask_deg
+
+    def beam_of(self, body: SkyBody) -> float:
+        """Largest angle from the normal of a side that faces the body [deg]; a panel has light from all of its sky."""
+        return 90.0 if body == "sun" else self.beam_deg

@@ -1,27 +1,117 @@
-"""Reading a study file: all that is wrong with it is said at once, before anything runs."""
+"""Reading a study file, one of the user's or one that is shipped: all that is wrong is said at once."""
 
 import contextlib
 import shlex
+import shutil
 import tomllib
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from lithobrake.study.checks import problems
-from lithobrake.study.flight_sections import BUILT_IN_BODIES
+from lithobrake.study.impact_sections import BUILT_IN_BODIES
 from lithobrake.study.refusals import sentences
-from lithobrake.study.shipped import shipped_studies, study_path
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest
+
+STUDIES, EXAMPLES = "scenarios", "examples"
+# What an example needs beside itself, in the same folder.
+BESIDE = {
+    "ball_on_plate": ("ball_on_plate.py",),
+    "ball_on_plate_campaign": ("ball_on_plate.py",),
+    "notebook_first_study": ("ball_on_plate.py",),
+    "notebook_own_solver": ("ball_on_plate_campaign.py", "ball_on_plate.py"),
+    "notebook_reading_a_study": ("notebook_first_study.py", "ball_on_plate.py"),
+    "philae": ("philae_bounce.csv",),
+}
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """A study or an example: its own file, and those that it needs beside it."""
+
+    path: Path
+    beside: tuple[Path, ...]
+
+    @property
+    def name(self) -> str:
+        return self.path.stem
+
+    @property
+    def is_study(self) -> bool:
+        return self.path.suffix == ".toml"
+
+    @property
+    def title(self) -> str:
+        """What it is, on one line: the title of a study, the first words of a program or a notebook."""
+        text = self.path.read_text(encoding="utf-8")
+        if self.is_study:
+            return str(tomllib.loads(text)["title"])
+        lines = (line.strip('#" ').partition(":")[0] for line in text.splitlines() if not line.startswith("# %%"))
+        return next(line for line in lines if line)
+
+    def write(self, folder: Path) -> list[Path]:
+        """Copy its files to a folder, and give their paths. Raises ValueError where one would replace another file.
+
+        A file that is there already with the same content stays as it is.
+        """
+        pairs = [(path, folder / path.name) for path in (self.path, *self.beside)]
+        # All targets are looked at before the first is written, so that a refusal leaves no half of an example behind.
+        for source, target in pairs:
+            if target.exists() and not (target.is_file() and target.read_bytes() == source.read_bytes()):
+                raise ValueError(f"{target} exists, and is not replaced; rename it, or ask from another folder")
+        for source, target in pairs:
+            if not target.exists():
+                shutil.copyfile(source, target)
+        return [target for _, target in pairs]
+
+
+def shipped() -> dict[str, Shipped]:
+    """All studies, then all examples, by name."""
+    paths = [*_folder(STUDIES).glob("*.toml"), *_folder(EXAMPLES).glob("*.toml"), *_folder(EXAMPLES).glob("*.py")]
+    found: dict[str, Shipped] = {}
+    for path in paths:
+        # The program of a study has its name, and comes with it.
+        if path.stem not in found:
+            beside = tuple(path.with_name(name) for name in BESIDE.get(path.stem, ()))
+            found[path.stem] = Shipped(path, beside)
+    return dict(sorted(found.items(), key=lambda one: (not one[1].is_study, one[0])))
+
+
+def shipped_by_name(name: str) -> Shipped:
+    """The study or example of a name. Raises ValueError with the names that there are."""
+    known = shipped()
+    if name not in known:
+        raise ValueError(f"NAME is {name!r}{closest(name, known)}; allowed: {', '.join(known)}")
+    return known[name]
+
+
+def shipped_studies() -> dict[str, Path]:
+    """The study files by the names that run them."""
+    return {name: one.path for name, one in shipped().items() if one.is_study}
+
+
+def study_path(path: Path) -> Path:
+    """The path of a study file as it is given; of a name that is no file, that of the shipped study of this name."""
+    # A file of the user's wins over a shipped study of its name, and a path with a folder is never taken as a name.
+    is_name = len(path.parts) == 1 and not path.is_file()
+    return shipped_studies().get(path.name, path) if is_name else path
+
+
+def _folder(name: str) -> Path:
+    """Where files of a kind lie: inside the installed package, or at the top of the project that it is run from."""
+    package = Path(__file__).parents[1]
+    inside = package / "shipped" / name
+    return inside if inside.is_dir() else package.parent / name
 
 
 class StudyError(ValueError):
     """A study file that is refused; `problems` has one sentence for each thing wrong."""
 
     def __init__(self, problems: list[str]) -> None:
-        """Join the sentences to one message."""
         super().__init__("\n".join(problems))
         self.problems = problems
 
@@ -46,6 +136,7 @@ def read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         reason, remedy = f"the study file cannot be read ({error.strerror or error})", "name an existing TOML file"
+        # Without a suffix it was likely meant as the name of a shipped study.
         if not path.suffix:
             known = shipped_studies()
             reason += closest(path.name, known)
@@ -83,6 +174,8 @@ def check_tables(
     Raises StudyError with one sentence for each problem.
     """
     try:
+        # The checks below compare values of several keys, so they need all of them in the right types: they run only
+        # where the schema has nothing to refuse.
         study = Study.model_validate(_absolute(tables, folder)).with_function(function)
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
@@ -110,7 +203,6 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
 
 
 def _with_file(table: Any, folder: Path, key: str = "file") -> Any:
-    """A table whose file, if it has one, is counted from a folder."""
     if not isinstance(table, Mapping) or not isinstance(table.get(key), str):
         return table
     return {**table, key: str(folder / table[key])}
@@ -118,6 +210,8 @@ def _with_file(table: Any, folder: Path, key: str = "file") -> Any:
 
 def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """The tables with each path of a mesh, kernel, program or template counted from the folder of the study file."""
+    # Nothing has been validated yet: what is of a wrong type is passed on as it is, for the schema to refuse it by its
+    # key.
     result = {key: dict(value) if isinstance(value, Mapping) else value for key, value in tables.items()}
     for section, key in (("lander", "file"), ("site", "body"), ("delivery", "states")):
         table = result.get(section)
@@ -144,7 +238,8 @@ def _absolute(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if isinstance(solver, dict) and isinstance(solver.get("command"), str):
         from lithobrake.campaign import absolute_words
 
-        # Quotes that do not match are told by study_checks.
+        # Quotes that do not match are refused by the checks (checks.py).
         with contextlib.suppress(ValueError):
+            # The program is started in a folder of each run, where a relative path would lead elsewhere.
             solver["command"] = shlex.join(absolute_words(solver["command"], folder))
     return result

@@ -1,7 +1,7 @@
-"""Sentences about a study file that is refused: the key, what stands there, what is allowed, what to write instead."""
+"""Sentences about a study file that is refused, and things that a user names in any case."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from lithobrake.vocabulary.plain_text import closest, show
 
@@ -40,6 +40,7 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         return f"{key} is not a known key{closest(place[-1], known)}" + (
             f"; allowed: {', '.join(known)}" if known else ""
         )
+    # [journey] fills this table in (journey_tables), so a missing [journey] is as likely the slip.
     if kind == "missing" and key == "surface":
         return "surface is missing, and so is [journey], which needs no surface; add one of the two tables"
     if kind == "missing":
@@ -58,3 +59,20 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
     if kind in TYPES:
         return f"{key} is {show(found)}; allowed: {TYPES[kind]}"
     return f"{key} is {show(found)}; {error['msg'].replace('Input should be', 'it must be')}"
+
+
+class Named(Protocol):
+    @property
+    def name(self) -> str:
+        """The name."""
+
+
+Known = TypeVar("Known", bound=Named)
+
+
+def by_name(what: str, known: Mapping[str, Known], name: str, remedy: str) -> Known:
+    """The entry of a name; keys of known are in lower case. Raises ValueError for another name, with what to do."""
+    found = known.get(name.strip().lower())
+    if found is None:
+        raise ValueError(f"{what} is {name!r}; known are {', '.join(one.name for one in known.values())}; {remedy}")
+    return found

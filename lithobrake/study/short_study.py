@@ -1,11 +1,83 @@
-"""The study file that `lithobrake new` writes: a short study of journeys that runs."""
+"""The study file that `lithobrake new` writes, with its bodies and landers by name."""
 
 import json
 import math
+from dataclasses import dataclass
 
-from lithobrake.study.known_bodies import KnownBody
-from lithobrake.study.known_landers import KnownLander
+from lithobrake.study.refusals import by_name
 from lithobrake.study.template import DISTRIBUTION_WORDS, commented, sections
+
+
+@dataclass(frozen=True)
+class KnownBody:
+    """A small body whose mass, spin and pole are published.
+
+    name as it is printed; mass [kg]; spin_period [s]; mean_radius [m], of the ball of its volume; pole: right ascension
+    and declination in ICRF [deg], None where no flight depends on it; source of these numbers. is_built_in: its shape
+    comes with the package; another takes a mesh. missing: what the model leaves out there, as a sentence.
+    """
+
+    name: str
+    mass: float
+    spin_period: float
+    mean_radius: float
+    source: str
+    pole: tuple[float, float] | None = None
+    is_built_in: bool = False
+    missing: str = ""
+
+
+MARS = (
+    "Mars' attraction is left out: on Phobos it takes up to a half off the weight along the line to Mars, and flights "
+    "beyond some kilometres are wrong."
+)
+_BODIES = (
+    KnownBody("Didymos", 5.32e11, 2.26 * 3600.0, 382.6, "[Daly-2023], [Naidu-2020]", is_built_in=True),
+    KnownBody("Dimorphos", 4.3e9, 11.3674 * 3600.0, 76.4, "[Daly-2023], [Naidu-2024]", is_built_in=True),
+    KnownBody("Bennu", 7.329e10, 4.296057 * 3600.0, 245.0, "[Lauretta-2019]", (85.65, -60.17)),
+    KnownBody("Ryugu", 4.50e11, 7.63262 * 3600.0, 448.0, "[Watanabe-2019]", (96.40, -66.40)),
+    KnownBody("Itokawa", 3.51e10, 12.132 * 3600.0, 162.0, "[Fujiwara-2006], [Demura-2006]", (90.53, -66.30)),
+    KnownBody("Eros", 6.687e15, 5.27025547 * 3600.0, 8420.0, "[Yeomans-2000]", (11.37, 17.22)),
+    KnownBody("Phobos", 1.06e16, 27_553.8, 11_080.0, "[Patzold-2014], [Archinal-2018]", (317.67, 52.89), missing=MARS),
+)
+BODIES = {body.name.lower(): body for body in _BODIES}
+
+
+def known_body(name: str) -> KnownBody:
+    """The body of a name in any case. Raises ValueError for another name."""
+    return by_name("body", BODIES, name, "for another body write its mass and spin into [site]")
+
+
+_CDS = "largest mass and envelope in [CDS-2022], without deployable parts"
+
+
+@dataclass(frozen=True)
+class KnownLander:
+    """A box without wings and booms: name as it is printed, edges [m], mass [kg], and where they come from."""
+
+    name: str
+    edges: tuple[float, float, float]
+    mass: float
+    source: str
+
+
+_LANDERS = (
+    KnownLander("1U", (0.1, 0.1, 0.1135), 2.0, _CDS),
+    KnownLander("2U", (0.1, 0.1, 0.227), 4.0, _CDS),
+    KnownLander("3U", (0.1, 0.1, 0.3405), 6.0, _CDS),
+    KnownLander("6U", (0.2263, 0.1, 0.366), 12.0, _CDS),
+    KnownLander("12U", (0.2263, 0.2263, 0.366), 24.0, _CDS),
+    KnownLander("Juventas", (0.37, 0.23, 0.10), 12.0, "[ESA-2024]; its four booms of 1.5 m are left out"),
+    KnownLander("Milani", (0.13, 0.246, 0.366), 12.0, "[Hera-2024]; its wings are left out"),
+    KnownLander("MASCOT", (0.275, 0.29, 0.195), 10.0, "[Scholten-2019]"),
+)
+LANDERS = {lander.name.lower(): lander for lander in _LANDERS}
+
+
+def known_lander(name: str) -> KnownLander:
+    """The lander of a name in any case. Raises ValueError for another name."""
+    return by_name("lander", LANDERS, name, "for another one write its edges and mass")
+
 
 GRAIN_SIZE = 0.4  # diameter of the grains over the longest edge of the lander
 # Width of the ground before it repeats, over the diagonal of the lander; and what stays free beside that, in grains.
@@ -80,6 +152,7 @@ def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float]
     """
     diameter = float(f"{GRAIN_SIZE * max(lander.edges):.2g}")
     diagonal = math.hypot(*lander.edges)
+    # Rounded up to a centimetre: rounded down it might fall below the least width.
     width = math.ceil(100.0 * max(WIDTH * diagonal, diagonal + FREE * diameter)) / 100.0
     speeds = [min(part * escape_speed(body), FASTEST * part / SPEEDS[1]) for part in SPEEDS]
     softest = max(SOFTEST, STIFFNESS * DENSITY * speeds[1] ** 2)
@@ -108,13 +181,13 @@ def aim_point(text: str) -> tuple[float, float]:
 
 
 def all_keys() -> str:
-    """Every key of a study file with its meaning, behind comment signs."""
     return "\n".join(["\n" + _ALL_KEYS + DISTRIBUTION_WORDS, *map(commented, sections())])
 
 
 def rounded_up(value: float) -> str:
     """A number to one digit that is not smaller."""
     power = 10.0 ** math.floor(math.log10(value))
+    # The division may come out above a whole number by its rounding, which would cost a digit.
     return f"{math.ceil(value / power * (1.0 - 1e-12)) * power:.0e}"
 
 
@@ -124,7 +197,6 @@ def escape_speed(body: KnownBody) -> float:
 
 
 def _site(body: KnownBody, shape: str | None) -> str:
-    """The table of the body."""
     if shape is None and not body.is_built_in:
         raise ValueError(
             f"the package has no shape of {body.name}; give a closed mesh (OBJ, STL, PDS plates, ICQ) with --shape FILE"
@@ -134,6 +206,7 @@ def _site(body: KnownBody, shape: str | None) -> str:
     if shape is None:
         return f'[site]\nbody = "{body.name.lower()}"    # or a mesh with mass and spin_period\n'
     missing = LOST_PARTNER if body.is_built_in else body.missing
+    # A JSON string is a basic string of TOML, so backslashes and quotes of a path are escaped as TOML reads them.
     head, quoted = f"# {missing}\n" if missing else "", json.dumps(shape, ensure_ascii=False)
     pole = ""
     if body.pole is not None:

@@ -1,4 +1,4 @@
-"""A study with where it comes from: a file, or tables that a program has made."""
+"""A study with where it comes from, and a study at given numbers."""
 
 import os
 from collections.abc import Mapping
@@ -6,10 +6,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from lithobrake.study.reader import StudyError, check_tables, parse_tables, read_bytes
-from lithobrake.study.shipped import study_path
+from pydantic import BaseModel, ValidationError
+
+from lithobrake.study.body_checks import body_problems
+from lithobrake.study.checks import landing_problems
+from lithobrake.study.lander_section import PartSection
+from lithobrake.study.quantity import is_number
+from lithobrake.study.reader import StudyError, check_tables, known_keys, parse_tables, read_bytes, study_path
+from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
-from lithobrake.vocabulary.plain_text import show
+from lithobrake.vocabulary.plain_text import closest, show
 
 # What a study of tables is called in messages, and the stem of its folder.
 TABLES = "study"
@@ -48,6 +54,7 @@ class StudySource:
         import tomli_w
 
         plain = plain_tables(tables, f"{TABLES}.toml")
+        # Tables are turned into a file, since a folder is matched to its study by a copy with the same bytes.
         study = check_tables(plain, Path.cwd(), function=function)
         return cls(study, plain, tomli_w.dumps(plain).encode(), None)
 
@@ -74,7 +81,6 @@ def plain_tables(tables: Mapping[str, Any], name: str) -> dict[str, Any]:
 
 def _plain(value: Any, key: str, name: str, levels: int) -> Any:
     """One value, at a dotted key, in so many more levels."""
-    # A study file is refused without a wait for it.
     import numpy as np
 
     if isinstance(value, np.ndarray | np.generic):
@@ -82,6 +88,7 @@ def _plain(value: Any, key: str, name: str, levels: int) -> Any:
         value = float(value) if isinstance(value, np.longdouble) else value.tolist()
     elif isinstance(value, os.PathLike):
         value = os.fspath(value)
+    # Tables that hold themselves would go on for ever.
     if levels == 0:
         raise StudyError([f"{name}: {key} is nested too deeply; no key takes more than a few levels"])
     if isinstance(value, Mapping):
@@ -105,7 +112,6 @@ def _plain(value: Any, key: str, name: str, levels: int) -> Any:
 
 
 def _text(value: str, key: str, name: str) -> str:
-    """A text that a file can hold."""
     if any("\ud800" <= letter <= "\udfff" for letter in value):
         raise StudyError([f"{name}: {key} is {show(value)}, which UTF-8 cannot hold; leave out lone surrogates"])
     return value
@@ -113,3 +119,82 @@ def _text(value: str, key: str, name: str) -> str:
 
 def _dotted(key: str, inner: str) -> str:
     return f"{key}.{inner}" if key else inner
+
+
+# An attitude stands in the study file as one list.
+ATTITUDE = tuple(f"impact.orientation.{part}" for part in "wxyz")
+INPUTS, SITE = "solver.inputs.", "site."
+
+
+def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
+    """The study with these numbers in place of what its file has, uncertain or not.
+
+    values: by dotted key, in the units of the study file: all that a landing reads, with place and attitude of the run
+    and without its bed; or all numbers of the site that a flight reads, for which kernels may stand otherwise.
+    Raises StudyError where the study file would be refused with one of them, or none of them would be read.
+    """
+    tables: dict[str, Any] = {name: _table(getattr(study, name)) for name in type(study).model_fields}
+    unread = [key for key in values if key.startswith(INPUTS) and key.removeprefix(INPUTS) not in study.solver.inputs]
+    if unread:
+        raise StudyError([_unread(key, [f"{INPUTS}{name}" for name in study.solver.inputs]) for key in unread])
+    # What it says stands in other tables too, which the numbers are put into.
+    tables["delivery"] = None
+    for key, value in values.items():
+        _put(tables, key, value)
+    try:
+        # Through the schema and the checks of a study file: a number of a client or of --set is refused in the same
+        # words.
+        fixed = Study.model_validate(tables).with_function(study.function)
+    except ValidationError as error:
+        raise StudyError(sentences(error.errors(), known_keys())) from error
+    loose = [f"{key} is {show(value)}; allowed: one number" for key, value in values.items() if not is_number(value)]
+    if loose:
+        raise StudyError(loose)
+    # A landing reads nothing of the site, and a flight nothing else.
+    of_site = all(key.startswith(SITE) for key in values)
+    read = list(fixed.site_values()) if of_site else [*fixed.touchdown_values(), *ATTITUDE]
+    between = body_problems if of_site else landing_problems
+    found = [_unread(key, read) for key in values if key not in read] or list(between(fixed))
+    if found:
+        raise StudyError(found)
+    return fixed
+
+
+def _table(section: Any) -> Any:
+    if not isinstance(section, BaseModel):
+        return section
+    return {name: getattr(section, name) for name in type(section).model_fields}
+
+
+def _put(tables: dict[str, Any], key: str, value: Any) -> None:
+    section, _, name = key.partition(".")
+    table = tables.setdefault(section, {})
+    if not isinstance(table, dict):
+        raise StudyError([_unread(key, [])])
+    if key in ATTITUDE:
+        given = table["orientation"]
+        attitude = [1.0, 0.0, 0.0, 0.0] if isinstance(given, str) else list(given)
+        attitude[ATTITUDE.index(key)] = value
+        # What is given is the attitude that was drawn with the error.
+        table |= {"orientation": attitude, "pointing_error_deg": None}
+    elif name.startswith("place."):
+        table |= {"place": {**(_table(table["place"]) or {}), name.removeprefix("place."): value}, "region": None}
+    elif name.startswith("centre_of_mass."):
+        centre = _table(table["centre_of_mass"]) or {}
+        table["centre_of_mass"] = {**centre, name.removeprefix("centre_of_mass."): value}
+    elif name.startswith("part."):
+        part, _, inner = name.removeprefix("part.").partition(".")
+        if part not in table["part"] or inner not in PartSection.model_fields:
+            raise StudyError([_unread(key, [])])
+        table["part"] = {**table["part"], part: {**_table(table["part"][part]), inner: value}}
+    elif key.startswith(INPUTS):
+        table["inputs"] = {**table["inputs"], key.removeprefix(INPUTS): value}
+    elif section == "site":
+        # A number next to kernels that give it would be refused as given twice.
+        table |= {name: value, "kernels": [], "kernel_body": None, "epoch": None}
+    else:
+        table[name] = value
+
+
+def _unread(key: str, read: list[str]) -> str:
+    return f"{key} is not read here{closest(key, read)}; allowed: the numbers of a run by the keys of the study file"

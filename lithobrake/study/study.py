@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, PrivateAttr, model_validator
 
-from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, BedSection, default_bed_count
+from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.design_sections import (
     DEFAULT_METHOD,
     CampaignSection,
@@ -17,22 +17,28 @@ from lithobrake.study.design_sections import (
     SolverSection,
     method_name,
 )
-from lithobrake.study.flight_sections import FlightSection, RestSection, SiteSection
+from lithobrake.study.ground_sections import (
+    JOURNEYS_A_BED,
+    LANDINGS_A_BED,
+    BedSection,
+    GrainSection,
+    SoilSection,
+    default_bed_count,
+)
 from lithobrake.study.impact_sections import (
     ContactSection,
+    FlightSection,
     ImpactSection,
     LandingSection,
     PlaceSection,
+    RestSection,
+    SiteSection,
     SurfaceSection,
+    kernel_values,
 )
-from lithobrake.study.journey_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.lander_section import CentreSection, LanderSection
-from lithobrake.study.material_sections import GrainSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
-from lithobrake.study.question_sections import AimSection, LimitStatesSection
-from lithobrake.study.site_kernels import kernel_values
-from lithobrake.study.sky_section import SkySection
-from lithobrake.study.soil_section import SoilSection
+from lithobrake.study.question_sections import AimSection, LimitStatesSection, SkySection
 
 
 class Study(Section):
@@ -40,6 +46,7 @@ class Study(Section):
 
     title: str = ""
     """Title of the study, one line."""
+    # JSON numbers are doubles to most readers, exact up to 2**53.
     seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
     """Seed of all random numbers of the study."""
     bed: BedSection
@@ -76,14 +83,18 @@ class Study(Section):
             return tables
         filled, bed, impact = dict(tables), tables.get("bed"), tables.get("impact")
         if isinstance(bed, Mapping):
+            # Values of the file take precedence over every default.
             filled["bed"] = {"sides": "periodic", **bed}
         if isinstance(impact, Mapping):
+            # An error of pointing is about an attitude that is given, and a random one has none.
             attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
             filled["impact"] = {"azimuth_deg": "random", **attitude, **impact}
         return filled
 
     def with_function(self, identity: str | None) -> "Study":
         """The same study, its touchdowns made by a Python function of this identity in place of the soil."""
+        # The section models are frozen, and a private attribute is no key of the file: neither schema nor template
+        # shows it.
         study = self.model_copy()
         study._function = identity
         return study
@@ -129,6 +140,7 @@ class Study(Section):
         # What a run is given is the attitude that it draws with that error.
         values.pop("impact.pointing_error_deg", None)
         if self.impact.region is None and self.impact.place is None:
+            # draw() takes the place of a run without a region from here.
             values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
         return values
 

@@ -46,13 +46,14 @@ def sections() -> Iterator[str]:
 
 
 def commented(section: str) -> str:
-    """A table behind comment signs."""
     return "".join(line if line.startswith("#") else f"# {line}" for line in section.splitlines(keepends=True))
 
 
 def _section(name: str, model: type[BaseModel]) -> str:
     """A table with its keys; those that it has from a base stand together below what the base says of them."""
     lines = f"{_comment(model.__doc__ or '')}[{name}]\n"
+    # model_fields holds inherited keys too; the last class of the order of inheritance that has a key is the one that
+    # declares it.
     owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
     plain = [key for key, field in model.model_fields.items() if not (is_named(field) and table(field))]
     for owner, keys in groupby(plain, key=owners.__getitem__):
@@ -98,7 +99,6 @@ def _inner_table(name: str, model: type[BaseModel]) -> str:
 
 
 def _is_pair(model: type[BaseModel], key: str) -> bool:
-    """Tell whether a key takes two numbers."""
     allowed = limits(model.model_fields[key])
     return allowed is not None and not isinstance(allowed, MaybeUncertain)
 
@@ -108,7 +108,6 @@ def _comment(text: str) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """A value as a study file has it."""
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, list | tuple):

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake import __version__
-from lithobrake.files.hashing import source_hash
+from lithobrake.files.reading import source_hash
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
-from lithobrake.study.bed_section import Constant, PowerLaw
+from lithobrake.study.ground_sections import Constant, PowerLaw
 from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.progress import Progress, silent
@@ -22,7 +22,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
-    from lithobrake.study.bed_section import Bell, Between
+    from lithobrake.study.ground_sections import Bell, Between
     from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
@@ -74,6 +74,7 @@ class TouchdownModel:
 
 
 # What the engine calls things by its own names, and what they are in a study file.
+# Replaced one after the other, so longer names stand before those that they begin with.
 STUDY_WORDS = {
     "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
     ": make it smaller": ": raise contact.steps_per_contact",
@@ -108,14 +109,14 @@ def in_words_of_the_study() -> Iterator[None]:
 
 
 # Where the code stands that decides what a touchdown gives.
+# Workers of a cluster may have another version, and results of other code are other results: the hash is part of the
+# keys of beds and runs, and each call compares it.
 ENGINE_PARTS = (
     "dem",
     "touchdown",
-    "geometry/boulder_limits.py",
-    "geometry/longest_grain.py",
+    "geometry/grain_limits.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
-    "geometry/mesh_units.py",
     "study/lander_shapes.py",
     "study/touchdown_model.py",
 )
@@ -123,7 +124,6 @@ ENGINE_PARTS = (
 
 @cache
 def engine_hash() -> str:
-    """Hash of the code that decides what a touchdown gives."""
     return source_hash(*ENGINE_PARTS)
 
 
@@ -169,6 +169,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
 
     Source: [Thaler-1998].
     """
+    # A stream of its own, as the number of beds decides how much is taken from it: the other draws stay as they are.
     bed = int(np.argmax(np.random.Generator(np.random.PCG64([seed, 1])).random(study.bed_count)))
     generator = np.random.Generator(np.random.PCG64(seed))
     fractions, turn = generator.random(2), generator.random()
@@ -202,19 +203,16 @@ def given_attitude(study: Study, distance: float, direction: float) -> np.ndarra
 
 
 def contact(study: Study) -> "ContactModel":
-    """The readings of the contact law."""
     from lithobrake.touchdown import ContactModel
 
     return ContactModel(**study.contact.model_dump())
 
 
 def grain_sizes(study: Study) -> "GrainSizes":
-    """The sizes of the grains."""
     return sizes_of(study.bed.diameter)
 
 
 def boulders(study: Study) -> "Boulders | None":
-    """The boulders among the grains."""
     from lithobrake.touchdown import Boulders
 
     section = study.bed.boulders
@@ -224,7 +222,6 @@ def boulders(study: Study) -> "Boulders | None":
 
 
 def sizes_of(sizes: "Constant | Between | Bell | PowerLaw") -> "GrainSizes":
-    """The size distribution of a table of the study file."""
     from lithobrake.touchdown import GrainSizes
 
     if isinstance(sizes, Constant):
@@ -236,7 +233,6 @@ def sizes_of(sizes: "Constant | Between | Bell | PowerLaw") -> "GrainSizes":
 
 
 def grain(values: Values) -> "Material":
-    """The rock of the grains."""
     from lithobrake.dem import Material
 
     properties: dict[str, Any] = {name: values[f"grain.{name}"] for name in ("density", *SURFACE)}

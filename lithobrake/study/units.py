@@ -45,13 +45,13 @@ def _units(path: str, model: type[BaseModel]) -> dict[str, str]:
         range_of_values, inner = limits(field), table(field)
         if range_of_values is not None:
             units[f"{path}{name}"] = range_of_values.unit or PURE
+        # Names of the user's own are not known before a file is read, so their tables cannot be listed.
         elif inner is not None and not is_named(field):
             units |= _units(f"{path}{name}.", inner)
     return units
 
 
 def table(field: FieldInfo) -> type[BaseModel] | None:
-    """The table that a field takes, if it takes exactly one kind of table."""
     kinds = [field.annotation, *get_args(field.annotation)]
     models = [kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)]
     return models[0] if len(models) == 1 else None
@@ -89,8 +89,10 @@ def _quantity(unit: str) -> dict[str, float]:
 
 
 def _plain(unit: str) -> str:
-    """A unit as the rows have it."""
     compact = "".join(unit.split()) or PURE
+    # Micro has two code points that look alike, U+00B5 of keyboards and U+03BC of the Greek alphabet; "m s-1" has
+    # become "ms-1" here.
     for written, plain in (("**", ""), ("^", ""), ("²", "2"), ("°", "deg"), ("µ", "u"), ("μ", "u"), ("s-", "/s")):
         compact = compact.replace(written, plain)
+    # The exponent of "s-1" has become "/s1" by now; "s-2" is "/s2", as in the rows.
     return compact.removesuffix("1") if compact.endswith("/s1") else compact

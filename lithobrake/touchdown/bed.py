@@ -1,4 +1,4 @@
-"""A settled bed of grains, in an open box or on ground that repeats, and its file."""
+"""A settled bed of grains, its file, and its surface as a vertical ray sees it."""
 
 import itertools
 import math
@@ -11,17 +11,71 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import ConvexHull, Material, World, pair_law
+from lithobrake.dem import ConvexHull, Material, World, folded, pair_law, period_of, rotation_matrices
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import reading
-from lithobrake.touchdown.surface import heights_at
 from lithobrake.vocabulary.quantities import describe
 
 Floats = NDArray[np.float64]
+RAYS_PER_DIAMETER = 4
+
+
+def rotation_matrix(quaternion: Floats) -> Floats:
+    """Return the rotation matrix [3, 3], body to world, of a unit quaternion w, x, y, z."""
+    return rotation_matrices(quaternion[None])[0]
+
+
+def height_map(
+    grains: list[ConvexHull], position: Floats, orientation: Floats, width: tuple[float, float],
+    period: tuple[float, float] | None = None,
+) -> Floats:  # fmt: skip
+    """Return the height [m] of the topmost grain over a regular grid of the bed, 0 where only the floor is seen.
+
+    period [m]: after which the ground repeats; None in a box.
+    """
+    spacing = np.mean([2.0 * grain.bounding_radius for grain in grains]) / RAYS_PER_DIAMETER
+    axes = [(np.arange(n := max(1, round(w / spacing))) + 0.5) * w / n - 0.5 * w for w in width]
+    x, y = np.meshgrid(*axes, indexing="ij")
+    return np.maximum(heights_at(x, y, grains, position, orientation, period), 0.0)
+
+
+def heights_at(
+    x: Floats, y: Floats, grains: list[ConvexHull], position: Floats, orientation: Floats,
+    period: tuple[float, float] | None = None,
+) -> Floats:  # fmt: skip
+    """Return the height [m] of the topmost grain at places x, y [m] of any one shape, minus infinity where none is.
+
+    period [m]: after which the ground repeats; None in a box.
+    """
+    heights = np.full_like(x, -np.inf)
+    for grain, place, turn in zip(grains, position, orientation, strict=True):
+        way = folded(np.stack([x - place[0], y - place[1]], axis=-1), period_of(period))
+        near = way[..., 0] ** 2 + way[..., 1] ** 2 <= grain.bounding_radius**2
+        if near.any():
+            heights[near] = np.maximum(heights[near], place[2] + _top(grain, turn, *way[near].T))
+    return heights
+
+
+def _top(grain: ConvexHull, turn: Floats, x: Floats, y: Floats) -> Floats:
+    """Return how far above the centroid vertical rays at x, y [m] from it leave a grain; minus infinity: they miss."""
+    normals = grain.polyhedron.face_normals @ rotation_matrix(turn).T
+    offsets = grain.polyhedron.face_offsets - grain.polyhedron.face_normals @ grain.centroid
+    rest = offsets[:, None] - normals[:, :1] * x - normals[:, 1:2] * y
+    # Upright faces bound the ray from the side, and neither from above nor below: they are looked at apart.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = rest / normals[:, 2:]
+    top = np.where(normals[:, 2:] > 0.0, crossing, np.inf).min(axis=0)
+    bottom = np.where(normals[:, 2:] < 0.0, crossing, -np.inf).max(axis=0)
+    beside = ((normals[:, 2:] == 0.0) & (rest < 0.0)).any(axis=0)
+    found: Floats = np.where((top >= bottom) & ~beside, top, -np.inf)
+    return found
+
+
 FORMAT_VERSION = 2
 # A bed ends at the walls of a box, or goes on with its own image on every side.
 SIDES = ("walls", "periodic")
 # Friction of the floor under grains on a slope without walls, at least, over the tangent of the slope.
+# On such a floor grains settle and hold down to a friction of 0.4 of the tangent; studies that go lower are refused.
 HOLDING = 2.0
 
 
@@ -109,6 +163,8 @@ class Bed:
     @cached_property
     def elastic_energy_per_modulus(self) -> float:
         """Elastic energy of its contacts as they overlap, over the effective Young's modulus that they have [m3]."""
+        # At given overlaps elastic energy is in proportion to the modulus, so one assembly of the bed serves every soil
+        # it is landed with.
         unit = Material(young_modulus=1.0, poisson_ratio=0.0, restitution=1.0, friction=0.0, density=self.density)
         elastic = self.world(unit, self.gravity, ContactModel()).energy()["elastic"]
         return elastic / pair_law(unit, unit).young_modulus
@@ -178,7 +234,6 @@ SCALARS = (
 
 
 def plain(value: Any) -> Any:
-    """Return an HDF5 attribute as plain Python: tuples of floats, ints, floats."""
     return tuple(float(v) for v in value) if np.ndim(value) else value.item()
 
 
@@ -200,7 +255,6 @@ def write_hulls(file: Any, hulls: Sequence[Surface]) -> None:
 
 
 def read_hulls(file: Any) -> list[ConvexHull]:
-    """Read what `write_hulls` wrote."""
     vertices, start = file["vertices"][()], file["vertex_start"][()]
     return [ConvexHull(vertices[a:b]) for a, b in itertools.pairwise(start)]
 
@@ -219,6 +273,7 @@ def boxed_world(
     numbers = world.add_bodies(grains, material, position, orientation)
     along, aside, out = gravity if tilted is None else tilted
     slope = math.hypot(along, aside) / abs(out) if out != 0.0 else 0.0
+    # On level ground the floor keeps the material of the grains, and so their bits; between walls the box holds them.
     holds = sides == "walls" or slope == 0.0
     floor = material if holds else replace(material, friction=max(material.friction, HOLDING * slope), rough=True)
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), floor)
@@ -228,5 +283,6 @@ def boxed_world(
         for sign in (-1.0, 1.0):
             point, normal = np.zeros(3), np.zeros(3)
             point[axis], normal[axis] = 0.5 * sign * width[axis], -sign
+            # The lander meets no wall: one that crosses the rim has left the bed, which the judge has to see.
             world.add_plane(tuple(point), tuple(normal), material, bodies=numbers)
     return world

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from lithobrake.compilation.disk_cache import DiskCache
 from lithobrake.files.atomic import atomic_path
-from lithobrake.files.hashing import json_hash, source_hash
+from lithobrake.files.reading import json_hash, source_hash
 from lithobrake.touchdown.bed import Bed
 from lithobrake.touchdown.pouring import BedRecipe
 
@@ -79,7 +79,6 @@ def _code() -> list[str]:
 
 @cache
 def _library(gigabytes: str) -> DiskCache | None:
-    """The library of a size; None where beds are neither kept nor looked for."""
     try:
         limit = float(gigabytes)
     except ValueError:

@@ -1,19 +1,52 @@
-"""Watching one landing, and judging it: when it is over, how it ended, and what is to be told of it."""
+"""Watching one landing, and judging it: when it is over, how it ended, and when a lander rests."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.dem import World
-from lithobrake.touchdown.bed import Bed
+from lithobrake.dem import BodyMotion, World
+from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander
-from lithobrake.touchdown.landing import Landing
-from lithobrake.touchdown.outcome import LEAVING, Outcome, outgoing, turned, turned_attitude
-from lithobrake.touchdown.rest_watch import RestWatch
-from lithobrake.touchdown.surface import rotation_matrix
+from lithobrake.touchdown.landing import LEAVING, Landing, Outcome, outgoing, turned, turned_attitude
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, PERIODS_TRAVELLED, TO_REST
+
+# A lander that stands on an edge topples with the time constant sqrt(size / gravity), in which its tilt grows by a
+# factor of e: what moves by less than REST_WAY meanwhile was within 0.6 % of its size of balance, or rests.
+TOPPLING_TIMES = 1.0
+REST_WAY = 0.015  # of the smallest edge, by any point of the lander
+
+
+class RestWatch:
+    """Watches a lander until no point of it has moved by more than REST_WAY for long enough."""
+
+    def __init__(self, lander: Lander, inward_gravity: float) -> None:
+        """Begin; inward_gravity: of the site [m/s2]. Where it does not point inward nothing rests."""
+        self.reach, self.way = lander.reach, REST_WAY * lander.smallest_edge
+        self.patience = rest_time(lander, inward_gravity)
+        self.since = math.inf
+        self.anchor: BodyMotion | None = None
+
+    def is_over(self, time: float, motion: BodyMotion) -> bool:
+        """Look at the lander at a time [s], and return whether it rests."""
+        if self.anchor is None or self._moved(self.anchor, motion) > self.way:
+            self.since, self.anchor = time, motion
+        return time - self.since > self.patience
+
+    def _moved(self, before: BodyMotion, now: BodyMotion) -> float:
+        """Return a bound on how far a point of the lander has moved [m]."""
+        between = abs(float(np.dot(before.orientation, now.orientation)))
+        turn = 2.0 * math.acos(min(between, 1.0))
+        return float(np.linalg.norm(now.position - before.position)) + turn * self.reach
+
+
+def rest_time(lander: Lander, inward_gravity: float) -> float:
+    """Return how long [s] a lander has to stay where it is until it rests; infinite where gravity points outward."""
+    if inward_gravity <= 0.0:
+        return math.inf
+    return TOPPLING_TIMES * math.sqrt(lander.smallest_edge / inward_gravity)
+
 
 Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
@@ -33,8 +66,6 @@ def capture_lift(lander: Lander, gravity: float) -> float:
 
 
 class OutcomeJudge:
-    """Looks at the lander every few steps, until it can tell how the touchdown ended."""
-
     def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
         self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
         self.start_time = world.time
@@ -90,6 +121,7 @@ class OutcomeJudge:
         if self.bed.period is None or self.world.first_touch is None:
             return
         self.path += math.hypot(*(self.motion.position - before)[:2])
+        # The path between touches in flight stirs no ground, so it counts only once another touch has followed.
         if self.world.watched["last_contact"] > self.last_time:
             self.path_in_contact = self.path
 
@@ -115,7 +147,6 @@ class OutcomeJudge:
         return max(ground, boulder), max(clear, boulder)
 
     def judge(self, height: float, has_touched: bool) -> TouchdownOutcome | None:
-        """Return how the touchdown ended, or None while it is open."""
         if self.rest is not None:
             return self.judge_to_rest(self.rest, height, has_touched)
         world, position, velocity = self.world, self.motion.position, self.motion.velocity
@@ -166,11 +197,12 @@ class OutcomeJudge:
         force = np.linalg.norm(world.contact_force, axis=1)
         frame = {"position": world.position, "orientation": world.orientation, "force": force}
         self.frames.append({"time": np.array(world.time - self.start_time), **frame})
+        # How long a landing lasts is not known, so every second frame goes as it gets longer: memory stays bounded and
+        # frames even.
         if len(self.frames) == 2 * self.frame_count:
             self.frames, self.stride = self.frames[::2], 2 * self.stride
 
     def outcome(self) -> Outcome:
-        """Return what came of the landing."""
         world, motion = self.world, self.motion
         assert self.ended is not None
         left = self.ended == TouchdownOutcome.CLEAR

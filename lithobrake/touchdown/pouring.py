@@ -7,12 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
-from lithobrake.geometry.longest_grain import longest_reach
+from lithobrake.geometry.grain_limits import longest_reach
 from lithobrake.touchdown import settling
-from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world
-from lithobrake.touchdown.boulders import Boulders, place_boulders
-from lithobrake.touchdown.grains import GrainSizes, make_grain_within, random_orientation
-from lithobrake.touchdown.surface import height_map
+from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world, height_map
+from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation
 
 Progress = Callable[[float, str], None]
 Vector = tuple[float, float, float]
@@ -79,18 +77,15 @@ class Recorder:
         self.frames: list[tuple[float, Floats, Floats]] = []
 
     def note(self, world: World) -> None:
-        """Note the state of rest."""
         gravity = float(np.linalg.norm(world.gravity))
         ratio = settling.kinetic_ratio(world, self.diameter, gravity)
         self.rows.append((world.time, ratio, settling.unbalanced_force(world), gravity))
 
     def frame(self, world: World) -> None:
-        """Note where every grain is."""
         self.frames.append((world.time, world.position, world.orientation))
 
     @property
     def at_rest(self) -> bool:
-        """Whether the last note meets both criteria."""
         return self.rows[-1][1] < settling.KINETIC_RATIO and self.rows[-1][2] < settling.UNBALANCED_FORCE
 
 
@@ -114,6 +109,8 @@ def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
 def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -> Bed:
     diameter = recipe.sizes.draw(generator.random(recipe.grain_count))
     count = recipe.cloud_point_count
+    # Without walls the width must exceed that of the longest grain several times, so how long one may be is bounded
+    # beforehand.
     longest = math.inf if recipe.period is None else longest_reach(count)
     grains = [make_grain_within(generator, count, d, longest) for d in diameter]
     boulders, lying = boulders_of(recipe, grains)
@@ -126,7 +123,6 @@ def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -
     settling_material = replace(recipe.material, restitution=max(SETTLING_RESTITUTION, recipe.material.restitution))
 
     def at_rest(material: Material, gravity: Vector) -> World:
-        """Return the grains where they are, at rest, without a history."""
         frame = recipe.width, material, gravity, recipe.contact, recipe.sides
         other = boxed_world(grains, world.position, world.orientation, *frame)
         other.time = world.time
@@ -150,6 +146,7 @@ def boulders_of(recipe: BedRecipe, grains: Sequence[Shape]) -> tuple[list[Convex
     """Return the boulders of a bed, as they are turned, and their centroids [m], shape [count, 3]; mostly none."""
     if recipe.boulders is None:
         return [], np.zeros((0, 3))
+    # Numbers of their own: a bed without boulders keeps its grains to the last bit.
     generator = np.random.default_rng([recipe.seed, BOULDERS])
     volume = sum(grain.volume for grain in grains)
     return place_boulders(recipe.boulders, generator, recipe.cloud_point_count, volume, recipe.width, recipe.period)
@@ -214,6 +211,7 @@ def lie(world: World, recorder: Recorder, recipe: BedRecipe, tell: Progress) -> 
     """Let grains that have fallen come to lie still as far as the pour gravity is concerned."""
     fall_time = world.time
     longest = settling.rest_period(recipe.material, recorder.diameter, recipe.pour_gravity) / LYING_STEPS
+    # So weak that what nothing holds up still falls, and fast enough for the kinetic criterion to notice.
     world.drag = settling.free_fall_drag(recipe.pour_gravity, recorder.diameter)
     calm = 0
     for check in range((FALLS_PATIENCE - 1) * FALL_CHECKS):

@@ -65,6 +65,7 @@ def unbalanced_force(world: World) -> float:
     if len(contacts) == 0:
         return math.inf
     force = contacts["normal_force"][:, None] * contacts["normal"] + contacts["tangential_force"]
+    # Summed up from the contacts and not read from the engine, whose forces hold the drag.
     resultant = world.mass[:, None] * world.gravity
     np.subtract.at(resultant, contacts["body_a"], force)
     on_body = contacts["body_b"] >= 0
@@ -131,7 +132,6 @@ def rests(
 
 
 def restless(world: World) -> str:
-    """Return what to say of a bed that does not come to rest."""
     return (
         f"the bed did not come to rest within {PERIODS_PATIENCE:.0f} periods of a grain's small oscillation under "
         f"{np.linalg.norm(world.gravity):.3g} m/s2: its slope may be too steep, its friction too low, or "

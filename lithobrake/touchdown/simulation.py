@@ -9,14 +9,10 @@ import numpy as np
 
 from lithobrake.dem import BodyMotion, Material, World, folded, pair_law, period_of
 from lithobrake.touchdown import settling
-from lithobrake.touchdown.bed import Bed
-from lithobrake.touchdown.lander import Lander
-from lithobrake.touchdown.landing import Landing
-from lithobrake.touchdown.outcome import Outcome
-from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift
-from lithobrake.touchdown.rest_watch import rest_time
-from lithobrake.touchdown.smallest_bed import smallest_bed
-from lithobrake.touchdown.surface import rotation_matrix
+from lithobrake.touchdown.bed import Bed, rotation_matrix
+from lithobrake.touchdown.lander import Lander, smallest_bed
+from lithobrake.touchdown.landing import Landing, Outcome
+from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift, rest_time
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
@@ -85,6 +81,8 @@ def released_speed(bed: Bed, material: Material) -> float:
     what they lose as they sink to the overlaps of a soil k times as stiff: k - 5/2 + 3/2 k^(-2/3) of what they held,
     from Hertz' law for a constant load.
     """
+    # Relaxing a bed can take twenty times the CPU time of the landing, so it is left out where the landing would not
+    # feel what it removes.
     rest = replace(material, young_modulus=bed.young_modulus, poisson_ratio=bed.poisson_ratio)
     held, stiffness = (pair_law(one, one).young_modulus for one in (rest, material))
     k = stiffness / held

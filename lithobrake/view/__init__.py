@@ -1,10 +1,8 @@
 """Moving bodies to look at outside the report: a file for ParaView, a window, a film, a contact sheet."""
 
-from lithobrake.view.files import contact_sheet, refuse_other_kinds, write_motion
 from lithobrake.view.film import film, journey_film
-from lithobrake.view.journey_files import write_journey
-from lithobrake.view.motion import show
-from lithobrake.view.vtkhdf import write_vtkhdf
+from lithobrake.view.motion import show, write_vtkhdf
+from lithobrake.view.motion_files import contact_sheet, refuse_other_kinds, write_journey, write_motion
 
 __all__ = [
     "contact_sheet",

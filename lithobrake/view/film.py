@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.view.motion import INSTALL, DrawnMotion
+from lithobrake.view.motion import DrawnMotion
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -80,9 +81,9 @@ def map_picture(track: "JourneyTrack", shown: int | None = None) -> np.ndarray:
     """The map up to a touchdown, or the whole of it, with what is said of it, as large as a picture of the film."""
     from PIL import Image
 
-    from lithobrake.report.figures.journey_sheet import caption, picture
+    from lithobrake.report.figures.landing_figure import caption, picture
+    from lithobrake.report.figures.map_frames import track_map
     from lithobrake.report.figures.style import figure_style
-    from lithobrake.report.figures.track_map import track_map
 
     words = track.end_words if shown is None else track.touchdowns[shown].words
     with figure_style():
@@ -100,11 +101,8 @@ def _write(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
 
 
 def _write_mp4(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
-    try:
-        import imageio_ffmpeg
-    except ImportError as error:
-        raise ImportError(f"imageio-ffmpeg is not installed; install it with: {INSTALL}, or write .webp") from error
-    writer = imageio_ffmpeg.write_frames(str(path), SIZE, fps=rate, output_params=["-f", "mp4"], macro_block_size=2)
+    library = extra_library("imageio_ffmpeg", "imageio-ffmpeg", "view", ", or write .webp")
+    writer = library.write_frames(str(path), SIZE, fps=rate, output_params=["-f", "mp4"], macro_block_size=2)
     writer.send(None)
     for picture in pictures:
         writer.send(np.ascontiguousarray(picture[: SIZE[1], : SIZE[0], :3]))

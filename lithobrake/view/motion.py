@@ -1,22 +1,24 @@
-"""The hulls of a motion as one mesh: where they are and how fast, drawn by PyVista with a camera on the lander."""
+"""The hulls of a motion as one mesh: drawn by PyVista, and as a VTKHDF file for ParaView."""
 
 import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.attitude import rotation_matrices
-from lithobrake.results.ground_images import with_images
+from lithobrake.results.motions import with_images
+from lithobrake.vocabulary.extra_library import extra_library
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from lithobrake.results.moving_bodies import MovingBodies
+    from lithobrake.results.motions import MovingBodies
 
     Floats = NDArray[np.float64]
     Faces = NDArray[np.int64]
 
-INSTALL = 'pip install "lithobrake[view]"'
 # Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
 COLOURS = "YlGnBu"
 # What is slower than this part of the fastest is drawn as at rest: below it one colour serves.
@@ -25,15 +27,6 @@ SLOWEST = 1e-3
 MOST_TILES = 2.0
 # Of a window [pixels].
 SIZE = (1280, 800)
-
-
-def pyvista() -> Any:
-    """Return the module. Raises ImportError with how to install it."""
-    try:
-        import pyvista
-    except ImportError as error:
-        raise ImportError(f"PyVista is not installed; install it with: {INSTALL}") from error
-    return pyvista
 
 
 class DrawnMotion:
@@ -46,7 +39,7 @@ class DrawnMotion:
         if off_screen and not os.environ.get("DISPLAY"):
             # Without this VTK asks for a display first, and says so.
             os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-        pv = pyvista()
+        pv = extra_library("pyvista", "PyVista", "view")
         self.words, self.bodies = words, with_images(bodies)
         bodies = self.bodies
         self.speeds = body_speeds(bodies)
@@ -138,3 +131,68 @@ def show(bodies: "MovingBodies") -> None:
             lambda value: drawn.go_to(round(value)), [0, last], value=0, title="frame", fmt="%.0f", style="modern"
         )
     drawn.plotter.show(title="lithobrake")
+
+
+VERSION = (2, 1)
+EMPTY = ("Vertices", "Lines", "Strips")
+
+
+def write_vtkhdf(bodies: "MovingBodies", path: str | Path) -> None:
+    """Write bodies and their motion: points [m], and for each triangle the number and the speed [m/s] of its body.
+
+    Where forces were kept also the size of the sum of contact forces on it [N].
+
+    The lander of a landing is the body with the last number. On ground that repeats grains stand there with their
+    images around its way.
+    """
+    import h5py
+
+    bodies = with_images(bodies)
+    faces, owner = triangles(bodies)
+    frames, points = len(bodies.time), sum(len(hull) for hull in bodies.vertices)
+    with atomic_path(path) as draft, h5py.File(draft, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = VERSION
+        root.attrs.create("Type", b"PolyData", dtype="S8")
+        root["NumberOfPoints"] = np.full(frames, points)
+        _write_packed(root, "Points", np.concatenate([placed(bodies, frame) for frame in range(frames)]))
+        _write_triangles(root, faces, frames)
+        data = root.create_group("CellData")
+        data["body"] = owner.astype(np.int32)
+        _write_packed(data, "speed", body_speeds(bodies)[:, owner].ravel())
+        if bodies.force is not None:
+            _write_packed(data, "force", bodies.force[:, owner].ravel())
+        _write_steps(root, bodies.time, points, len(faces))
+
+
+def _write_packed(group: Any, name: str, values: np.ndarray) -> None:
+    """Write single precision, compressed: most bodies rest, and a file is a quarter as large."""
+    group.create_dataset(name, data=values.astype(np.float32), compression="gzip", shuffle=True)
+
+
+def _write_triangles(root: Any, faces: np.ndarray, frames: int) -> None:
+    """Write the triangles, which every instant points at, and the kinds of cells that there are none of."""
+    for name in EMPTY:
+        group = root.create_group(name)
+        for count in ("NumberOfCells", "NumberOfConnectivityIds"):
+            group[count] = np.zeros(frames, np.int64)
+        group["Connectivity"], group["Offsets"] = np.zeros(0, np.int64), np.zeros(frames, np.int64)
+    group = root.create_group("Polygons")
+    group["NumberOfCells"] = np.full(frames, len(faces))
+    group["NumberOfConnectivityIds"] = np.full(frames, faces.size)
+    group["Connectivity"], group["Offsets"] = faces.ravel().astype(np.int64), np.arange(len(faces) + 1) * 3
+
+
+def _write_steps(root: Any, time: np.ndarray, points: int, cells: int) -> None:
+    """Write where the data of each instant begin."""
+    frames = len(time)
+    steps, each = root.create_group("Steps"), np.arange(frames)
+    steps.attrs["NSteps"] = frames
+    steps["Values"] = time
+    steps["PartOffsets"], steps["NumberOfParts"] = each, np.ones(frames, np.int64)
+    steps["PointOffsets"] = each * points
+    steps["CellOffsets"] = np.zeros((frames, 4), np.int64)
+    steps["ConnectivityIdOffsets"] = np.zeros((frames, 4), np.int64)
+    offsets = steps.create_group("CellDataOffsets")
+    for name in root["CellData"]:
+        offsets[name] = np.zeros(frames, np.int64) if name == "body" else each * cells

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis import best_runs_a_bed, cost_over_best, half_width_of, half_width_range, share_estimate
-from lithobrake.analysis.half_width_range import AllOrNothing, LikeRuns, Shares
+from lithobrake.analysis.half_width import AllOrNothing, LikeRuns, Shares
 from lithobrake.analysis.share_estimate import plain_interval
 
 BED = np.arange(96) % 24

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ndtri
 
 from lithobrake.analysis import quantile_difference, share_difference
-from lithobrake.analysis.paired_difference import pair_correlation
+from lithobrake.analysis.comparisons import pair_correlation
 
 BEDS = 24
 BED_OF_RUN = np.arange(96) % BEDS

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake import emulator
-from lithobrake.analysis import Observation, infer, inference, posterior_points
+from lithobrake.analysis import Observation, infer, inference, posterior
 from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
@@ -35,14 +35,14 @@ def test_walkers_meet_two_peaks_and_their_own_count() -> None:
     random = np.random.default_rng(3)
     start = np.column_stack([random.choice([-1.5, 1.5], 64), random.standard_normal(64)])
     start += 0.1 * random.standard_normal(start.shape)
-    points, effective = posterior_points.walk(two_peaks, start, seed=4)
+    points, effective = posterior.walk(two_peaks, start, seed=4)
     assert effective > 400.0
     # Five standard errors of means over so many points.
     error = 5.0 / np.sqrt(effective)
     assert points.mean(axis=0) == pytest.approx(np.zeros(2), abs=1.6 * error)
     assert points.std(axis=0) == pytest.approx([np.sqrt(1.5**2 + 0.5**2), 1.0], abs=1.6 * error)
     assert np.mean(points[:, 0] > 0.0) == pytest.approx(0.5, abs=error)
-    again, _ = posterior_points.walk(two_peaks, start, seed=4)
+    again, _ = posterior.walk(two_peaks, start, seed=4)
     assert np.array_equal(points, again)
 
 
@@ -73,8 +73,8 @@ def test_without_emcee_the_sentence_says_what_to_install(model: Emulator, monkey
 
 @needs_emcee
 def test_walkers_that_do_not_end_leave_the_points_and_say_so(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(posterior_points, "MOST_STEPS", 20)
-    monkeypatch.setattr(posterior_points, "BLOCK", 20)
+    monkeypatch.setattr(posterior, "MOST_STEPS", 20)
+    monkeypatch.setattr(posterior, "BLOCK", 20)
     few = infer(model, SEEN, refit_count=0, point_count=64)
     assert not few.is_reliable
     assert "emcee's walkers did not come to an end either" in few.statement()

@@ -8,8 +8,7 @@ import pytest
 from scipy import stats
 
 from lithobrake.analysis import IntervalEstimate, VarianceShares, chaos_variance, soil_total_effect, variance_shares
-from lithobrake.analysis.bed_components import bed_components
-from lithobrake.analysis.confidence import numbered_beds
+from lithobrake.analysis.confidence import bed_components, numbered_beds
 from lithobrake.chaos import Uniform, sobol_sequence
 
 INPUTS = {"friction": Uniform(0.2, 0.9), "restitution": Uniform(0.3, 0.9), "speed": Uniform(0.05, 0.15)}

@@ -13,10 +13,8 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Command, Ledger, Limits, LocalExecutor, Runs, absolute_words, run
-from lithobrake.campaign.capped_log import KEPT, CappedLog, last_words
-from lithobrake.campaign.command import fill_template
-from lithobrake.campaign.decoders import read_answer
-from lithobrake.campaign.single_run import run_model
+from lithobrake.campaign.command import fill_template, read_answer
+from lithobrake.campaign.single_run import KEPT, CappedLog, last_words, run_model
 
 X = np.array([[1.0], [2.0]])
 

@@ -19,14 +19,13 @@ from lithobrake.campaign import (
     LocalExecutor,
     RunOptions,
     Runs,
-    local_executor,
+    executors,
     missing,
     read_records,
     run,
     run_key,
 )
-from lithobrake.campaign.main_module import MainModuleError, refuse_unreachable
-from lithobrake.campaign.worker import Call, Worker
+from lithobrake.campaign.worker import Call, MainModuleError, Worker, refuse_unreachable
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
@@ -226,7 +225,7 @@ class KilledFirst(Worker):
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
 def test_a_process_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(local_executor, "Worker", KilledFirst)
+    monkeypatch.setattr(executors, "Worker", KilledFirst)
     monkeypatch.setattr(KilledFirst, "started", [])
     runs = campaign(tmp_path, models.parabola, workers=1)
     assert len(KilledFirst.started) == 2

@@ -34,7 +34,7 @@ from lithobrake.chaos import (
     term_count,
 )
 from lithobrake.chaos.basis import outside_count
-from lithobrake.chaos.distribution_registry import KINDS
+from lithobrake.chaos.numerical_distributions import KINDS
 from lithobrake.study.quantity import DISTRIBUTIONS
 
 PAIRS = [

@@ -33,7 +33,7 @@ from lithobrake.chaos import (
     tensor_grid,
 )
 from lithobrake.chaos.moments import _by_grid as moments_by_grid
-from lithobrake.chaos.polynomial_products import central_moments
+from lithobrake.chaos.moments import central_moments
 
 ISHIGAMI = {name: Uniform(-np.pi, np.pi) for name in ("a", "b", "c")}
 ISHIGAMI_VARIANCE = 49.0 / 8.0 + 0.1 * np.pi**4 / 5.0 + 0.01 * np.pi**8 / 18.0 + 0.5

@@ -19,9 +19,7 @@ from lithobrake.campaign import Ledger
 from lithobrake.cli import app
 from lithobrake.cli.arguments import EXPERT, EXPORT, LOOK, RUN, START
 from lithobrake.progress import ProgressBars, ProgressLog
-from lithobrake.study.known_bodies import known_body
-from lithobrake.study.known_landers import known_lander
-from lithobrake.study.short_study import all_keys, short_study
+from lithobrake.study.short_study import all_keys, known_body, known_lander, short_study
 from lithobrake.study.template import template
 
 RUNNER = CliRunner()
@@ -346,7 +344,7 @@ def test_what_is_no_terminal_gets_no_escape_sequence(code: str) -> None:
 
 
 @pytest.mark.parametrize("code", [
-    "from lithobrake.cli.terminal import tell; tell(['  a study of ' + 'words ' * 30])",
+    "from lithobrake.cli.arguments import tell; tell(['  a study of ' + 'words ' * 30])",
     "from lithobrake.cli import app; app(['status', 'a study of ' + 'words ' * 30])",
 ])  # fmt: skip
 def test_a_terminal_gets_whole_words(code: str) -> None:

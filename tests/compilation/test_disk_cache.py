@@ -10,9 +10,8 @@ import numba
 import pytest
 
 import lithobrake.compilation.lighter_compilation as lighter_compilation
-from lithobrake.compilation.cache_key import PLACE, user_key
 from lithobrake.compilation.compiled import CPUDispatcher
-from lithobrake.compilation.disk_cache import DiskCache
+from lithobrake.compilation.disk_cache import PLACE, DiskCache, user_key
 from lithobrake.compilation.lighter_compilation import InnerKernel, KernelFlags, is_known
 
 NAME = hashlib.sha256(b"a kernel").hexdigest()
@@ -96,7 +95,7 @@ def test_the_key_is_made_once_and_for_this_user_alone(home):
 
 
 def test_processes_that_start_together_have_one_key(home):
-    words = [sys.executable, "-c", "from lithobrake.compilation.cache_key import user_key; print(user_key().hex())"]
+    words = [sys.executable, "-c", "from lithobrake.compilation.disk_cache import user_key; print(user_key().hex())"]
     processes = [subprocess.Popen(words, env=os.environ, stdout=subprocess.PIPE, text=True) for _ in range(3)]
     assert {process.communicate()[0].strip() for process in processes} == {user_key().hex()}
 
@@ -274,7 +273,7 @@ def test_this_numba_is_known_and_kernels_use_the_lighter_compilation():
 
 
 def test_a_function_that_numba_compiles_in_its_own_way_can_call_a_kernel_with_kernels_below_it():
-    from lithobrake.dem.narrow_phase.simplex import triangle_weights
+    from lithobrake.dem.narrow_phase.gjk import triangle_weights
 
     @numba.njit
     def nearest(a, b, c):

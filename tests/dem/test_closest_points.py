@@ -9,12 +9,11 @@ from scipy.spatial import ConvexHull as Quickhull
 from lithobrake.dem import Box, ConvexHull, Sphere
 from lithobrake.dem.bodies.rigid_body import AT_CENTRE
 from lithobrake.dem.bodies.shape import ROUNDING_FRACTION, equivalent_radius
-from lithobrake.dem.narrow_phase.closest_points import find_closest_points
 from lithobrake.dem.narrow_phase.feature_distance import edge_to_edge, point_to_core
-from lithobrake.dem.narrow_phase.gjk import PENETRATING, weighted
+from lithobrake.dem.narrow_phase.gjk import PENETRATING, triangle_weights, weighted
+from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import scratch_for
-from lithobrake.dem.narrow_phase.simplex import triangle_weights
-from lithobrake.dem.stepping.assembly import cores_of, rotation_matrices
+from lithobrake.dem.stepping.engine import cores_of, rotation_matrices
 
 
 def signed_distance(first, second):

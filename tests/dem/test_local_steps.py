@@ -8,7 +8,7 @@ import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
 from lithobrake.dem.local_stepping import local_engine
-from lithobrake.dem.stepping.time_step import Clock
+from lithobrake.dem.stepping.time_step_stability import Clock
 
 ROCK = {"young_modulus": 1e7, "poisson_ratio": 0.25, "density": 2500.0}
 

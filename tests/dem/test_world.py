@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Shape, Sphere, World
-from lithobrake.dem.law.material_pair import PAIR_RULES, pair_law
+from lithobrake.dem.law.restitution import PAIR_RULES, pair_law
 from lithobrake.dem.local_stepping import cells
 from lithobrake.dem.stepping.neighbours import neighbouring_pairs
 

@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
-from lithobrake.doctor import libraries
-from lithobrake.doctor.libraries import EXTRAS, NeededLibrary, parsed
+from lithobrake.doctor import diagnosis
+from lithobrake.doctor.diagnosis import EXTRAS, NeededLibrary, parsed
 
 RUNNER = CliRunner()
 PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
@@ -26,7 +26,7 @@ def test_every_extra_of_the_package_is_told_with_what_it_is_for() -> None:
 
 
 def test_requirements_are_read_as_the_metadata_write_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(libraries, "version", lambda name: {"numpy": "1.25.9", "pandas": "2.10rc1", "rich": "13"}[name])
+    monkeypatch.setattr(diagnosis, "version", lambda name: {"numpy": "1.25.9", "pandas": "2.10rc1", "rich": "13"}[name])
     assert list(parsed(REQUIREMENTS)) == [
         NeededLibrary("numpy", "1.26", "1.25.9", ""),
         NeededLibrary("pandas", "2.0", "2.10rc1", "data"),

@@ -9,7 +9,7 @@ from scipy import special, stats
 from lithobrake import emulator
 from lithobrake.chaos import Uniform, sobol_sequence
 from lithobrake.emulator import Emulator
-from lithobrake.emulator.residual_rows import SMOOTHING_FACTOR
+from lithobrake.emulator.law import SMOOTHING_FACTOR
 
 from ..quick_studies import quick_studies
 from ..synthetic_landings import ELEVATION_LIMIT, NO_SOIL, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
@@ -138,7 +138,7 @@ def test_the_density_of_an_output_integrates_to_the_chance_of_having_outputs(mod
 
 
 def test_draws_fall_where_a_density_with_their_kernels_says(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lithobrake.emulator.observed_density.DENSITY_FACTOR", SMOOTHING_FACTOR)
+    monkeypatch.setattr("lithobrake.emulator.density.DENSITY_FACTOR", SMOOTHING_FACTOR)
     drawn = model.sample(SOIL, 40_000, seed=3)[0]
     clear = np.isfinite(drawn[:, 0]).mean()
     steps = np.linspace(0.1, 0.95, 8)

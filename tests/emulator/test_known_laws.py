@@ -8,9 +8,8 @@ from scipy import special
 
 from lithobrake import emulator
 from lithobrake.chaos import Normal, Uniform, latin_hypercube, sobol_sequence
+from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, found_inputs, terms_up_to
 from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
-from lithobrake.emulator.significance import found_inputs
-from lithobrake.emulator.terms import MOST_TERMS, candidate_terms, terms_up_to
 
 COUNT = 300
 

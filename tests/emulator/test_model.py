@@ -11,8 +11,7 @@ from scipy import integrate, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
-from lithobrake.emulator.latent_likelihood import problem_of
-from lithobrake.emulator.latent_terms import latent_terms
+from lithobrake.emulator.latent_variable import latent_terms, problem_of
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
 COUNT = 120

@@ -5,12 +5,20 @@ import pytest
 from scipy import special, stats
 
 from lithobrake.chaos import Uniform, sobol_sequence
-from lithobrake.emulator.bed_effect import BedEffect
-from lithobrake.emulator.coordinates import from_coordinate, to_coordinate, with_slope
-from lithobrake.emulator.outcome_classes import INVERSE_PENALTIES, OutcomeClasses, best_class_choice, fit_classes
-from lithobrake.emulator.residual_rows import drawn_rows, row_weights, smoothed, smoothing
-from lithobrake.emulator.scores import crps, energy_scores, pit
-from lithobrake.emulator.terms import candidate_terms
+from lithobrake.emulator.density import BedEffect
+from lithobrake.emulator.law import (
+    INVERSE_PENALTIES,
+    OutcomeClasses,
+    best_class_choice,
+    drawn_rows,
+    fit_classes,
+    row_weights,
+    smoothed,
+    smoothing,
+)
+from lithobrake.emulator.mean_law import candidate_terms
+from lithobrake.emulator.training import from_coordinate, to_coordinate, with_slope
+from lithobrake.emulator.validation import crps, energy_scores, pit
 
 LOWER = np.array([0.0, -1.0, -np.inf, -np.inf])
 UPPER = np.array([0.4, np.inf, 2.0, np.inf])

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
-from lithobrake.study.flight_sections import SiteSection
+from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, turned
+from lithobrake.study.impact_sections import SiteSection
 
 from ..pipeline.journeys.bouncing_lander import journey_tables
 

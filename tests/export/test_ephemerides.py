@@ -219,7 +219,7 @@ def test_spice_turns_them_into_the_axes_of_the_body(furnished, delivered: StudyR
 def test_between_states_an_ephemeris_of_spice_is_the_flight(furnished, delivered: StudyResults) -> None:  # type: ignore[no-untyped-def]
     """Half a step after a state, against Hermite's polynomial of one step from exact states would be 1e-6 m."""
     from lithobrake.export.flown import Flown
-    from lithobrake.export.frames import Frame
+    from lithobrake.export.oem import Frame
 
     axes = Frame.of(delivered, "icrf", None)
     first = axes.timed(delivered, Flown.of(delivered).journeys(delivered, [3]))._rows(np.array([0])).at(410.0)

@@ -11,8 +11,7 @@ import h5py
 import pytest
 
 from lithobrake.files.atomic import atomic_path, lock_holder, locked
-from lithobrake.files.hashing import source_hash
-from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading
+from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading, source_hash
 
 FORM = {"files": {str: {"key": str}}, "wall_s": {str: NUMBER}, "names": [str]}
 GOOD = {"files": {"a.csv": {"key": "1f"}}, "wall_s": {"bed": 1.5, "fly": 2}, "names": ["a"]}
@@ -190,7 +189,7 @@ def test_no_two_kinds_of_files_have_one_format() -> None:
 
 
 def test_each_part_of_the_code_has_a_hash_of_its_own() -> None:
-    assert source_hash("files") != source_hash("files/hashing.py") != source_hash("vocabulary")
+    assert source_hash("files") != source_hash("files/reading.py") != source_hash("vocabulary")
 
 
 def test_a_part_that_there_is_not_is_refused() -> None:

@@ -8,11 +8,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import kstest, qmc
 
-from lithobrake.geometry.attitude import pointed, uniform_attitude
-from lithobrake.geometry.attitude_terms import AttitudeTerms, orthonormal, seen_from_lander
+from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, pointed, seen_from_lander, uniform_attitude
 from lithobrake.geometry.mesh import closed_faces, holds_origin, mass_properties, volume_of
-from lithobrake.geometry.mesh_files import read_mesh
-from lithobrake.geometry.mesh_labels import labelled_mesh, product_id
+from lithobrake.geometry.mesh_files import labelled_mesh, product_id, read_mesh
 from lithobrake.smallbody import Shape
 
 OCTAHEDRON = "\n".join(

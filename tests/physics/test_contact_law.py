@@ -11,7 +11,7 @@ import pytest
 
 from lithobrake.dem import Box, Material, Sphere, World
 from lithobrake.dem.law.tangential_spring import spring_force
-from lithobrake.dem.stepping.time_step import contact_duration
+from lithobrake.dem.stepping.time_step_stability import contact_duration
 
 
 def material(restitution=1.0, friction=0.0, poisson_ratio=0.25, young_modulus=1e7):

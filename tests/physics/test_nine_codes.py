@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.dem import Material, Sphere, World
-from lithobrake.dem.law.material_pair import pair_law
-from lithobrake.dem.law.restitution import damping_ratio_of
+from lithobrake.dem.law.restitution import damping_ratio_of, pair_law
 
 VALIDATION = Path(__file__).parents[2] / "validation" / "nine_codes"
 

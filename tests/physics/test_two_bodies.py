@@ -7,7 +7,7 @@ import pytest
 
 from lithobrake.dem import Material, Sphere, World
 from lithobrake.dem.law.restitution import damping_ratio_of, restitution_of
-from lithobrake.dem.stepping.time_step import contact_duration
+from lithobrake.dem.stepping.time_step_stability import contact_duration
 
 
 def material(young_modulus, poisson_ratio, density, restitution=1.0, friction=0.0):

@@ -8,11 +8,11 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline import StudyFolder, write_report_again
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.outgoing import VELOCITY
-from lithobrake.pipeline.fly.flights import Starts, fly_starts
-from lithobrake.pipeline.fly.run_sites import run_sites
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.flights import Starts, fly_starts
 from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.run_flights import run_sites
+from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import StudyFolder, plan_study, run_study, study_status
+from lithobrake.pipeline.runs.landings import telling_run
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.shown_landing import telling_run
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT

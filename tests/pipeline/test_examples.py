@@ -199,5 +199,5 @@ def test_a_model_that_workers_cannot_import_is_one_sentence(piped: bool, words: 
     said = said_by_python(tmp_path, OWN_MODEL, piped)
     assert said.returncode == 1
     last = said.stderr.strip().splitlines()[-1]
-    assert last.startswith("lithobrake.campaign.main_module.MainModuleError: ")
+    assert last.startswith("lithobrake.campaign.worker.MainModuleError: ")
     assert words in last

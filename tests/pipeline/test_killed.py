@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.pipeline import stages_of
-from lithobrake.pipeline.runs.kernels import compile_kernels, fly_briefly
+from lithobrake.pipeline.runs.beds import compile_kernels, fly_briefly
 from lithobrake.results import open_study
 from lithobrake.study import read_study
 

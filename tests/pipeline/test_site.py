@@ -10,13 +10,13 @@ import pytest
 
 from lithobrake.analysis import share_estimate
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import summary_dependencies
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.outgoing import VELOCITY
-from lithobrake.pipeline.fly.flights import Starts, flight_dependencies, fly_starts
-from lithobrake.pipeline.fly.run_sites import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.answer.dispersion_statistics import site_results
+from lithobrake.pipeline.answer.study_summary import summary_dependencies
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.flights import Starts, flight_dependencies, fly_starts
 from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.run_flights import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape

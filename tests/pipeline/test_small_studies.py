@@ -170,7 +170,7 @@ import os, sys
 from pathlib import Path
 from lithobrake.campaign import Ledger
 from lithobrake.pipeline import study_status
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import open_study
 
 out = Path(sys.argv[1])

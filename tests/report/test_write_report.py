@@ -12,18 +12,18 @@ import h5py
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.paper.paper_statements import answer
+from lithobrake.pipeline.paper.paper_summary import answer
 from lithobrake.report import write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.page_data import PaperPage
+from lithobrake.report.pages.html import size
 from lithobrake.report.pages.paper_page import paper_content
-from lithobrake.report.pages.study_files import size
 from lithobrake.report.words import captions
 from lithobrake.report.words.numbers import area, number
 from lithobrake.results import MovingBodies
-from lithobrake.results.expansions import SampledOutput
-from lithobrake.results.shares import CountedShare
+from lithobrake.results.model_results import SampledOutput
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study import read_study
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from lithobrake.results import MovingBodies
-from lithobrake.results.ground_images import with_images
+from lithobrake.results.motions import with_images
 
 WIDTH = (1.0, 2.0)
 # Two grains: near the middle of the tile, and beside its edge.

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from lithobrake.files.atomic import locked
-from lithobrake.pipeline.folder.state import read_state
+from lithobrake.pipeline.folder_state import read_state
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.intact import intact_file
+from lithobrake.results.study_files import intact_file
 
 BODY = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 SUMMARY = {

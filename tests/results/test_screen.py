@@ -12,7 +12,7 @@ import pytest
 from lithobrake.results import Column, Table
 from lithobrake.results.json_values import from_json
 from lithobrake.results.summary import DrawnResults, PaperResults
-from lithobrake.vocabulary.screen import LINES, names_in_lines, short_repr
+from lithobrake.vocabulary.plain_text import LINES, names_in_lines, short_repr
 
 SHOWCASE = Path(__file__).parents[2] / "showcase"
 

@@ -10,9 +10,9 @@ import pytest
 import result_models as models
 
 import lithobrake
-from lithobrake.results.expansions import OutputErrors
 from lithobrake.results.json_values import from_json, to_json
-from lithobrake.results.shares import LandingShares
+from lithobrake.results.model_results import OutputErrors
+from lithobrake.results.run_results import LandingShares
 from lithobrake.results.summary import PaperResults
 
 DOCS = Path(__file__).parents[2] / "docs"

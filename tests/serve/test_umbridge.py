@@ -13,8 +13,7 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import ModelServer
-from lithobrake.pipeline.commands.serving import FLIGHT, ServedStudy, served_models
-from lithobrake.pipeline.commands.serving_process import EvaluationProcess
+from lithobrake.pipeline.commands.serving import FLIGHT, EvaluationProcess, ServedStudy, served_models
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ServedModel, model_server
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -185,9 +184,21 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
             evaluations(landing, point, {"sed": 3}, lambda: False)
 
 
+def test_an_evaluation_whose_process_dies_is_told_and_the_next_is_made(tmp_path: Path) -> None:
+    (tmp_path / "end.py").write_text("import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\n")
+    (tmp_path / "ball.toml").write_text(BALL.read_text().replace("python3 ball_on_plate.py", "python3 end.py"))
+    study = ServedStudy(tmp_path / "ball.toml", tmp_path / "out")
+    flight, landing = study.models()
+    with EvaluationProcess(study) as evaluations:
+        with pytest.raises(RuntimeError, match=r"the evaluation was lost: its process died \(signal 9\)"):
+            evaluations(landing, [0.6, 0.2, 35.0, 0.0], {}, lambda: False)
+        upward = [0.02, 0.0, 0.02]
+        assert evaluations(flight, upward, {}, lambda: False) == flight.evaluate(upward, {})
+
+
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
-    from lithobrake.pipeline.design.drawn_design import DrawnDesign
-    from lithobrake.pipeline.runs.touchdown_runs import drawn_rows, model_of
+    from lithobrake.pipeline.design.design import DrawnDesign
+    from lithobrake.pipeline.runs.landings import drawn_rows, model_of
     from lithobrake.study import StudySource
 
     own = StudySource.read(BALL).study

@@ -24,7 +24,7 @@ from lithobrake.smallbody import (
     incidence_on,
     met_normals,
 )
-from lithobrake.smallbody.restitution_table import LEVELS, cells
+from lithobrake.smallbody.bounce import LEVELS, cells
 from lithobrake.smallbody.sliding import NEAR, ROLLING_INERTIA, OnGround, Slides, slide
 
 from .meshes import CUBE_FACES, cube_vertices, sphere_mesh

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lithobrake.smallbody import HeliocentricOrbit, latitudes_over, read_partner, read_spin
-from lithobrake.smallbody.sun_and_earth import earth_place
-from lithobrake.study.sky_section import OrbitSection
+from lithobrake.smallbody.sky import earth_place
+from lithobrake.study.question_sections import OrbitSection
 
 from .kernels import PERIOD, write_kernels
 

@@ -10,8 +10,8 @@ import pytest
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.delivered_states import read_states
-from lithobrake.study.fixed import fixed_study
-from lithobrake.study.lander_solids import lander_radius
+from lithobrake.study.lander_checks import lander_radius
+from lithobrake.study.source import fixed_study
 from lithobrake.study.touchdown_model import lander, medians
 
 from ..paper_tables import SMALL_GROUND, paper_tables, with_keys

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.fly import flights
-from lithobrake.pipeline.rest import aiming
-from lithobrake.pipeline.rest import journeys as rest
+from lithobrake.pipeline import flights
+from lithobrake.pipeline.first_bounces import aiming
+from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import Study, StudyError, StudySource, check_tables, read_study
-from lithobrake.study.bed_section import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
-from lithobrake.study.shipped import BESIDE, shipped, shipped_by_name, study_path
+from lithobrake.study.ground_sections import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
+from lithobrake.study.reader import BESIDE, shipped, shipped_by_name, study_path
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import draw, medians
 from lithobrake.study.units import input_units, run_units

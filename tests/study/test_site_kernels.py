@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.answer.summary_parts import study_tables
-from lithobrake.pipeline.fly.flights import flight_dependencies
+from lithobrake.pipeline.answer.dispersion_statistics import site_results
+from lithobrake.pipeline.answer.study_summary import study_tables
+from lithobrake.pipeline.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
 from lithobrake.results.json_values import to_json
 from lithobrake.smallbody import read_partner

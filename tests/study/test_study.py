@@ -12,10 +12,17 @@ import pytest
 from lithobrake.pipeline.design.dependencies import bed_setting
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
-from lithobrake.study.known_bodies import BODIES, KnownBody, known_body
-from lithobrake.study.known_landers import LANDERS, known_lander
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.short_study import all_keys, escape_speed, short_study
+from lithobrake.study.short_study import (
+    BODIES,
+    LANDERS,
+    KnownBody,
+    all_keys,
+    escape_speed,
+    known_body,
+    known_lander,
+    short_study,
+)
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import boulders
 

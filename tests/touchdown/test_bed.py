@@ -17,8 +17,8 @@ import pytest
 from lithobrake.dem import Sphere, StepTooLargeError, World
 from lithobrake.touchdown import Bed, ContactModel, GrainSizes, pour_bed, pouring, settling, stored_or_poured
 from lithobrake.touchdown import bed_library as module
+from lithobrake.touchdown.bed import height_map
 from lithobrake.touchdown.grains import make_grain
-from lithobrake.touchdown.surface import height_map
 
 from .landings import ROCK
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
-from lithobrake.geometry.boulder_limits import BOULDER_REACH
+from lithobrake.geometry.grain_limits import BOULDER_REACH
 from lithobrake.touchdown import (
     Bed,
     Boulders,
@@ -23,9 +23,9 @@ from lithobrake.touchdown import (
     smallest_bed,
     wave_speed,
 )
-from lithobrake.touchdown.boulders import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among
+from lithobrake.touchdown.bed import heights_at
+from lithobrake.touchdown.grains import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among
 from lithobrake.touchdown.pouring import rain
-from lithobrake.touchdown.surface import heights_at
 
 from .landings import LANDER, landing
 

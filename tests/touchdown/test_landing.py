@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, land, read_hull, simulation
-from lithobrake.touchdown.outcome import outgoing
+from lithobrake.touchdown.landing import outgoing
 from lithobrake.touchdown.simulation import CALM_SPEED, released_speed
 
 from .landings import landing as on_rock

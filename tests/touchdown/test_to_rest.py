@@ -23,16 +23,14 @@ from lithobrake.dem import (
     period_of,
     rotation_matrices,
 )
-from lithobrake.geometry.longest_grain import longest_reach
+from lithobrake.geometry.grain_limits import longest_reach
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
-from lithobrake.touchdown.bed import boxed_world
+from lithobrake.touchdown.bed import boxed_world, height_map
 from lithobrake.touchdown.grains import make_grain, make_grain_within
-from lithobrake.touchdown.outcome import picture
-from lithobrake.touchdown.outcome_judge import OutcomeJudge
+from lithobrake.touchdown.landing import picture
+from lithobrake.touchdown.outcome_judge import REST_WAY, OutcomeJudge, RestWatch, rest_time
 from lithobrake.touchdown.pouring import rain
-from lithobrake.touchdown.rest_watch import REST_WAY, RestWatch, rest_time
 from lithobrake.touchdown.simulation import release
-from lithobrake.touchdown.surface import height_map
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, TO_REST
 
 from .landings import LANDER, ROCK, landing

@@ -8,8 +8,8 @@ import h5py
 import numpy as np
 import pytest
 
+from lithobrake.report.figures.map_frames import track_map
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.figures.track_map import track_map
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 from lithobrake.view import contact_sheet, film, journey_film, write_journey, write_motion, write_vtkhdf
 from lithobrake.view.film import SIZE, map_picture

@@ -11,8 +11,7 @@ import numpy as np
 from harness import Row
 
 from lithobrake.report.figures.style import INK, QUIET, RULE, TRAINING, figure_style
-from lithobrake.vocabulary.fate_colours import END_COLOURS
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 
 SOIL, HARD = END_COLOURS[JourneyEnd.AT_REST], QUIET
 AIMS = (0.0, 180.0)

@@ -1,6 +1,6 @@
 """Where landers rest: the smallest regions that hold shares of them, and how much ground these cover.
 
-A region is one of directions from the centre (lithobrake.analysis.highest_density), with an area on a ball. On an
+A region is one of directions from the centre (lithobrake.analysis.regions), with an area on a ball. On an
 ellipsoid the same directions cover more ground at the ends of the long axis and less at the poles.
 """
 
@@ -11,7 +11,7 @@ from branches import LANDERS, branches
 from samples import Sample
 from scipy.spatial import KDTree
 
-from lithobrake.analysis.highest_density import DensityRegion, highest_density
+from lithobrake.analysis.regions import DensityRegion, highest_density
 
 DIRECTIONS = 5000  # over which the ground is averaged: a region of a tenth of it has 500 of them
 HALVES = 30  # of the beds, for the interval of an area

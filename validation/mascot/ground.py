@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.dem import Material
-from lithobrake.geometry.boulder_limits import BOULDER_REACH
+from lithobrake.geometry.grain_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, BedRecipe, GrainSizes, pour_bed, stored_or_poured
-from lithobrake.touchdown.boulders import Boulders
-from lithobrake.touchdown.surface import heights_at
+from lithobrake.touchdown.bed import heights_at
+from lithobrake.touchdown.grains import Boulders
 
 # Cumulative index of the number of blocks larger than D: of those above 5 m, and the flattest of smaller ones.
 INDEX, FLATTEST = 2.65, 1.65

@@ -19,8 +19,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material
-from lithobrake.geometry.contact_frame import about_z, attitude_of, quaternion, spin_of
-from lithobrake.pipeline.design.free_rotation import turned_in_flight
+from lithobrake.geometry.frames import about_z, attitude_of, quaternion, spin_of
+from lithobrake.pipeline.design.arrivals import turned_in_flight
 from lithobrake.touchdown import ContactModel, Lander, Landing, Outcome, land
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))

@@ -1,13 +1,11 @@
-"""The arrays that kernels work on. Every length is in metres, every frame is the world's unless it says body.
-
-Kernels take a pair first, then the System of scratch.py or arrays in the order below and there, then all else. They
-only read, but for what their docstrings say they write to.
-"""
+"""The arrays that kernels work on, and the convex parts that meet in a pair. Lengths in metres, world frame."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lithobrake.compilation.compiled import kernel
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -155,9 +153,37 @@ class Reactions(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a step needs beside the arrays."""
-
     time_step: float  # s
     drag: float  # 1/s, viscous damping of all motion, 0 but in settling
     gravity: tuple[float, float, float]  # m/s2
     paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
+
+
+@kernel
+def first_shape(pair: int, bodies: Bodies, pairs: Pairs) -> int:
+    return bodies.shape[pairs.first_part[pair]]
+
+
+@kernel
+def both_shapes(pair: int, bodies: Bodies, pairs: Pairs) -> tuple[int, int]:
+    return bodies.shape[pairs.first_part[pair]], bodies.shape[pairs.second_part[pair]]
+
+
+@kernel
+def both_roundings(cores: Cores, shapes: tuple[int, int]) -> float:
+    """Return the sum of the rounding radii of two shapes [m]."""
+    return cores.rounding[shapes[0]] + cores.rounding[shapes[1]]
+
+
+@kernel
+def curvature_of(pair: int, bodies: Bodies, pairs: Pairs) -> float:
+    """Return the curvature at which the members of a pair meet [1/m]; a plane has none."""
+    curvature = bodies.curvature[pairs.first_part[pair]]
+    return curvature + bodies.curvature[pairs.second_part[pair]] if pairs.second[pair] >= 0 else curvature
+
+
+@kernel
+def contact_radii(pair: int, bodies: Bodies, pairs: Pairs) -> float:
+    """Return the sum of the contact radii of the members of a pair [m]; a plane counts for nothing."""
+    radius = bodies.contact_radius[pairs.first_part[pair]]
+    return radius + (bodies.contact_radius[pairs.second_part[pair]] if pairs.second[pair] >= 0 else 0.0)

@@ -12,6 +12,8 @@ MIDPOINT_ITERATIONS = 3
 @kernel
 def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
     """Return the unit quaternion after turning at a spin of the world frame (angle right to the seventh order)."""
+    # The tangent of half the angle over the spin, by its series: it needs no trigonometric function, and is no 0 / 0
+    # for a body that does not turn.
     square = dot(spin, spin) * time * time
     half = 0.5 * time * (1.0 + square * (1.0 / 12.0 + square / 120.0))
     x, y, z = half * spin[0], half * spin[1], half * spin[2]
@@ -20,6 +22,8 @@ def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
     x1 = x0 + x * w0 + y * z0 - z * y0
     y1 = y0 + y * w0 + z * x0 - x * z0
     z1 = z0 + z * w0 + x * y0 - y * x0
+    # The product has the right direction and the length of 1 / cos(angle / 2): the division makes it a unit quaternion,
+    # and removes the drift of earlier turns.
     norm = 1.0 / (w1 * w1 + x1 * x1 + y1 * y1 + z1 * z1) ** 0.5
     return (w1 * norm, x1 * norm, y1 * norm, z1 * norm)
 
@@ -64,6 +68,7 @@ def write_matrices(bodies: Bodies) -> None:
 def write_inverse_inertia(bodies: Bodies, body: int) -> None:
     """Turn the inverse inertia of a body into the world frame. Writes to bodies."""
     r, inner, outer = bodies.rotation[body], bodies.inverse_inertia_body[body], bodies.inverse_inertia[body]
+    # A multiple of the unit matrix is the same in every frame; turning it would only add round-off.
     if bodies.isotropic[body]:
         for i in range(3):
             put(outer, i, row(inner, i))
@@ -90,9 +95,11 @@ def spin_at_mid_step(bodies: Bodies, body: int, momentum: Vector, time_step: flo
     spin = times(bodies.inverse_inertia, body, momentum)
     for _ in range(MIDPOINT_ITERATIONS):
         square = dot(spin, spin) * time_step * time_step
+        # The tangent of a quarter of the angle: the turn is half a step, and `turned_vector` takes that of its half.
         half = scaled(0.25 * time_step * (1.0 + square / 48.0), spin)
         within = times(bodies.inverse_inertia, body, turned_vector(momentum, scaled(-1.0, half)))
         renewed = turned_vector(within, half)
+        # Once two iterates agree to the last bit all later ones do, so ending early changes no result.
         if renewed[0] == spin[0] and renewed[1] == spin[1] and renewed[2] == spin[2]:
             break
         spin = renewed
@@ -131,6 +138,7 @@ def kick(bodies: Bodies, step: Step, start: int, stop: int) -> None:
     half = 0.5 * step.time_step
     for body in range(start, stop):
         add(bodies.velocity, body, half * bodies.inverse_mass[body], row(bodies.force, body))
+        # Gravity is an acceleration and not a part of the force, so that free fall has the same bits for every mass.
         add(bodies.velocity, body, half, step.gravity)
         add(bodies.angular_momentum, body, half, row(bodies.torque, body))
 
@@ -155,6 +163,8 @@ def drift(bodies: Bodies, step: Step, start: int, stop: int) -> float:
         add(bodies.position, body, step.time_step, row(bodies.velocity, body))
         rotate(bodies, body, step.time_step)
         bodies.travel[body] += step.time_step * surface_speed_bound(bodies, body)
+        # Dashpots act on the velocities at the instant of the new positions, half a step after those that made the
+        # move; the last forces carry them there.
         gain = scaled(half * bodies.inverse_mass[body], row(bodies.force, body))
         predicted = plus(row(bodies.velocity, body), plus(gain, scaled(half, step.gravity)))
         put(bodies.velocity_predicted, body, predicted)

@@ -64,6 +64,7 @@ def convex_polyhedron(points: NDArray[np.float64]) -> Polyhedron:
         )
     if not np.isfinite(points).all():
         raise ValueError("a convex hull needs finite points: remove NaN and infinite coordinates")
+    # COPLANAR compares normals and offsets alike, which needs coordinates of order one about the origin.
     scale = power_of_two_above(float(np.ptp(points, axis=0).max()))
     origin = points.mean(axis=0)
     scaled = (points - origin) / scale if scale > 0.0 else points
@@ -79,6 +80,8 @@ def convex_polyhedron(points: NDArray[np.float64]) -> Polyhedron:
     triangles = _outward(index[hull.simplices], scaled[hull.vertices], hull.equations[:, :3])
     vertices = points[hull.vertices]
     face_of, normals = _merge_coplanar(hull.equations, hull.neighbors)
+    # The normal of a merged face is a mean over its facets, so its offset must be one too: the plane then lies amid all
+    # corners of the face.
     heights = np.einsum("ijk,ik->i", vertices[triangles], normals[face_of]) / 3.0
     offsets = np.bincount(face_of, heights) / np.bincount(face_of)
     return Polyhedron(vertices, normals, offsets, triangles, face_of, _edges(triangles, face_of, normals, vertices))
@@ -87,7 +90,6 @@ def convex_polyhedron(points: NDArray[np.float64]) -> Polyhedron:
 def _outward(
     triangles: NDArray[np.int64], vertices: NDArray[np.float64], normals: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Turn triangles counter-clockwise as seen from outside."""
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), normals) < 0.0
     result = triangles.copy()
@@ -145,6 +147,7 @@ def mass_properties(vertices: NDArray[np.float64], triangles: NDArray[np.int64])
 
     Source: [Blow-2004] (signed tetrahedra).
     """
+    # About the mean of the vertices: far from the origin the volume would be a small difference of large terms.
     middle = vertices.mean(axis=0)
     corners = (vertices - middle)[triangles]
     six_volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
@@ -154,4 +157,5 @@ def mass_properties(vertices: NDArray[np.float64], triangles: NDArray[np.int64])
     products = np.einsum("ikj,ikl->ijl", corners, corners) + np.einsum("ij,il->ijl", total, total)
     second = np.einsum("i,ijl->jl", six_volumes, products) / 120.0 - volume * np.outer(centroid, centroid)
     inertia = np.trace(second) * np.eye(3) - second
+    # `checked_inertia` accepts only tensors that are symmetric to the last bit.
     return MassProperties(volume, centroid + middle, 0.5 * (inertia + inertia.T))

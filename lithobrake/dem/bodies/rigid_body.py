@@ -1,5 +1,6 @@
-"""Bodies and planes as a person adds them to a world, and the checks of their values."""
+"""Materials, bodies and planes as a person gives them to a world, and the checks of their values."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,8 +11,55 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.arrays import Floats
-from lithobrake.dem.bodies.material import Material
 from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """An isotropic elastic, frictional solid.
+
+    young_modulus [Pa] > 0, poisson_ratio [-] in [0, 0.5), restitution [-] in (0, 1], friction [-] >= 0, density
+    [kg/m3] > 0. A rigid body is any large finite Young's modulus.
+
+    rolling_friction, spinning_friction [-] >= 0: a contact resists rolling, and spinning about its normal, up to this
+    times contact radius R* times normal force. Source: [Ai-2011], model C.
+
+    cohesion_force [N] >= 0 and surface_energy [J/m2] >= 0: contacts pull with cohesion_force + 4 pi surface_energy R*
+    while they last, not beyond. Source: [Derjaguin-1975]. Lunar soil has, by [Perko-2001], a pull
+    of 0.036 S^2 R* newtons, S the cleanliness from 0 to 1: a surface energy of 0.0029 S^2 J/m2.
+
+    rough: contacts have its friction, whatever the other material and the rule for pairs; of two, the larger.
+
+    Raises ValueError outside these ranges.
+    """
+
+    young_modulus: float
+    poisson_ratio: float
+    restitution: float
+    friction: float
+    density: float
+    rolling_friction: float = 0.0
+    spinning_friction: float = 0.0
+    cohesion_force: float = 0.0
+    surface_energy: float = 0.0
+    rough: bool = False
+
+    def __post_init__(self) -> None:
+        allowed = {
+            "young_modulus": (0.0 < self.young_modulus < math.inf, "a finite value above 0 Pa"),
+            "poisson_ratio": (0.0 <= self.poisson_ratio < 0.5, "0 <= value < 0.5"),
+            "restitution": (0.0 < self.restitution <= 1.0, "0 < value <= 1"),
+            "friction": (0.0 <= self.friction < math.inf, "a finite value of at least 0"),
+            "density": (0.0 < self.density < math.inf, "a finite value above 0 kg/m3"),
+            "rolling_friction": (0.0 <= self.rolling_friction < math.inf, "a finite value of at least 0"),
+            "spinning_friction": (0.0 <= self.spinning_friction < math.inf, "a finite value of at least 0"),
+            "cohesion_force": (0.0 <= self.cohesion_force < math.inf, "a finite value of at least 0 N"),
+            "surface_energy": (0.0 <= self.surface_energy < math.inf, "a finite value of at least 0 J/m2"),
+        }
+        for name, (fine, text) in allowed.items():
+            if not fine:
+                raise ValueError(f"Material.{name} is {getattr(self, name)!r}; allowed is {text}: change it")
+
 
 Offset = tuple[float, ...]
 AT_CENTRE: Offset = (0.0, 0.0, 0.0)
@@ -32,8 +80,6 @@ class Part:
 
 
 class PlacedPart(NamedTuple):
-    """A part as contacts see it."""
-
     shape: Shape
     material: Material
     offset: Offset  # m, from the centre of mass of the body to the centroid of the shape, frame of the shape
@@ -81,11 +127,14 @@ class RigidBody:
         """Arm at which a spin moves the surface [m]: 0 for a ball about its centre, which looks the same."""
         if self.is_plain:
             return 0.0 if isinstance(self.shape, Sphere) else self.shape.bounding_radius
+        # A ball off the centre of mass is carried round with its centre, but its own turning moves none of its surface.
         return max(placed_radius(part) - isinstance(part.shape, Sphere) * part.shape.rounding for part in self.parts)
 
     @cached_property
     def smallest_masses_at_contact(self) -> tuple[float, ...]:
         """Smallest mass [kg] that a contact force meets on each part."""
+        # A push on a plain ball passes through its centre, whatever its inertia; for a uniform hull the fraction
+        # depends on the shape alone, which keeps it for all bodies that share it.
         if self.is_plain and (self.is_uniform or not isinstance(self.shape, ConvexHull)):
             return (self.mass * self.shape.smallest_mass_fraction,)
         per_mass, centre = self.inertia / self.mass, self.centre_of_mass
@@ -143,8 +192,6 @@ def _body_of_parts(
 
 
 class Assembly(NamedTuple):
-    """What parts come to together."""
-
     mass: float  # kg
     centre: Floats  # m, [3], of mass
     inertia: Floats  # kg m2, [3, 3], about that
@@ -168,10 +215,12 @@ def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
 def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:
     """Return bodies of one material, as new_body makes each."""
     volume = np.array([shape.volume for shape in shapes])
+    # The operations are those of `new_body` in the same order, so both ways give the same bits.
     mass = material.density * volume
     inertia = (
         np.array([shape.inertia_per_density for shape in shapes]).reshape(-1, 3, 3) * (mass / volume)[:, None, None]
     )
+    # `repeat` has no end, so the lengths cannot be compared.
     return [
         RigidBody(*one, is_uniform=True) for one in zip(shapes, repeat(material), mass.tolist(), inertia, strict=False)
     ]
@@ -224,6 +273,7 @@ def unit(value: ArrayLike, name: str) -> Floats:
 def units(vectors: Floats, name: str) -> Floats:
     """Return vectors of unit length, [count, 3 or 4]. Raises ValueError where one has none."""
     length = np.sqrt((vectors * vectors).sum(axis=1))
+    # Stated as what is allowed: NaN fails every comparison, so it would pass a test for what is not.
     if not ((length > 0.0) & (length < np.inf)).all():
         wrong = vectors[~((length > 0.0) & (length < np.inf))][0].tolist()
         raise ValueError(f"{name} is {wrong}; allowed is any finite vector other than zero: change it")

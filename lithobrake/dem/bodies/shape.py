@@ -69,10 +69,13 @@ class Sphere:
         self.core = self.core_polyhedron.vertices
         self.bounding_radius = self.radius
         self.contact_radius = self.radius
+        # About its own centre, which every push on a ball passes through.
         self.smallest_mass_fraction = 1.0
 
     def mass_fraction(self, inertia_per_mass: NDArray[np.float64], centre: NDArray[np.float64]) -> float:
         """Return the part of a mass that a contact force meets at least, see ConvexHull.mass_fraction."""
+        # A ball can be pushed along any direction, always through its own centre: the largest eigenvalue is that of the
+        # worst direction.
         x, y, z = self.centroid - centre
         arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         return float(1.0 / (1.0 + np.linalg.eigvalsh(arm.T @ np.linalg.solve(inertia_per_mass, arm))[-1]))

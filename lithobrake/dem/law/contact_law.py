@@ -8,12 +8,11 @@ Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949].
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Reactions, Step
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled
+from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, way_between
 from lithobrake.dem.law.contact_motion import relative_motion
 from lithobrake.dem.law.coulomb_friction import friction_force, resist_twisting
 from lithobrake.dem.law.hertz_spring import ContactSprings, contact_springs, normal_force
-from lithobrake.dem.law.material_pair import law_between
+from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.law.rolling_resistance import resist_rolling
 from lithobrake.dem.law.tangential_spring import stored
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact
@@ -47,6 +46,7 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     pairs.lost[pair, DAMPING] += load.damped
     tangential = friction_force(pair, pairs, normal, law, motion, springs, load.repulsion, time_step)
     central = plus(scaled(load.left, normal), tangential)
+    # All forces are summed up about the centroid of the first; `hand_over` takes them to the second.
     torque = plus(load.torque, cross(minus(point, row(bodies.position, first)), central))
     torque = resist_twisting(
         pair, bodies, pairs, patch, contact, law, motion, springs, load.repulsion, torque, time_step
@@ -56,7 +56,9 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     pairs.tilt_stiffness[pair] = patch_tilt_stiffness(
         patch, contact.points, point, normal, contact.overlap, springs.secant
     )
+    # Last, as friction and rolling turn their springs from the normal that is kept of the step before.
     record_contact(pair, pairs, contact, springs, tangential, load.total)
+    # The slope of D^(3/2) is 1.5 times its secant; above half of critical damping the dashpot is the faster of the two.
     return 1.5 * springs.secant * motion.inverse_mass * max(1.0, 2.0 * law.damping_ratio) ** 2
 
 
@@ -77,6 +79,7 @@ def hand_over(
     """
     first, second, second_torque = pairs.first[pair], pairs.second[pair], torque
     if second >= 0:
+        # Both torques are those of one force at one point, which keeps angular momentum, also through an image.
         second_torque = minus(torque, cross(way_between(bodies, first, second), force))
     if kept:
         put(reactions.force, pair, force)
@@ -103,6 +106,7 @@ def record_contact(
 @kernel
 def end_contact(pair: int, pairs: Pairs) -> None:
     """End a contact, if there was one: the springs let go. Writes to pairs."""
+    # Most neighbours are apart and stay so: nothing is written for them, and their cache lines stay clean.
     if pairs.overlap[pair] == 0.0:
         return
     spring, roll = row(pairs.spring, pair), row(pairs.roll, pair)

@@ -3,10 +3,8 @@
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs
-from lithobrake.dem.bodies.parts import curvature_of
-from lithobrake.dem.bodies.period import arm_to
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled, times
+from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs, curvature_of
+from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, row, scaled, times
 
 
 @kernel
@@ -48,7 +46,6 @@ class RelativeMotion(NamedTuple):
 
 @kernel
 def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vector:
-    """Return the velocity of the body's material at an arm from its centroid."""
     return plus(row(linear, body), cross(row(spin, body), arm))
 
 
@@ -56,13 +53,15 @@ def point_velocity(linear: Floats, spin: Floats, body: int, arm: Vector) -> Vect
 def relative_motion(
     pair: int, bodies: Bodies, pairs: Pairs, point: Vector, normal: Vector, whole_mass: bool
 ) -> RelativeMotion:
-    """Return how a body meets another, or a plane."""
     first, second = pairs.first[pair], pairs.second[pair]
     arm = minus(point, row(bodies.position, first))
     inverse_mass = inverse_mass_at(bodies, first, arm, normal, whole_mass)
+    # Dashpots act by the velocity at the instant of the positions; springs stretch by the way of the last step, of
+    # which the half-step velocity is the exact mean.
     now = scaled(-1.0, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, first, arm))
     moved = scaled(-1.0, point_velocity(bodies.velocity, bodies.half_spin, first, arm))
     spin = scaled(-1.0, row(bodies.half_spin, first))
+    # The frame of the contact turns with the mean of both spins, whichever body is first.
     twist = 0.5 * dot(row(bodies.half_spin, first), normal)
     if second >= 0:
         arm = arm_to(bodies, second, point)

@@ -11,7 +11,7 @@ from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, Bodies, Pairs
 from lithobrake.dem.bodies.vectors import Vector, dot, plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_along
 from lithobrake.dem.law.hertz_spring import ContactSprings
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, stored, turned_spring, unloaded
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import spin_radii
@@ -50,6 +50,7 @@ def resist_twisting(
     lever = law.spinning_friction * springs.radius
     square, mean = spin_radii(patch, contact.points, contact.point, contact.normal)
     square += lever * lever
+    # A patch that was wide in the last step may hold a couple that has to be let go now that it is a point.
     if not (square > 0.0 or pairs.twist_stiffness[pair] > 0.0):
         return torque
     limit = law.friction * repulsion * mean + repulsion * lever
@@ -57,10 +58,13 @@ def resist_twisting(
     spin = dot(motion.spin, contact.normal)
     angle = spin * time_step
     couple = min(max(unloaded(stiffness_before, stiffness) * before - stiffness * angle, -limit), limit)
+    # Energy that the spring had, and the work of its mean couple over the turn: what is not stored afterwards was lost
+    # by sliding or by a change of stiffness.
     given = stored(before * before, stiffness_before) - 0.5 * (before + couple) * angle
     pairs.twist[pair], pairs.twist_stiffness[pair] = couple, stiffness
     inverse_inertia = inverse_inertia_along(bodies, pairs.first[pair], pairs.second[pair], contact.normal)
     dashpot = 2.0 * law.damping_ratio * (stiffness / inverse_inertia) ** 0.5
+    # The dashpot counts within the limit too: no part of friction passes Coulomb's.
     total = min(max(couple - dashpot * spin, -limit), limit)
     pairs.lost[pair, FRICTION] += given - stored(couple * couple, stiffness)
     pairs.lost[pair, DAMPING] += (couple - total) * angle

@@ -9,18 +9,15 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
-from lithobrake.dem.bodies.period import arm_to
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled
+from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, row, scaled
 from lithobrake.dem.law.contact_motion import RelativeMotion, point_velocity
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_EDGES
 from lithobrake.dem.narrow_phase.scratch import Patch
 
 
 class ContactSprings(NamedTuple):
-    """How the materials of a pair answer an overlap."""
-
     secant: float  # N/m, elastic force over overlap
     elastic: float  # N
     shear: float  # N/m, stiffness across the normal
@@ -37,6 +34,8 @@ def contact_springs(law: PairLaw, overlap: float, motion: RelativeMotion) -> Con
     # The root is taken of the product: a length scaled by a power of two then scales every bit.
     root = (overlap * radius) ** 0.5
     secant = 4.0 / 3.0 * law.young_modulus * root
+    # With 5/4 of the secant, and so proportional to D^(1/4), the collision is a linear oscillator in a time of its own,
+    # and the restitution the same at all speeds (restitution.py).
     dashpot = 2.0 * law.damping_ratio * (1.25 * secant * (1.0 / motion.inverse_mass)) ** 0.5
     return ContactSprings(
         secant, secant * overlap, 8.0 * law.shear_modulus * root, dashpot, dashpot * law.shear_damping,
@@ -66,11 +65,12 @@ def normal_force(
     pair: int, bodies: Bodies, pairs: Pairs, patch: Patch, contact: Contact, motion: RelativeMotion,
     springs: ContactSprings, time_step: float,
 ) -> NormalLoad:  # fmt: skip
-    """Return the normal forces at the points of a patch: repulsion less cohesion."""
     first, second, normal = pairs.first[pair], pairs.second[pair], contact.normal
     if contact.points == 1 and patch.family[0] != DEEP_EDGES:
         speed, weight = dot(motion.now, normal), patch.weight[0]
         repulsion = repel(weight, springs, speed)
+        # Cohesion is taken off outside the cut-off of `repel`, shared as the repulsion is: it stays the gradient of a
+        # potential, and friction is limited by the repulsion that carries it.
         total = repulsion - weight * springs.cohesion
         damped = (weight * springs.elastic - repulsion) * speed * time_step
         return NormalLoad(repulsion, total, total, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), damped)
@@ -84,6 +84,7 @@ def normal_force(
             now = plus(now, point_velocity(bodies.velocity_predicted, bodies.spin_predicted, second, other_arm))
         speed = dot(now, outward)
         lever = cross(arm, outward)
+        # The place where deep edges meet slides along them as the bodies turn, so turning alone changes their overlap.
         if patch.family[k] == DEEP_EDGES:
             turning = minus(row(bodies.spin_predicted, second), row(bodies.spin_predicted, first))
             speed += dot(turning, row(patch.couple, k))

@@ -5,7 +5,7 @@ from lithobrake.dem.bodies.arrays import ROLLING, Bodies, Pairs
 from lithobrake.dem.bodies.vectors import Vector, plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_across
 from lithobrake.dem.law.hertz_spring import ContactSprings
-from lithobrake.dem.law.material_pair import PairLaw
+from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, turned_spring
 
 # Stiffness of rolling over that of the normal contact times the lever squared.
@@ -28,6 +28,7 @@ def resist_rolling(
         return torque
     before = turned_spring(row(pairs.roll, pair), row(pairs.normal, pair), normal, motion.twist * time_step)
     rolling = ROLLING_STIFFNESS * springs.secant * lever * lever
+    # The inertia that the couple really meets: it rings down at the material's own rate, whatever the lever.
     inverse_inertia = inverse_inertia_across(bodies, pairs.first[pair], pairs.second[pair], normal)
     dashpot = 2.0 * law.damping_ratio * (rolling / inverse_inertia) ** 0.5
     rate = tangential_part(motion.spin, normal)

@@ -11,8 +11,6 @@ from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, scale
 
 
 class SpringForce(NamedTuple):
-    """What a spring with a dashpot does in a step."""
-
     spring: Vector  # N or N m, force of the spring alone
     total: Vector  # with the dashpot's
     slid: float  # J, lost by the spring
@@ -28,6 +26,7 @@ def turned_spring(spring: Vector, normal_before: Vector, normal: Vector, twist: 
     turn = plus(cross(normal_before, normal), scaled(twist, normal))
     spring = plus(spring, cross(turn, spring))
     spring = minus(spring, scaled(dot(spring, normal), normal))
+    # A turn to first order lengthens the spring, and would give it energy from nowhere: its length is put back.
     left = dot(spring, spring)
     return scaled((square / left) ** 0.5, spring) if left > 0.0 else (0.0, 0.0, 0.0)
 
@@ -40,13 +39,11 @@ def unloaded(stiffness_before: float, stiffness: float) -> float:
 
 @kernel
 def stored(force_squared: float, stiffness: float) -> float:
-    """Return the energy of a spring under a force."""
     return 0.5 * force_squared / stiffness if stiffness > 0.0 else 0.0
 
 
 @kernel
 def clipped(vector: Vector, limit: float) -> Vector:
-    """Return a vector, shortened to the limit where it is longer."""
     square = dot(vector, vector)
     return vector if square <= limit * limit else scaled(limit / square**0.5, vector)
 
@@ -60,6 +57,8 @@ def spring_force(
     kept = stiffness * softness_before if stiffness < stiffness_before else 1.0
     spring = minus(scaled(kept, before), scaled(stiffness, way))
     spring = clipped(spring, limit)
+    # The mean of both forces times the way is the exact work of a linear spring; what of it is not stored afterwards
+    # has been lost by sliding, or by a change of stiffness.
     given = 0.5 * dot(before, before) * softness_before - 0.5 * dot(plus(before, spring), way)
     total = clipped(minus(spring, scaled(dashpot, rate)), limit)
     slid = given - stored(dot(spring, spring), stiffness)

@@ -45,11 +45,13 @@ def cells_of(bodies: Bodies, skin: float) -> Cells:
     radius, n = bodies.bounding_radius, len(bodies.mass)
     period = np.array([bodies.period.x, bodies.period.y, 0.0])
     repeats = period > 0.0
+    # A lander among grains would otherwise make every cell as large as itself.
     is_large = radius > LARGEST * np.median(radius)
     reach = float(radius[~is_large].max()) + 0.5 * skin
     size = 2.0 * reach
     corner = bodies.position.min(axis=0)
     extent = np.where(repeats, period, bodies.position.max(axis=0) - corner)
+    # One body that was thrown far away would otherwise spread cells over empty space.
     while np.prod(np.floor(extent / size) + 1.0) > MOST_CELLS * n:
         size *= 2.0
     count = np.where(repeats, np.maximum(np.floor(extent / size), 1.0), np.floor(extent / size) + 1.0).astype(np.int64)
@@ -109,7 +111,6 @@ def gather_near(cells: Cells, here: Vector, reach: float) -> int:
 
 @kernel
 def number_of(cells: Cells, place: Place) -> int:
-    """Return the number of a cell by its numbers along the axes."""
     i, j = place[0] % cells.numbers[0], place[1] % cells.numbers[1]
     return (i * cells.numbers[1] + j) * cells.numbers[2] + place[2]
 

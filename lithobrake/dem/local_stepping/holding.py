@@ -9,11 +9,9 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times
-from lithobrake.dem.local_stepping.agenda import Agenda, put_on
-from lithobrake.dem.local_stepping.contact_plans import Plans, replan, touches
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, surface_speed
+from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times, way_between
+from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, surface_speed
 
 # A body is held when it is slower than this part of the speed at which it would be let go again.
 CALM = 0.5
@@ -111,6 +109,7 @@ def let_go(
     entry = flight.head[body]
     while entry >= 0:
         pair, item = entry >> 1, len(bodies.mass) + (entry >> 1)
+        # A contact that waited has not slid all that time: its next step begins now.
         if agenda.due[item] == np.inf:
             plans.last[pair] = now
             put_on(agenda, item, now)
@@ -145,5 +144,6 @@ def hold_what_is_slow(
             if not far or is_stirred(bodies, flight, body):
                 flight.time[body] = now
                 let_go(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)
+        # What touches nothing flies, however slowly, and held it would hang above the ground.
         elif far and surface_speed(bodies, flight, body) < CALM * limit and touches(pairs, flight, plans, body):
             hold(bodies, pairs, reactions, flight, plans, agenda, body, now, rules)

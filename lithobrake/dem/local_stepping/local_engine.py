@@ -6,19 +6,18 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import Floats, Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
-from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda
+from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
-from lithobrake.dem.local_stepping.contact_plans import Plans, Schedule
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_all_to
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_all_to
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.neighbours import free_slots, new_pairs, with_overflow_for_all, with_overflow_where_used
-from lithobrake.dem.stepping.threads import new_reactions
-from lithobrake.dem.stepping.watch import new_record
+from lithobrake.dem.stepping.time_loop import new_reactions, new_record
 
 # Slots for pairs at the start, for each body.
+# A poured bed has some 5 pairs of neighbours a grain.
 SLOTS = 8
 
 
@@ -35,6 +34,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     n = len(bodies)
     turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
     mass = np.array([mass for body in bodies for mass in body.smallest_masses_at_contact])
+    # NaN, from which no change is small: every body is planned at its first look.
     never = np.full((n, 3), np.nan)
     stamp = np.full(len(mass) + len(engine.planes.offset), -1)
     return Flight(
@@ -80,7 +80,6 @@ class LocalEngine:
         return self.engine.pairs
 
     def _take(self, pairs: Pairs, capacity: int) -> None:
-        """Put pairs into the first of so many slots."""
         used = np.flatnonzero(pairs.first >= 0)
         slots = new_pairs(free_slots(capacity))._replace(overflow=pairs.overflow)
         for name in Pairs._fields[:-1]:
@@ -96,7 +95,6 @@ class LocalEngine:
         enter_all(engine.bodies, engine.planes, self.pairs, engine.laws, self.flight, self.plans, self.agenda, due)
 
     def _widen(self) -> None:
-        """Make twice as many slots."""
         pairs, plans, agenda, reactions = self.pairs, self.plans, self.agenda, self.reactions
         used, n = np.flatnonzero(pairs.first >= 0), len(self.flight.time)
         self.engine.book()
@@ -152,6 +150,7 @@ class LocalEngine:
         self.sum_forces()
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
+        # Slots were filled as pairs were met; sums of forces at common steps run in the order of the bodies.
         order = pairs.second_part, pairs.first_part, pairs.second, pairs.first
         used = used[np.lexsort([numbers[used] for numbers in order])]
         arrays = {name: getattr(pairs, name)[used] for name in Pairs._fields[:-1]}

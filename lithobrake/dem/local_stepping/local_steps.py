@@ -9,13 +9,9 @@ Source: [Lew-2003], asynchronous variational integrators.
 """
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step
-from lithobrake.dem.bodies.parts import contact_radii
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times
-from lithobrake.dem.local_stepping.agenda import put_on
-from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
-from lithobrake.dem.local_stepping.contact_plans import (
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step, contact_radii
+from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.local_stepping.agenda import (
     LONGER,
     SHORTER,
     Plans,
@@ -25,16 +21,24 @@ from lithobrake.dem.local_stepping.contact_plans import (
     has_changed,
     plan_apart,
     plan_approach,
+    put_on,
     replan,
 )
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, spin_of
+from lithobrake.dem.local_stepping.free_motion import (
+    Approach,
+    Flight,
+    Rules,
+    approach_of,
+    closing_speed,
+    fly_to,
+    spin_of,
+)
 from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, search_neighbours
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
-from lithobrake.dem.stepping.force_sums import add_wrench, contact_force
-from lithobrake.dem.stepping.stability import pair_step
-from lithobrake.dem.stepping.watch import record_touch
+from lithobrake.dem.stepping.time_loop import add_wrench, contact_force, record_touch
+from lithobrake.dem.stepping.time_step_stability import pair_step
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3
@@ -110,6 +114,7 @@ def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
     velocity, other_velocity = row(bodies.velocity, first), (0.0, 0.0, 0.0)
     touched = plans.interval[pair] > 0.0 and step.time_step > 0.0
     if touched:
+        # `contact_force` takes slip as velocity times step, so velocities of the mean motion stand in here.
         way = minus(way_to_second(bodies, first, second), row(plans.apart, pair))
         mean = scaled(1.0 / step.time_step, way)
         put(bodies.half_spin, first, scaled(0.5, plus(row(bodies.half_spin, first), row(plans.spin[pair], 0))))
@@ -136,6 +141,7 @@ def next_step(
 
     Writes to plans.
     """
+    # From the rate of the contact and not from its bodies, so that strong damping counts in it.
     plans.inverse_mass[pair] = rate * pairs.overlap[pair] / (1.5 * pairs.elastic_force[pair])
     plans.longest[pair] = pair_step(pair, bodies, planes, pairs, laws, rules.paper_mass, STABLE_PART)
     step = contact_step(pair, bodies, pairs, flight, plans, rules)
@@ -156,6 +162,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     if planned > 0.0:
         force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
         other_torque = row(reactions.second_torque, pair)
+    # A held body stands still, whatever kicks it has been given.
     predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
     if second >= 0:
         predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
@@ -167,6 +174,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     interval = 0.0
     if pairs.overlap[pair] > 0.0:
         interval = next_step(pair, bodies, planes, pairs, laws, flight, plans, planned, rate, rules)
+        # What passed before a contact begins was flight: at most half of the coming interval counts of it.
         time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
         impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
         moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))

@@ -7,18 +7,15 @@ Every body has a list of its pairs: entries 2 k and 2 k + 1 stand for the first 
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes
-from lithobrake.dem.bodies.parts import curvature_of
-from lithobrake.dem.bodies.period import nearest
-from lithobrake.dem.bodies.vectors import dot, minus, row
-from lithobrake.dem.law.material_pair import law_between
-from lithobrake.dem.local_stepping.agenda import Agenda, put_on, take_off
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, curvature_of
+from lithobrake.dem.bodies.vectors import dot, minus, nearest, row
+from lithobrake.dem.law.restitution import law_between
+from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, plan_search, put_on, take_off
 from lithobrake.dem.local_stepping.cells import gather_near, move_to_cell
-from lithobrake.dem.local_stepping.contact_plans import Plans, Schedule, plan_search
-from lithobrake.dem.local_stepping.free_flight import Flight, Rules, fly_to, place_at, spin_bound
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, place_at, spin_bound
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
-from lithobrake.dem.stepping.time_step import HERTZ_DURATION
+from lithobrake.dem.stepping.time_step_stability import HERTZ_DURATION
 
 LISTED, NO_SLOT, LOST = 0, 1, 2
 
@@ -107,6 +104,7 @@ def add_pair(
         return False
     plans.free_count[0] -= 1
     pair = plans.free[plans.free_count[0]]
+    # The smaller number comes first, as in the lists for common steps.
     own, other = (1, 0) if 0 <= members[1] < members[0] else (0, 1)
     pairs.first[pair], pairs.second[pair] = members[own], members[other]
     pairs.first_part[pair], pairs.second_part[pair] = parts[own], parts[other]
@@ -166,6 +164,7 @@ def list_if_near(
     """
     bodies, cores, planes, pairs, laws, scratch, _ = system
     flight, plans, agenda, _ = schedule
+    # A stamp saves a walk through all pairs of the body for each candidate.
     if flight.stamp[stamp_of(bodies, parts[1])] == parts[0]:
         return True
     if not is_near(bodies, cores, planes, scratch, flight, members, parts, now, rules):
@@ -260,6 +259,7 @@ def drop_distant(system: System, schedule: Schedule, body: int, part: int, now: 
         if parts[0] != part:
             entry = after
             continue
+        # A pair that touches is never forgotten: its springs hold energy and history.
         is_apart = pairs.overlap[pair] == 0.0
         if is_apart and not is_near(bodies, cores, planes, scratch, flight, (body, other), parts, now, rules):
             forget_pair(pair, pairs, flight, plans, agenda, len(bodies.mass))

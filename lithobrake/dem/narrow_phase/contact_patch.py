@@ -7,32 +7,39 @@ Cores that penetrate go on so: the distance of a corner changes its sign, and pa
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
-from lithobrake.dem.bodies.parts import both_roundings, both_shapes, first_shape
-from lithobrake.dem.bodies.period import way_between
-from lithobrake.dem.bodies.vectors import Vector, dot, minus, plus, put, row, scaled, times, transposed_times
-from lithobrake.dem.narrow_phase.deep_edges import add_deep_edges
-from lithobrake.dem.narrow_phase.feature_distance import (
-    edge_of,
-    edge_to_edge,
-    point_to_core,
-    stands_above,
-    write_relative,
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
+from lithobrake.dem.bodies.vectors import (
+    Vector,
+    dot,
+    minus,
+    plus,
+    put,
+    row,
+    scaled,
+    times,
+    transposed_times,
+    way_between,
 )
-from lithobrake.dem.narrow_phase.feature_id import (
+from lithobrake.dem.narrow_phase.feature_distance import (
     ALL_FEATURES,
     CORNER_OF_FIRST,
     CORNER_OF_SECOND,
     SPHERES,
+    edge_of,
+    edge_to_edge,
     encode_feature,
     feature_indices,
     feature_kind,
     listed_feature,
+    point_to_core,
+    stands_above,
+    write_relative,
 )
 from lithobrake.dem.narrow_phase.patch_energy import (
     CORNER,
     DEEP_FROM,
     EDGES_APART,
+    add_deep_edges,
     add_point,
     combine_overlaps,
     deepening,
@@ -42,8 +49,6 @@ from lithobrake.dem.narrow_phase.scratch import Patch, Scratch
 
 
 class Contact(NamedTuple):
-    """Where the members of a pair touch."""
-
     points: int  # number of points of the patch, which lie in the scratch; 0 where apart
     overlap: float  # m
     point: Vector  # m, centre of pressure
@@ -57,6 +62,7 @@ def find_contact(pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs:
     patch, second = scratch.patch, pairs.second[pair]
     if feature_kind(pairs.feature[pair, 0]) == SPHERES and pairs.feature_count[pair] > 0:
         overlap, point, normal, central = sphere_overlap(pair, bodies, cores, pairs)
+        # Spheres come straight from their centres; as a lone corner they take the short way through the law.
         patch.weight[0], patch.family[0] = 1.0, CORNER
         return Contact(1 if overlap > 0.0 else 0, overlap, point, normal, central)
     if second >= 0:
@@ -106,10 +112,12 @@ def body_patch(pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, scratch: S
         count, deep, derivative = add_all_corners(bodies, cores, patch, (first, second), shapes, apart), 1.0, 0.0
     else:
         count, deep, derivative = add_listed_features(pair, bodies, cores, pairs, patch, apart)
+    # Every pair of edges is examined here, at ten times the cost of the list: not before half of the rounding.
     if deep > 0.0:
         write_relative(bodies.rotation, first, second, relative)
         there = transposed_times(bodies.rotation, first, apart)
         apart_count, count = count, add_deep_edges(cores, patch, relative, count, shapes, there)
+        # Deep edges are measured in the frame of the first body, whose faces then need no turning.
         for k in range(apart_count, count):
             put(patch.point, k, plus(row(bodies.position, first), times(bodies.rotation, first, row(patch.point, k))))
             put(patch.normal, k, times(bodies.rotation, first, row(patch.normal, k)))
@@ -142,6 +150,7 @@ def add_listed_features(
     if deepest <= DEEP_FROM * reach:
         return count, 0.0, 0.0
     deep, derivative = deepening(deepest / reach)
+    # Where edges apart have passed into deep ones in full they weigh nothing, and the list need not hold them.
     return corners if deep == 1.0 else count, deep, derivative / reach
 
 
@@ -202,6 +211,7 @@ def measure_feature(
     )  # fmt: skip
     between = minus(hither, here)
     square = dot(between, between)
+    # Most listed edges are out of reach: compared by the square, they cost no root.
     if square >= reach * reach:
         return here, between, reach
     distance = square**0.5
@@ -249,6 +259,7 @@ def sphere_centres(
     first, second, (shape, other_shape) = pairs.first[pair], pairs.second[pair], both_shapes(pair, bodies, pairs)
     centre, apart = row(bodies.position, first), way_between(bodies, first, second)
     arm, other_arm = row(cores.vertex, cores.vertex_start[shape]), row(cores.vertex, cores.vertex_start[other_shape])
+    # Nearly all balls have their centre at the centre of mass, and need not be turned.
     if dot(arm, arm) + dot(other_arm, other_arm) == 0.0:
         return centre, apart, True
     arm, other_arm = times(bodies.rotation, first, arm), times(bodies.rotation, second, other_arm)

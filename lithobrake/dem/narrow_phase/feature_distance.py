@@ -1,7 +1,7 @@
-"""Closed forms: how far a point is from a core, and two edges from each other."""
+"""Features of a pair as whole numbers, and closed forms of how far they are from each other."""
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Cores, Floats
+from lithobrake.dem.bodies.arrays import Cores, Floats, Pairs
 from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled
 
 # Two edges whose directions differ by less than this angle (squared) have no single closest point.
@@ -17,6 +17,7 @@ def face_below(cores: Cores, shape: int, point: Vector, farthest: float) -> tupl
     best, height = -1, 0.0
     for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
         trial = dot(row(cores.normal, face), point) - cores.offset[face]
+        # A point is at least as far from the core as from the plane of any face, so one face is enough to leave.
         if trial > farthest:
             return -1, trial
         if best < 0 or trial > height:
@@ -33,6 +34,7 @@ def stands_above(cores: Cores, shape: int, face: int, point: Vector) -> tuple[fl
     start = cores.face_start[shape]
     normal = row(cores.normal, start + face)
     height = dot(normal, point) - cores.offset[start + face]
+    # Behind the face the point may be inside the core, where all faces count (`below_faces`).
     if height <= 0.0:
         return height, False
     foot = minus(point, scaled(height, normal))
@@ -60,6 +62,7 @@ def point_to_core(cores: Cores, shape: int, point: Vector, farthest: float) -> t
         return height, normal, True, face - start
     if height == 0.0 or on_core(cores, shape, minus(point, scaled(height, normal)), face):
         return height, normal, True, face - start
+    # The face that the point stands highest above need not be the nearest: an edge may be, or, below, another face.
     nearest, square = point_to_edges(cores, shape, point)
     if square == 0.0:
         return 0.0, normal, True, -1
@@ -83,6 +86,7 @@ def below_faces(cores: Cores, shape: int, point: Vector, highest: float) -> tupl
     total, gradient = 0.0, (0.0, 0.0, 0.0)
     for face in range(cores.face_start[shape], cores.face_start[shape + 1]):
         normal = row(cores.normal, face)
+        # Over the least depth, so that eighth powers neither overflow nor underflow.
         ratio = highest / (dot(normal, point) - cores.offset[face])
         fourth = ratio * ratio * ratio * ratio
         total += fourth * fourth
@@ -116,7 +120,6 @@ def point_to_edges(cores: Cores, shape: int, point: Vector) -> tuple[Vector, flo
 
 @kernel
 def edge_to_edge(a: Vector, along_a: Vector, b: Vector, along_b: Vector) -> tuple[Vector, Vector]:
-    """Return the closest points of two edges that begin at a and b."""
     fraction, other, _ = closest_fractions(a, along_a, b, along_b)
     return plus(a, scaled(fraction, along_a)), plus(b, scaled(other, along_b))
 
@@ -130,6 +133,8 @@ def closest_fractions(a: Vector, along_a: Vector, b: Vector, along_b: Vector) ->
     between = minus(b, a)
     aa, bb, ab = dot(along_a, along_a), dot(along_b, along_b), dot(along_a, along_b)
     ad, bd = dot(along_a, between), dot(along_b, between)
+    # The determinant is aa bb - ab^2, whose digits would cancel for nearly parallel edges; the square of the cross
+    # product keeps them.
     turn = cross(along_a, along_b)
     determinant = dot(turn, turn)
     parallel = determinant <= PARALLEL * aa * bb
@@ -143,6 +148,7 @@ def closest_fractions(a: Vector, along_a: Vector, b: Vector, along_b: Vector) ->
         near, far = ad / aa, (ad + ab) / aa
         low, high = max(0.0, min(near, far)), min(1.0, max(near, far))
         fraction = min(max(0.5 * (low + high), 0.0), 1.0)
+    # Beyond an end of one edge the closest point of the other is that to this end, and the first follows from it.
     other = min(max((fraction * ab - bd) / bb, 0.0), 1.0)
     fraction = min(max((other * ab + ad) / aa, 0.0), 1.0)
     return fraction, other, parallel
@@ -175,3 +181,53 @@ def lowest_height(cores: Cores, shape: int, direction: Vector) -> float:
     for k in range(start + 1, cores.vertex_start[shape + 1]):
         lowest = min(lowest, dot(row(cores.vertex, k), direction))
     return lowest
+
+
+# Kinds of features: a corner of the first on the second, of the second on the first (i, and one more than the number of
+# the face below it, or 0), two edges (i and j), two spheres.
+CORNER_OF_FIRST, CORNER_OF_SECOND, EDGES, SPHERES = 0, 1, 2, 3
+KIND_BITS, INDEX_BITS = 40, 20
+# Features that every pair has room for; few need more.
+INLINE_FEATURES = 6
+# In `feature_count`: the cores penetrate each other, and all their features are looked at.
+ALL_FEATURES = -1
+
+
+@kernel
+def encode_feature(kind: int, i: int, j: int) -> int:
+    return (kind << KIND_BITS) + (i << INDEX_BITS) + j
+
+
+@kernel
+def feature_kind(feature: int) -> int:
+    return feature >> KIND_BITS
+
+
+@kernel
+def feature_indices(feature: int) -> tuple[int, int]:
+    lowest = (1 << INDEX_BITS) - 1
+    return (feature >> INDEX_BITS) & lowest, feature & lowest
+
+
+@kernel
+def add_feature(pair: int, pairs: Pairs, kind: int, i: int, j: int) -> None:
+    """Add a feature to the list of a pair; the count goes on where the list is full. Writes to pairs."""
+    count, feature = pairs.feature_count[pair], encode_feature(kind, i, j)
+    if count < feature_capacity(pair, pairs):
+        if count < INLINE_FEATURES:
+            pairs.feature[pair, count] = feature
+        else:
+            pairs.overflow[pairs.overflow_row[pair], count - INLINE_FEATURES] = feature
+    pairs.feature_count[pair] = count + 1
+
+
+@kernel
+def feature_capacity(pair: int, pairs: Pairs) -> int:
+    return INLINE_FEATURES + pairs.overflow.shape[1] if pairs.overflow_row[pair] >= 0 else INLINE_FEATURES
+
+
+@kernel
+def listed_feature(pair: int, pairs: Pairs, k: int) -> int:
+    return (
+        pairs.feature[pair, k] if k < INLINE_FEATURES else pairs.overflow[pairs.overflow_row[pair], k - INLINE_FEATURES]
+    )

@@ -26,8 +26,6 @@ class TurnedFeatures(NamedTuple):
 
 
 class Patch(NamedTuple):
-    """The points of a contact."""
-
     point: Floats  # [point_max, 3]
     normal: Floats  # [point_max, 3], from first to second
     couple: Floats  # [point_max, 3], of deep edges, see deep_edges.py
@@ -37,8 +35,6 @@ class Patch(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """All of them."""
-
     simplex: Simplex
     turned: TurnedFeatures
     relative: Floats  # [1, 3, 3], rotation from the second body's frame to the first's
@@ -46,8 +42,6 @@ class Scratch(NamedTuple):
 
 
 class System(NamedTuple):
-    """All that contact forces are computed from, and what they are written to."""
-
     bodies: Bodies
     cores: Cores
     planes: Planes
@@ -58,7 +52,6 @@ class System(NamedTuple):
 
 
 def scratch_for(feature_max: int, point_max: int) -> Scratch:
-    """Return scratch large enough for the corners and edges of a core, and the points of a patch."""
     simplex = Simplex(
         np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 3)), np.zeros((4, 2), dtype=np.int64), np.zeros(4),
         np.zeros(1, dtype=np.int64),

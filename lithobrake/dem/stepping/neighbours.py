@@ -9,11 +9,10 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Period, Planes
-from lithobrake.dem.bodies.period import folded, nearest, way_between
-from lithobrake.dem.bodies.vectors import Vector, dot, minus, row
-from lithobrake.dem.narrow_phase.closest_points import find_closest_points
-from lithobrake.dem.narrow_phase.feature_id import INLINE_FEATURES
+from lithobrake.dem.bodies.vectors import Vector, dot, folded, minus, nearest, row, way_between
+from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.gjk import APART
+from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch
 
 
@@ -88,6 +87,7 @@ def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Sc
     position = folded(bodies.position, bodies.period)
     low = position[:, 0] - reach
     order = np.argsort(low, kind="stable")
+    # In a poured bed some 11 pairs of bounding spheres a grain meet.
     capacity = 16 * len(order)
     while True:
         first, second = np.empty(capacity, dtype=np.int64), np.empty(capacity, dtype=np.int64)
@@ -103,6 +103,7 @@ def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Sc
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
     on_plane = pairs_of_parts(bodies.part_start, body, -1 - plane)
     found = [np.concatenate([one[near], other]) for one, other in zip(met, on_plane, strict=True)]
+    # Forces are summed in the order of the pairs, which so must not depend on how the pairs were found.
     sorting = np.lexsort(found[::-1])
     return Neighbours(*(column[sorting] for column in found))
 
@@ -124,7 +125,6 @@ def pairs_of_parts(part_start: Integers, first: Integers, second: Integers) -> N
 
 
 def new_pairs(between: Neighbours) -> Pairs:
-    """Return pairs without any history."""
     n = len(between.first)
     return Pairs(
         *between, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
@@ -144,7 +144,6 @@ def free_slots(count: int) -> Neighbours:
 
 
 def no_pairs() -> Pairs:
-    """Return the pairs of a world in which nothing has met."""
     return new_pairs(free_slots(0))
 
 
@@ -159,6 +158,7 @@ def carry_over(old: Pairs, between: Neighbours) -> Pairs:
     span = 1 + max(int(np.abs(parts).max(initial=0)) for parts in (*ours, *theirs))
     key_old, key_new = (first * (2 * span) + second for first, second in (ours, theirs))
     _, here, there = np.intersect1d(key_new, key_old, assume_unique=True, return_indices=True)
+    # Not the members, which the new list has, and not the overflow, whose rows are not one a pair.
     for name in Pairs._fields[len(between) : -1]:
         getattr(new, name)[here] = getattr(old, name)[there]
     return with_overflow_rows(new, old.overflow, old.overflow.shape[1])
@@ -175,7 +175,6 @@ def with_overflow_rows(pairs: Pairs, overflow: Integers, width: int) -> Pairs:
 
 
 def with_more_overflow(pairs: Pairs) -> Pairs:
-    """Return the pairs with room for as many features as they ask for."""
     lacking = pairs.feature_count > np.where(
         pairs.overflow_row < 0, INLINE_FEATURES, INLINE_FEATURES + pairs.overflow.shape[1]
     )

@@ -1,16 +1,22 @@
-"""What became of the landers: shares, times and speeds, ellipses, and where they rest."""
+"""What became of the landers: shares, times, speeds, ellipses, the site, and where they come down first."""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from lithobrake.pipeline.answer.regions import place_regions
-from lithobrake.pipeline.answer.site_summary import site_results
-from lithobrake.pipeline.emulate.samples import MISSING, SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.fly.flights import QUANTILES, flight_numbers, read_table
+from lithobrake.analysis import highest_density
+from lithobrake.files.reading import read_rows
+from lithobrake.geometry.mesh_files import labelled_mesh, product_id
+from lithobrake.pipeline.answer.run_answers import SHARES, place_regions, rest_regions
+from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
+from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.dispersion import (
     EllipseShare,
     FlightChecks,
@@ -20,11 +26,68 @@ from lithobrake.results.dispersion import (
     LandingEllipses,
     RestResults,
 )
+from lithobrake.results.journey_results import DeliveryResults
 from lithobrake.results.json_values import from_json
-from lithobrake.results.shares import CountedShare, Level, SampleShares
-from lithobrake.results.site_results import SiteResults
-from lithobrake.study import Study
+from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.results.site_results import KernelNumbers, SiteResults
+from lithobrake.study import BUILT_IN_BODIES, Study
+from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.quantities import FLIGHTS_FILE, TOUCHDOWNS_FILE
+
+
+def site_results(site: Site) -> SiteResults:
+    """The body at the medians, and the acceleration of a point at rest on the ground at the site."""
+    study, body, medians, effective = site.study, site.body, site.medians, site.acceleration
+    heads, partner = site.has_heading, None if body.partner is None else body.partner.body.name
+    extents, centroid, place = (
+        (x, y, z)
+        for x, y, z in (
+            np.ptp(body.shape.vertices, axis=0).tolist(),
+            body.shape.centroid.tolist(),
+            body.shape.surface_point(medians["latitude_deg"], medians["longitude_deg"]).tolist(),
+        )
+    )
+    return SiteResults(
+        body=study.site.body if study.site.body in BUILT_IN_BODIES else "mesh",
+        product_id=body_product(study),
+        mass_kg=body.mass,
+        bulk_density_kg_m3=body.density,
+        spin_period_s=body.spin_period,
+        kernels=_of_kernels(study),
+        extents_m=extents,
+        facet_count=len(body.shape.faces),
+        centroid_m=centroid,
+        partner=partner,
+        partner_distance_m=None if partner is None else float(body.orbit.distance),
+        latitude_deg=medians["latitude_deg"],
+        longitude_deg=medians["longitude_deg"],
+        heading_deg=medians["heading_deg"] if heads else None,
+        place_m=place,
+        effective_acceleration_outward=float(effective[2]),
+        effective_acceleration_along_heading=float(effective[0]) if heads else None,
+        # In axes that do not turn, from the body alone.
+        escape_speed_m_s=site.escape_speed,
+        warning=site.warning,
+        rotation=site.rotation_words,
+        gravity_warning=site.gravity_warning,
+    )
+
+
+def body_product(study: Study) -> str | None:
+    """The product of an archive that the mesh of the body is, as its label has it."""
+    return None if study.site.body in BUILT_IN_BODIES else product_id(labelled_mesh(Path(study.site.body)))
+
+
+def _of_kernels(study: Study) -> KernelNumbers | None:
+    """What was read from kernels; None without any."""
+    spin, place = kernel_spin(study.site), kernel_partner(study.site)
+    if spin is None:
+        return None
+    own = (spin.period, spin.pole_right_ascension_deg, spin.pole_declination_deg, spin.prime_meridian_deg)
+    partner = () if place is None else (place.longitude_deg, place.latitude_deg, place.distance, place.period)
+    return KernelNumbers(*own, *partner)
+
 
 # In the order of the summary.
 FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
@@ -155,3 +218,32 @@ def _ends(
 def proportion(count: int, total: int) -> CountedShare:
     """A count and its share of a total; no interval, which would have to hold for other beds and places."""
     return CountedShare(count, count / total, None, None)
+
+
+LEVELS = (0.05, 0.5, 0.95)
+POSITION = tuple(f"position_{axis}" for axis in "xyz")
+
+
+def delivery_results(job: Job, first: DesignRuns, journey_count: int) -> DeliveryResults:
+    """Those of a folder; first: its first touchdowns. Raises DamagedFileError for files that are not a study's."""
+    columns = ("touchdown", "latitude_deg", "longitude_deg", *POSITION)
+    rows = [row for row in read_rows(job.folder / TOUCHDOWNS_FILE, columns, AGAIN) if row["touchdown"] == "0"]
+    latitude, longitude = (np.array([float(row[name]) for row in rows]) for name in columns[1:3])
+    density = highest_density(np.array([[float(row[name]) for name in POSITION] for row in rows]), SHARES)
+    flights = read_rows(job.folder / FLIGHTS_FILE, ("begin_s",), AGAIN)
+    descents = np.array([-float(row["begin_s"]) for row in flights if float(row["begin_s"]) < 0.0])
+    return DeliveryResults(
+        count=len(rows),
+        of=journey_count,
+        speed=_spread(first.inputs["impact.speed"]),
+        incidence_deg=_spread(first.inputs.get(MEAN_INCIDENCE, first.inputs["impact.incidence_deg"])),
+        descent_s=_spread(descents) if len(descents) else None,
+        ellipse=place_ellipses(job.study, latitude, longitude),
+        regions=rest_regions(density),
+        why_no_regions=density.why,
+    )
+
+
+def _spread(values: np.ndarray) -> tuple[float, float, float]:
+    low, median, high = np.quantile(values, LEVELS).tolist()
+    return low, median, high

@@ -1,18 +1,31 @@
-"""How the journeys of a study ended, with intervals over beds: shares, times, places and attitudes at rest."""
+"""How the journeys of a study ended, over beds: shares, times, places, attitudes, soils and sky."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lithobrake.analysis import highest_density, quantile_estimate, share_estimate
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.regions import SHARES, rest_regions
-from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
-from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, RestQuantiles
+from lithobrake.pipeline.answer.run_answers import SHARES, rest_regions, why_no_interval
+from lithobrake.pipeline.design.lander_attitude import seen, tells_attitude
+from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
+from lithobrake.results.journey_results import (
+    EndShare,
+    JourneyRest,
+    Probability,
+    RestQuantile,
+    RestQuantiles,
+    SideResults,
+    SkyResults,
+    SoilResults,
+)
 from lithobrake.study import Study
-from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import JOURNEYS_FILE
+from lithobrake.study.lander_section import SIDES, side_words, sides_down
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.quantities import JOURNEYS_FILE, SKY_FILE, SOIL, TOUCHDOWNS_FILE
 
 MEDIAN, Q95 = 0.5, 0.95
 
@@ -111,3 +124,114 @@ def end_share(
     """
     found = share_estimate(met.astype(float), bed, explained=explained, why=why)
     return EndShare(int(met.sum()), found.share, found.lower, found.upper, found.why)
+
+
+Sides = dict[str, SideResults]
+
+
+def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
+    """By side what the first touchdowns gave; empty where there is one side alone, or attitudes are not told.
+
+    returns: share of the flights of each run that return, [run_count], NaN where that is not known.
+    """
+    side, bed, why = _sides(study, runs), runs.inputs["bed"], why_no_interval(study)
+    ratio = runs.output("speed_out") / runs.inputs["impact.speed"]
+    found = {}
+    for name in _named(side):
+        own = side == name
+        share = share_estimate(returns[own], bed[own], why=why)
+        found[name] = SideResults(
+            words=side_words(study.lander, name),
+            landings=int(own.sum()),
+            speed_ratio=rest_quantile(ratio[own], bed[own], MEDIAN, why),
+            returns=EndShare(int((returns[own] == 1.0).sum()), share.share, share.lower, share.upper, share.why),
+        )
+    return found
+
+
+def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: DesignRuns, table: JourneyTable) -> Sides:
+    """The same with what the journeys of these first touchdowns came to, and what all their touchdowns did."""
+    side, every, why = _sides(study, runs), _sides(study, touchdowns), why_no_interval(study)
+    captured = np.array(touchdowns.outcomes) == TouchdownOutcome.CAPTURED
+    found = {}
+    for name, one in sides.items():
+        own, those = side == name, every == name
+        time = np.where(table.rests, table.numbers["time_s"], np.nan)[own]
+        found[name] = replace(
+            one,
+            at_rest=end_share(table.rests[own], table.bed[own], why),
+            time_s=rest_quantile(time, table.bed[own], MEDIAN, why),
+            touchdowns=int(those.sum()),
+            rests=end_share(captured[those], touchdowns.inputs["bed"][those], why),
+        )
+    return found
+
+
+def _sides(study: Study, runs: DesignRuns) -> np.ndarray:
+    """The side that faces the ground at each touchdown [run_count]; "" where attitudes are not told."""
+    if not tells_attitude(runs.inputs):
+        return np.full(runs.run_count, "")
+    return sides_down(study.lander, seen(runs.inputs)[0])
+
+
+def _named(side: np.ndarray) -> list[str]:
+    """The sides that occur, where they are several."""
+    names = np.unique(side).tolist()
+    return names if len(names) > 1 else []
+
+
+def soil_shares(job: Job, table: JourneyTable) -> dict[str, SoilResults]:
+    """By region, in the order of the study file and elsewhere last; empty for a study that has one soil."""
+    if not job.study.soil:
+        return {}
+    rows = read_rows(job.folder / TOUCHDOWNS_FILE, ("journey", "outcome", *SOIL), AGAIN)
+    journey, soil = np.array([int(row["journey"]) for row in rows]), np.array([row["soil"] for row in rows])
+    captured = np.array([row["outcome"] for row in rows]) == TouchdownOutcome.CAPTURED
+    soils, why, found = Soils(job.site), why_no_interval(job.study), {}
+    for name, area in soils.area_shares().items():
+        there = soil == name
+        rests = np.isin(np.arange(len(table.end)), journey[there & captured])
+        found[name] = SoilResults(
+            area_share=area,
+            touchdowns=int(there.sum()),
+            rests=end_share(captured[there], table.bed[journey[there]], why) if there.any() else None,
+            at_rest=end_share(rests, table.bed, why),
+            outlines=soils.outlines(name),
+        )
+    return found
+
+
+LOW = 0.05
+
+
+def sky_results(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[str, SkyResults]:
+    """By the body that the study asks for; empty where it asks for none or no lander rests."""
+    if not study.sky.bodies or not table.rests.any():
+        return {}
+    rows = read_rows(folder / SKY_FILE, ("journey", "body", "day_fraction", "least_day_fraction"), AGAIN)
+    return {name: _of(study, [row for row in rows if row["body"] == name], table) for name in study.sky.bodies}
+
+
+def _of(study: Study, rows: list[dict[str, str]], table: JourneyTable) -> SkyResults:
+    """The results of one body."""
+    why, bed = why_no_interval(study), table.bed[[int(row["journey"]) for row in rows]]
+
+    def column(name: str) -> np.ndarray:
+        return np.array([float(row[name] or "nan") for row in rows])
+
+    def probability(values: np.ndarray) -> Probability:
+        found = share_estimate(values, bed, why=why)
+        return Probability(found.share, found.lower, found.upper, found.why)
+
+    seen = column("day_fraction")
+    sides = {side: column(f"side_{side}") for side in SIDES if rows[0][f"side_{side}"]}
+    return SkyResults(
+        day_fraction=rest_quantile(seen, bed, MEDIAN, why),
+        day_fraction_q05=rest_quantile(seen, bed, LOW, why),
+        least_day_fraction=rest_quantile(column("least_day_fraction"), bed, MEDIAN, why),
+        probability=probability(seen),
+        never=end_share(seen == 0.0, bed, why),
+        sides={side: rest_quantile(values, bed, MEDIAN, why) for side, values in sides.items()},
+        side_probabilities={side: probability(values) for side, values in sides.items()},
+        dark_sides={side: end_share(values == 0.0, bed, why) for side, values in sides.items()},
+    )

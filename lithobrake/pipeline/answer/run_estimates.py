@@ -1,35 +1,249 @@
 """What the drawn runs say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.analysis import (
+    LEVEL,
+    IntervalEstimate,
     chaos_variance,
     direction_estimate,
     mean_estimate,
     quantile_estimates,
+    regression_terms,
+    share_estimate,
     soil_total_effect,
+    variance_shares,
 )
-from lithobrake.pipeline.answer.first_sides import first_sides
-from lithobrake.pipeline.answer.missing_landings import described, missing_landings, missing_warning
-from lithobrake.pipeline.answer.run_shares import flight_estimates, return_fraction, run_shares
-from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.answer.typed_estimates import direction, finite_estimate, variance_part
-from lithobrake.pipeline.answer.variance_of_runs import parts_of_variance
-from lithobrake.pipeline.fly.flights import QUANTILES
-from lithobrake.pipeline.fly.run_flights import RunFlights, RunImpacts
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
+from lithobrake.pipeline.answer.run_answers import (
+    KNOWN,
+    LOST,
+    described,
+    left_in_flight,
+    missing_landings,
+    missing_warning,
+    why_no_interval,
+)
+from lithobrake.pipeline.answer.typed_estimates import (
+    counted,
+    direction,
+    finite_estimate,
+    fraction,
+    variance_part,
+    variance_parts,
+)
+from lithobrake.pipeline.design.design import FLOWN, GRAIN, DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import independent_terms
+from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.flights import QUANTILES
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers
 from lithobrake.results.json_values import to_json
-from lithobrake.results.run_results import OutputDirection, OutputEstimate, RunResults, SideRuns, VarianceParts
-from lithobrake.results.shares import Estimate
+from lithobrake.results.run_results import (
+    CountedShare,
+    Estimate,
+    OutputDirection,
+    OutputEstimate,
+    ReturnFraction,
+    RunResults,
+    RunShares,
+    SideRuns,
+    VarianceParts,
+)
 from lithobrake.results.summary import Estimates
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.study import Study
+from lithobrake.study.touchdown_model import SURFACE
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 
-FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
-RETURNS = "returns"
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+
+RETURNS, MISSING = "returns", "missing"
+CAPTURED = TouchdownOutcome.CAPTURED.value
+SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
+# These add up to 1; every other share holds some of them.
+PARTS = (*FlightStatus, CAPTURED)
+
+
+def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> ReturnFraction:
+    """The return fraction with its interval, which covers whatever became of the landings without an outcome."""
+    return _share(study, runs, flights.returns)
+
+
+def run_shares(study: Study, runs: DesignRuns, flights: RunFlights, returns: ReturnFraction) -> RunShares:
+    """Every fate of all landings as a share of 1, by one estimator; returns: the estimate of the return fraction.
+
+    count: flights that ended so, of FLIGHT_COUNT a landing; one that was captured, or has no outcome, counts as so
+    many. The parts of PARTS add up to 1: landings without an outcome, which `missing` counts, are taken as like those
+    that left in flight across the edge of the bed, and the interval of each part covers all that they may have done.
+    """
+    counts, found = flights.fates.sum(axis=1), {}
+    for name, ended in _events(flights.fates).items():
+        share = np.where(counts > 0, ended / np.maximum(counts, 1), np.nan)
+        found[name] = counted(int(ended.sum()), _share(study, runs, share))
+    found[RETURNS] = counted(round(float(np.nansum(flights.returns * FLIGHT_COUNT))), returns)
+    _balance(found)
+    why = why_no_interval(study)
+    for outcome in (*LOST, MISSING):
+        met = ~np.isin(runs.outcomes, KNOWN) if outcome == MISSING else np.array(runs.outcomes) == outcome
+        known = fraction(share_estimate(met.astype(float), runs.inputs["bed"], why=why))
+        found[str(outcome)] = counted(FLIGHT_COUNT * int(met.sum()), known)
+    flown = int(flights.fates[:, : len(FlightStatus)].sum())
+    return RunShares(FLIGHT_COUNT * runs.run_count, flown, LEVEL, why, found)
+
+
+def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> ImpactNumbers:
+    """Quantiles of time, speed and incidence of the impacts that end the flights of the runs, beds as units."""
+    bed, table = runs.inputs["bed"].astype(int)[impacts.run], {}
+    several = len(np.unique(bed)) > 1
+    landings = f"the flights of {len(np.unique(impacts.run))} of {runs.run_count} landings that return"
+    keys = [f"quantile_{level:g}" for level in QUANTILES]
+    for name, values in impacts.numbers.items() if len(bed) else ():
+        points = np.quantile(values, QUANTILES, method="hazen").tolist()
+        ends: list[tuple[float, float] | None] = [None] * len(QUANTILES)
+        if why is None and several:
+            found = quantile_estimates(values, bed, QUANTILES)
+            points, ends = [one.value for one in found], [_bounds(one) for one in found]
+        quantiles, intervals = (dict(zip(keys, one, strict=True)) for one in (points, ends))
+        table[name] = ImpactNumber(quantiles, intervals, landings)
+    return ImpactNumbers(**table)
+
+
+def _bounds(one: IntervalEstimate) -> tuple[float, float] | None:
+    """Bounds of a quantile; few beds give none of a tail."""
+    return (one.lower, one.upper) if np.isfinite([one.lower, one.upper]).all() else None
+
+
+def _events(fates: np.ndarray) -> dict[str, np.ndarray]:
+    """Flights of each run that ended in each way, [run_count]."""
+    by_fate = {str(fate): fates[:, column] for column, fate in enumerate(FATES)}
+    return by_fate | {CAPTURED: by_fate[SETTLED] + by_fate[LOFTED]}
+
+
+def _balance(table: dict[str, CountedShare]) -> None:
+    """Let the parts add up to the return fraction and to 1: each has a regression on the inputs of its own.
+
+    What is left over goes to the parts in proportion to their variances (least-squares adjustment to a known total).
+    Source: [Deming-1940].
+    """
+    names = [*(str(name) for name in PARTS if name not in (FlightStatus.IMPACT, CAPTURED)), LOFTED]
+    weights = np.array([table[name].share * (1.0 - table[name].share) for name in names])
+    left = 1.0 - table[RETURNS].share - sum(table[name].share for name in names)
+    if weights.sum() > 0.0:
+        for name, part in zip(names, (left * weights / weights.sum()).tolist(), strict=True):
+            table[name] = _moved(table[name], max(table[name].share + part, 0.0))
+    impact, settled = FlightStatus.IMPACT.value, table[SETTLED].share
+    table[impact] = _moved(table[impact], max(table[RETURNS].share - settled, 0.0))
+    table[CAPTURED] = _moved(table[CAPTURED], settled + table[LOFTED].share)
+
+
+def _moved(one: CountedShare, share: float) -> CountedShare:
+    """Another share, which its interval always holds."""
+    if one.lower is None or one.upper is None:
+        return replace(one, share=share)
+    return replace(one, share=share, lower=min(one.lower, share), upper=max(one.upper, share))
+
+
+def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> ReturnFraction:
+    """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
+    inputs = DrawnDesign(study).inputs
+    if study.soil:
+        # On the soils of regions the grains of a run follow another law than the study gives for [grain].
+        inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
+    terms = regression_terms(inputs, runs.columns(list(inputs)))
+    bed, why = runs.inputs["bed"], why_no_interval(study)
+    return fraction(share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why))
+
+
+# Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
+SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
+Inputs = dict[str, tuple["Distribution", np.ndarray]]
+
+
+def parts_of_variance(
+    job: Job, runs: DesignRuns, y: np.ndarray, of: str, twins: np.ndarray | None = None
+) -> VarianceParts | None:
+    """Parts of the variance of y [run_count], NaN where a run has none; None where the runs cannot tell.
+
+    of: which runs it describes, in words. twins [pair_count]: differences of y between twins, where there are any.
+    """
+    return _parts(job, runs, _touchdown_inputs(job, runs), y, of, twins)
+
+
+def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[str, VarianceParts | None]:
+    """Parts of the variance of how and where journeys end, by their delivery and first touchdowns, runs.
+
+    table: of the journeys of these runs, in their order. Whether a lander comes to rest is 1 or 0.
+    """
+    rests, everything = table.rests, f"{len(table.end)} journeys"
+    of_rest = f"{int(rests.sum())} of {len(rests)} journeys that ended at rest"
+    numbers = {
+        "at_rest": (rests.astype(float), everything),
+        "time_s": (np.where(rests, table.numbers["time_s"], np.nan), of_rest),
+        "distance_m": (np.where(rests, table.numbers["distance"], np.nan), of_rest),
+    }
+    inputs = _touchdown_inputs(job, runs) | _delivery_inputs(job, runs)
+    return {name: _parts(job, runs, inputs, y, of, None) for name, (y, of) in numbers.items()}
+
+
+def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
+    """The uncertain inputs of the touchdowns with their laws, and their values [run_count].
+
+    A place that is drawn by a law of its own is a place like any other.
+    """
+    from lithobrake.chaos import Empirical
+
+    flown = [name for name in FLOWN if job.design.is_flown and np.ptp(runs.inputs[name]) > 0.0]
+    told = {name: Empirical(runs.inputs[name].tolist()) for name in flown}
+    values = dict(runs.inputs)
+    if job.design.study.site.roughness_deg and not job.design.is_flown:
+        # Seen from the ground that each lander meets, its impact has another distribution than the study gives.
+        drawn = job.design.delivered_rows
+        values |= {name: np.array([row[name] for row in drawn]) for name in job.design.soil_inputs}
+    found = {name: (law, values[name]) for name, law in (job.design.soil_inputs | told).items()}
+    return found | _soil_inputs(job, runs)
+
+
+def _soil_inputs(job: Job, runs: DesignRuns) -> Inputs:
+    """The soils that each journey draws, whatever the regions of its touchdowns; nothing where there is one soil."""
+    if not job.study.soil:
+        return {}
+    journeys, soils = runs.inputs["journey"].astype(int).tolist(), Soils(job.site)
+    own, drawn = [job.design.delivered_rows[journey] for journey in journeys], soils.drawn(journeys)
+    of_grain = {name: law for name, law in job.design.soil_inputs.items() if name.startswith(GRAIN)}
+    elsewhere = {name: (law, np.array([one[name] for one in own])) for name, law in of_grain.items()}
+    return elsewhere | {name: (law, drawn[name]) for name, law in soils.inputs.items()}
+
+
+def _delivery_inputs(job: Job, runs: DesignRuns) -> Inputs:
+    """Where each journey is delivered, likewise; what flies landers to the ground tells that by their impacts alone."""
+    if job.design.is_flown:
+        return {}
+    sites = job.site.sampled(runs.run_count)
+    return {f"site.{key}": (law, sites[key]) for key, law in job.site.distributions.items()}
+
+
+def _parts(
+    job: Job, runs: DesignRuns, inputs: Inputs, y: np.ndarray, of: str, twins: np.ndarray | None
+) -> VarianceParts | None:
+    if not inputs:
+        return None
+    laws = {name: law for name, (law, _) in inputs.items()}
+    x = np.column_stack([values for _, values in inputs.values()])
+    soil = [key for key in laws if key.startswith(SOIL)]
+    attitude = independent_terms(job.design, runs.inputs)
+    found = variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
+    return None if found is None else variance_parts(found, of)
+
+
+ESTIMATES_FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 
 
@@ -58,7 +272,7 @@ def estimate(job: Job) -> None:
         runs=_counts(job, runs, values),
         sides=first_sides(study, runs, returns),
     )
-    job.folder.write_json(FILE, to_json(estimates))
+    job.folder.write_json(ESTIMATES_FILE, to_json(estimates))
 
 
 def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:

@@ -10,9 +10,16 @@ from lithobrake.analysis import (
     ShareEstimate,
     VarianceShares,
 )
-from lithobrake.results.limit_state_results import LimitStateInput, LimitStateResult, LimitStateRuns
-from lithobrake.results.run_results import OutputDirection, VariancePart, VarianceParts
-from lithobrake.results.shares import CountedShare, Estimate, ReturnFraction, ShareInterval
+from lithobrake.results.questions import LimitStateInput, LimitStateResult, LimitStateRuns
+from lithobrake.results.run_results import (
+    CountedShare,
+    Estimate,
+    OutputDirection,
+    ReturnFraction,
+    ShareInterval,
+    VariancePart,
+    VarianceParts,
+)
 
 NO_BOUNDS = (None, None)
 

@@ -4,7 +4,6 @@ Run r of both came down on the same bed at the same place in the same attitude a
 answers cancels. Studies of which that does not hold are refused.
 """
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,18 +12,17 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
-from lithobrake.pipeline.fly.run_flights import RunFlights
-from lithobrake.pipeline.folder.notes import REMEDY
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.comparison import ComparedAnswer, ComparedNumber, StudyComparison
-from lithobrake.results.intact import STUDY_FILE, intact_file
 from lithobrake.results.json_values import to_json
+from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.study_files import STUDY_FILE, intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
@@ -128,14 +126,13 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
     page, numbers = comparison_files(out)
     texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
     write_comparison(comparison, texts, out)
-    with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(comparison), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(numbers, to_json(comparison))
     return page, numbers
 
 
 def comparison_lines(comparison: StudyComparison) -> list[str]:
     """A comparison for a terminal: which studies, and a line for each answer."""
-    from lithobrake.report.words.comparison_words import lines
+    from lithobrake.report.words.numbers import lines
 
     return lines(comparison)
 

@@ -13,20 +13,19 @@ import numpy as np
 from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
-from lithobrake.analysis.limit_state_evaluation import limit_state_margin, limit_state_met
+from lithobrake.analysis.limit_states import limit_state_margin, limit_state_met
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.answer.failing_runs import OF_TOUCHDOWN, values_of_runs
-from lithobrake.pipeline.answer.scope import why_no_interval
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
-from lithobrake.pipeline.runs.touchdown_runs import touchdowns
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.limit_state import LimitState
@@ -73,6 +72,7 @@ def rare_failure(
         try:
             found = landings.simulation(landing_count)
         except BaseException:
+            # What is under way would be waited for otherwise; finished landings are in the ledger.
             executor.shutdown(cancel_futures=True)
             raise
         if landings.reused_count:
@@ -104,7 +104,6 @@ class Landings:
         return len(self.job.design.coordinates) + 1
 
     def simulation(self, landing_count: int) -> SubsetResult:
-        """Subset simulation with so many landings a level."""
         return subset_simulation(
             self.margins,
             self.dimension,
@@ -118,6 +117,7 @@ class Landings:
     def beds(self, points: np.ndarray) -> np.ndarray:
         """Beds of points [count, dimension], [count]."""
         shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        # Below 1, as the clip above keeps the last bed from being passed.
         return (shares * self.job.study.bed_count).astype(int)
 
     def margins(self, points: np.ndarray) -> np.ndarray:
@@ -137,6 +137,7 @@ class Landings:
         self.made_count += len(made.records)
         self.reused_count += made.reused_count
         values = values_of_runs(DesignRuns.of(made))
+        # The thresholds of all levels are compared with each other, so margins keep the scale of the first.
         self.scale = self.scale or {output: self._spread(output, values[output]) for output in self.state.outputs}
         self.unknown_count += int(np.isnan(limit_state_met(self.state, values)).sum())
         return limit_state_margin(self.state, values, self.scale)
@@ -151,7 +152,6 @@ class Landings:
         return float(np.nanstd(values)) or 1.0
 
     def told(self, found: SubsetResult, landing_count: int) -> dict[str, Any]:
-        """What rare_NAME.json holds."""
         study, why = self.job.study, why_no_interval(self.job.study)
         content = {
             "condition": self.state.text,
@@ -203,7 +203,6 @@ def _limit_state(study: Study, name: str) -> LimitState:
 
 
 def _statement(name: str, found: dict[str, Any]) -> str:
-    """The result in a sentence."""
     said = f"probability {found['probability']:.2g}"
     if found["lower"] is not None:
         said += f" ({100 * found['level']:.0f} % interval {found['lower']:.2g} to {found['upper']:.2g})"
@@ -219,7 +218,6 @@ def _statement(name: str, found: dict[str, Any]) -> str:
 
 
 def _few_origins(origins: float, bed_count: int) -> str | None:
-    """What to say where equal runs of the command would scatter much."""
     if origins >= FEW_ORIGINS:
         return None
     what, more = ("beds", "bed.bed_count") if bed_count > 1 else ("first landings", "--landings")

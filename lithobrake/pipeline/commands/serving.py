@@ -1,28 +1,30 @@
-"""The models of a study as a server gives them: a landing, the emulator, a flight."""
+"""The models of a study as a server gives them, evaluated in a process that is ended where it takes too long."""
 
 import math
-from collections.abc import Mapping, Sequence
-from functools import cached_property
+import pickle
+import time
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, wait
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.drawn_landings import DrawnLandings
-from lithobrake.pipeline.emulate.outgoing import VELOCITY
-from lithobrake.pipeline.emulated.touchdown_emulator import FILE as OF_TOUCHDOWNS
-from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator, why_no_emulator
-from lithobrake.pipeline.folder.notes import REMEDY
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
-from lithobrake.pipeline.runs.touchdown_runs import model_of
+from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
-from lithobrake.results.intact import intact_file
-from lithobrake.serve import ServedModel
+from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
+from lithobrake.results.study_files import intact_file
+from lithobrake.serve import ClientGoneError, ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
 from lithobrake.study.touchdown_model import draw
@@ -66,13 +68,13 @@ class ServedStudy:
         return found
 
     def _has_touchdown_emulator(self) -> bool:
-        """Whether the study has journeys, and these an emulator of all their touchdowns."""
-        path = self.folder / OF_TOUCHDOWNS
-        return path.is_file() and why_no_emulator(self.folder.read_json(OF_TOUCHDOWNS)) is None
+        path = self.folder / TOUCHDOWN_EMULATOR_FILE
+        return path.is_file() and why_no_emulator(self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
-        intact_file(self.folder.path, OF_TOUCHDOWNS, REMEDY)
+        # A file that was edited would be served as if it were the study's.
+        intact_file(self.folder.path, TOUCHDOWN_EMULATOR_FILE, REMEDY)
         return TouchdownEmulator.read(self.design, self.folder)
 
     def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
@@ -86,6 +88,7 @@ class ServedStudy:
         emulator, seed = self._touchdowns, _seed(config)
         inputs = {name: np.array([value]) for name, value in zip(emulator.plain_inputs, point, strict=True)}
         inputs |= emulator.attitude_of(_attitude(config, seed))
+        # One refit a draw, so that draws over many seeds contain the scatter between beds.
         refit = np.array([seed % len(emulator.refits)])
         answers = emulator.answers(inputs, np.zeros((1, 3)), refit, seed)
         if not answers.is_known[0]:
@@ -107,6 +110,7 @@ class ServedStudy:
         Raises ValueError for keys that a landing does not read, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
+        # All draws are made first and then replaced, so that a number that is given changes none of the others.
         values = draw(self.study, self.design.medians | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
@@ -185,7 +189,6 @@ def landing_vector(outcome: str, outputs: Mapping[str, float]) -> list[float]:
 
 
 def _refuse(study: Study, values: Mapping[str, Any]) -> None:
-    """Raise ValueError, on one line, for numbers that the study file may not have."""
     try:
         fixed_study(study, values)
     except StudyError as error:
@@ -199,7 +202,6 @@ def _refuse_keys(config: Mapping[str, Any], allowed: Sequence[str]) -> None:
 
 
 def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The inputs of a configuration of RUN_KEYS."""
     _refuse_keys(config, RUN_KEYS)
     given = config.get("inputs", {})
     if not isinstance(given, Mapping):
@@ -208,9 +210,9 @@ def _inputs(config: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _attitude(config: Mapping[str, Any], seed: int) -> Rotation:
-    """The attitude of a touchdown in its frame: as given, or a random one."""
     given = config.get("orientation")
     if given is None:
+        # A stream of its own, so that the attitude and the draw of the touchdown are independent.
         return Rotation.random(1, rng=np.random.default_rng([seed, 1]))
     if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)) or not any(given):
         raise ValueError(f"config.orientation is {show(given)}; allowed: a quaternion of four numbers w, x, y, z")
@@ -223,3 +225,76 @@ def _seed(config: Mapping[str, Any]) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**53:
         raise ValueError(f"config.seed is {seed!r}; allowed: a whole number from 0 to 2^53")
     return seed
+
+
+# Longest evaluation [s], where neither the command nor the study's campaign.wall_limit says another.
+TIME_LIMIT = 600.0
+# Whether the client is still there is looked at so often [s].
+_LOOK = 0.2
+
+
+class EvaluationProcess:
+    """Evaluates the models of a study for `model_server`, one at a time, in a process that can be ended.
+
+    time_limit: of one evaluation [s]; the first in a process waits for compiled code to be loaded, too, and on a new
+    machine for its compilation.
+    """
+
+    def __init__(self, study: ServedStudy, time_limit: float | None = None) -> None:
+        """Prepare it; the process starts with the first evaluation. Raises ValueError for a limit that is none."""
+        if time_limit is not None and not time_limit > 0.0:
+            raise ValueError(f"the time limit is {time_limit:g} s; allowed: above 0")
+        self.time_limit = time_limit or study.study.campaign.wall_limit or TIME_LIMIT
+        # Pickled once: the process recognises the study by these bytes, and keeps what it has read of it.
+        self._content = pickle.dumps(study)
+        self._executor: LocalExecutor | None = None
+
+    def __call__(
+        self, model: ServedModel, point: list[float], config: Mapping[str, Any], gone: Callable[[], bool]
+    ) -> list[float]:
+        """Evaluate, as lithobrake.serve.Evaluate does.
+
+        Raises TimeoutError for one that takes too long, ClientGoneError for one that nobody waits for.
+        """
+        self._executor = self._executor or LocalExecutor(1)
+        future = self._executor.submit(evaluate_served, self._content, model.name, point, config)
+        since = time.monotonic()
+        while not wait([future], _LOOK).done:
+            if gone():
+                self.end()
+                raise ClientGoneError
+            if time.monotonic() - since > self.time_limit:
+                self.end()
+                raise TimeoutError(
+                    f"the evaluation took more than {self.time_limit:g} s and was ended; ask for another point, or "
+                    "raise the limit (lithobrake serve --time-limit)"
+                )
+        try:
+            answer: list[float] = future.result()
+        except (WorkerDiedError, BrokenExecutor) as error:
+            self.end()
+            raise RuntimeError(f"the evaluation was lost: {error}") from None
+        return answer
+
+    def end(self) -> None:
+        """End the process; the next evaluation starts another one."""
+        if self._executor is not None:
+            self._executor.shutdown(cancel_futures=True)
+            self._executor = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.end()
+
+
+def evaluate_served(content: bytes, name: str, point: list[float], config: Mapping[str, Any]) -> list[float]:
+    """Evaluate a model of a pickled ServedStudy in this process, which keeps the study with what it has read."""
+    return _served(content)[name].evaluate(point, config)
+
+
+@lru_cache(maxsize=1)
+def _served(content: bytes) -> dict[str, ServedModel]:
+    study: ServedStudy = pickle.loads(content)
+    return {model.name: model for model in study.models()}

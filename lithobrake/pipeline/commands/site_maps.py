@@ -1,38 +1,110 @@
-"""A map of sites: one delivery to a grid of cells over the body, by the emulator of a finished study of journeys."""
+"""A map of sites: one delivery to a grid of cells over the body, and what it says in sentences."""
 
-import csv
-import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.files.atomic import atomic_path
-from lithobrake.pipeline.answer.scope import why_no_interval
-from lithobrake.pipeline.answer.shares_over_refits import Refits
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.touchdown_emulator import FILE as EMULATOR
-from lithobrake.pipeline.emulated.touchdown_emulator import why_no_emulator
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.files.atomic import write_json, write_rows
+from lithobrake.pipeline.answer.emulated_ends import Refits
+from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sites.site_agreement import first_places, site_agreement
-from lithobrake.pipeline.sites.site_cells import all_at_rest, site_cells
-from lithobrake.pipeline.sites.site_ground import SiteGround
-from lithobrake.pipeline.sites.site_landers import follow_sites
-from lithobrake.pipeline.sites.site_words import with_words
+from lithobrake.pipeline.site_grid import (
+    SiteGround,
+    all_at_rest,
+    first_places,
+    follow_sites,
+    site_agreement,
+    site_cells,
+)
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.json_values import to_json
-from lithobrake.results.site_map import SiteMap
+from lithobrake.results.site_results import SiteMap
 from lithobrake.study import Study, StudySource
-from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.percentages import LEVEL, percent, span, with_interval
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
+
+HOUR = 3600.0
+NOT_COMPARED = "The emulator was not compared with landings: journey.emulated_count is 0."
+
+
+def with_words(site_map: SiteMap) -> SiteMap:
+    return replace(site_map, statement=_statement(site_map), of=_population(site_map))
+
+
+def place_words(latitude_deg: float, longitude_deg: float) -> str:
+    """A place as 12 N 30 W."""
+    north, east = "N" if latitude_deg >= 0.0 else "S", "E" if longitude_deg >= 0.0 else "W"
+    return f"{abs(latitude_deg):.0f} {north} {abs(longitude_deg):.0f} {east}"
+
+
+def _statement(found: SiteMap) -> str:
+    total, answered = len(found.cells), [site for site in found.cells if site.ends is not None]
+    if not answered or found.at_rest is None:
+        return (
+            f"None of {total} sites has a result: their impacts are outside the range of the touchdowns of the study "
+            f"({found.cells[0].beyond}). Deliver the landers of the study all over the body."
+        )
+    shares = [site.ends.at_rest.share for site in answered if site.ends is not None]
+    where = f"all {total} sites" if len(answered) == total else f"the {len(answered)} of {total} sites with a result"
+    said = (
+        f"Within {found.duration_s / HOUR:.3g} h {with_interval(found.at_rest, level=found.level)} of the landers come "
+        f"to rest over {where}, by site {span(min(shares), max(shares), 0)}."
+    )
+    best = [site for site in answered if site.not_worse]
+    if best and len(best) == len(answered) > 1:
+        said += " No site can be distinguished from the best."
+    elif best:
+        site = max(best, key=lambda one: one.ends.at_rest.share if one.ends else 0.0)
+        count = f"{len(best)} sites" if len(best) > 1 else "One site"
+        cannot = "cannot be distinguished from the best" if len(best) > 1 else "is better than every other"
+        said += f" {count} {cannot}, at {place_words(site.latitude_deg, site.longitude_deg)}."
+    return f"{said} {_compared(found)}"
+
+
+def _compared(found: SiteMap) -> str:
+    if not found.agreement:
+        return NOT_COMPARED
+    whole, *regions = found.agreement
+    agree = sum(one.agrees is True for one in regions)
+    said = (
+        f"Of the {whole.journeys} journeys of the study {with_interval(whole.landings)} come to rest by landings and "
+        f"{with_interval(whole.emulator)} by the emulator"
+    )
+    if whole.agrees is None:
+        return f"{said}."
+    verdict = "agree" if whole.agrees else "do not agree"
+    where = f" over the body, and agree in {agree} of its {len(regions)} regions" if regions else ""
+    return f"{said}: they {verdict}{where}."
+
+
+def _population(found: SiteMap) -> str:
+    intervals = (
+        f"{percent(found.level)} intervals cover other landers and other beds, by the scatter between {found.refits} "
+        f"refits of the emulator to {found.beds} beds sampled with replacement ({found.touchdowns} touchdowns), and "
+        "any outcome of landers whose outcome is unknown"
+        if found.why is None
+        else f"There are no intervals. {found.why}"
+    )
+    return (
+        f"{found.landers} landers per site, delivered as in the study except for their aim points, which are spread "
+        f"evenly over its {found.area_m2:.3g} m2; every site has the same landers. {intervals.rstrip('.')}. They do "
+        "not cover soils outside the ranges of the study, nor the model error of the emulator, which the comparison "
+        "with landings tests. A site has no result where more than 10 % of its landers have an impact outside the "
+        "range of the touchdowns of the study."
+    )
+
 
 # The stage whose emulator is asked.
 UNTIL = "emulated"
@@ -59,10 +131,11 @@ def map_sites(
     """
     shown = shown or Silent()
     cells = EqualAreaCells.of(cell_count)
+    # Before the journeys of the study are made.
     _refuse(source.study, cell_count, lander_count)
     run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
-    why = why_no_emulator(folder.read_json(EMULATOR))
+    why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
@@ -86,10 +159,13 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
             "give the arrival conditions there instead (delivery.speed, delivery.incidence_deg)"
         )
+    # Sites are compared refit by refit, so each refit has as many landers; two of one refit are the fewest that
+    # scatter.
     if lander_count < 2 * REFIT_COUNT or lander_count % REFIT_COUNT:
         raise ValueError(
             f"--landers is {lander_count}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 200"
         )
+    # All landers of all cells are followed at once, in arrays.
     if cell_count * lander_count > MOST_LANDERS:
         raise ValueError(
             f"--cells {cell_count} with --landers {lander_count} makes {cell_count * lander_count} landers; allowed: "
@@ -98,7 +174,6 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
 
 
 def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> SiteMap:
-    """The map of a study whose emulator is there."""
     study, runs = job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN)
     fitted = Refits(len(np.unique(runs.inputs["bed"])), runs.run_count, why_no_interval(study))
     ground, landers = SiteGround.of(job, cells), follow_sites(job, cells, lander_count)
@@ -117,6 +192,7 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         refits=REFIT_COUNT,
         beds=fitted.bed_count,
         touchdowns=fitted.run_count,
+        # The cells are of equal area on a sphere, which here has the volume of the body.
         area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
         at_rest=all_at_rest(landers, fitted),
         cells=site_cells(cells, landers, ground, fitted, journeys),
@@ -136,13 +212,9 @@ def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Pat
 
     page, numbers, table = site_map_files(place)
     write_sites(site_map, study_text, place)
-    with atomic_path(numbers) as draft:
-        draft.write_text(json.dumps(to_json(site_map), indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_json(numbers, to_json(site_map))
     rows = [cell.row for cell in site_map.cells]
-    with atomic_path(table) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(table, rows[0], ([row[name] for name in rows[0]] for row in rows))
     return page, numbers, table
 
 

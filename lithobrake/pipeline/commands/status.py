@@ -8,13 +8,17 @@ from typing import Any
 
 from lithobrake.campaign import RunStatus, Tally, campaign_began, ledger_tally
 from lithobrake.files.atomic import lock_holder
-from lithobrake.pipeline.commands.journeys_status import JourneysStatus, journeys_status, touchdown_keys
-from lithobrake.pipeline.commands.running_estimates import RunningEstimates, running_estimates
-from lithobrake.pipeline.folder.notes import NAME, Notes
-from lithobrake.pipeline.folder.state import STUDY_FILE, FolderState, StageState, grouped, read_state
-from lithobrake.pipeline.folder.study_folder import LOCK, FileState, StudyFolder
+from lithobrake.pipeline.commands.running_estimates import (
+    JourneysStatus,
+    RunningEstimates,
+    journeys_status,
+    running_estimates,
+    touchdown_keys,
+)
+from lithobrake.pipeline.folder_state import STUDY_FILE, FolderState, StageState, grouped, read_state
+from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, StudyFolder
 from lithobrake.results import open_study
-from lithobrake.results.journey_tables import JOURNEYS
+from lithobrake.results.study_files import JOURNEYS
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 
@@ -36,7 +40,6 @@ class RunsStatus:
     journeys: JourneysStatus | None = None
 
     def lines(self) -> list[str]:
-        """The runs in words."""
         lines = [*(self.journeys.lines() if self.journeys else []), self.tally.sentence()]
         lines += [
             f"{count} more runs in the ledger are landings of lithobrake rare: {name}"
@@ -92,14 +95,12 @@ class StudyStatus:
     runs: RunsStatus | None
 
     def lines(self) -> list[str]:
-        """All of it in words."""
         runs = self.runs.lines() if self.runs else []
         if self.state is None:
             return [f"{self.folder}: {'a campaign is running' if self.campaign_began else 'not running'}", *runs]
         return [_work(self.folder, self.at_work, self.state), *_files(self.at_work, self.state), *runs]
 
     def to_json(self) -> dict[str, Any]:
-        """All of it as JSON values."""
         state = self.state
         stages = [] if state is None else [_at_work(stage, self.at_work) for stage in state.stages if stage.number]
         return {
@@ -132,6 +133,8 @@ def study_status(path: Path) -> StudyStatus:
     if not ledger.is_file():
         return StudyStatus(path, holder, None, state, None)
     runs = _runs(path, state.notes, _flown(path, state), has_journeys=_has_journeys(state))
+    # The tables of journeys are written when all have ended; until then the process at work notes in its lock how many
+    # have.
     said = (holder or {}).get("journeys")
     if runs.journeys is not None and said is not None:
         runs = replace(runs, journeys=replace(runs.journeys, said=str(said)))
@@ -161,7 +164,6 @@ def _work(path: Path, holder: dict[str, Any] | None, state: FolderState) -> str:
 
 
 def _files(holder: dict[str, Any] | None, state: FolderState) -> list[str]:
-    """Which stages are current, and what is the matter with the files of the others."""
     if state.unknown:
         return [state.unknown]
     done = [stage.title for stage in state.stages if stage.is_current and stage.number]
@@ -212,9 +214,10 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float], *, has_journeys: bo
 
 def _flown(path: Path, state: FolderState) -> dict[str, float]:
     """Which share of its flights each drawn run returns in, by key; none before they have flown."""
+    # Fractions of an earlier setting would be attributed to the runs of the present one.
     if not any(stage.name == "fly_runs" and stage.is_current for stage in state.stages):
         return {}
-    from lithobrake.pipeline.answer.answer_of_run import read_shares
+    from lithobrake.pipeline.answer.run_answers import read_shares
 
     return read_shares(StudyFolder.only_read(path))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake import __version__
 from lithobrake.campaign import Command, run_key
-from lithobrake.files.hashing import content_hash, hashed_seed
+from lithobrake.files.reading import content_hash, hashed_seed
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
@@ -28,6 +28,7 @@ def bed_dependencies(study: Study) -> dict[str, Any]:
         "seed": pour_seed(study, 0),
         "bed": bed_setting(study),
         "values": {name: value for name, value in values.items() if name.startswith(("grain.", "surface."))},
+        # Options of the touchdown alone: a change of these pours no bed again.
         "contact": study.contact.model_dump(exclude={"stepping", "resolved_speed", "held_speed"}),
         "engine": engine_hash(),
     }
@@ -54,6 +55,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         return solver_dependencies(study)
     return {
         "bed": bed_dependencies(study),
+        # The numbers of the lander that a run reads are among its inputs, and so in its key already.
         "lander": study.lander.model_dump(include={"shape", "edges", "inertia", "unit"}),
         "mesh": None if study.lander.file is None else content_hash(Path(study.lander.file)),
         **_part_dependencies(study),
@@ -61,6 +63,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
         "time_limit": study.landing.time_limit,
+        # A key that came later is left out where it has no effect, so that folders of earlier versions stay current.
         **({} if study.journey is None else {"hop_height": study.journey.hop_height}),
         "version": touchdown_version(),
     }
@@ -81,6 +84,8 @@ def solver_dependencies(study: Study) -> dict[str, Any]:
     setting["lander"]["file"] = None if study.lander.file is None else content_hash(Path(study.lander.file))
     setting |= _part_dependencies(study)
     identity = [study.function] if study.function else solver_command(study, Path()).identity()
+    # Without the hash of the engine, which makes none of these touchdowns: a change of its code repeats no run of a
+    # program.
     return {"solver": identity, "setting": setting, "version": __version__}
 
 
@@ -96,14 +101,12 @@ def solver_setting(study: Study) -> dict[str, Any]:
 
 
 def solver_command(study: Study, folder: Path) -> Command:
-    """The program of a study, with its runs in a folder of the study."""
     solver = study.solver
     templates = tuple(Path(name) for name in solver.templates)
     return Command(str(solver.command), folder / "solver", templates=templates, answer=solver.answer)
 
 
 def design_dependencies(study: Study) -> dict[str, Any]:
-    """What the runs of any design depend on."""
     values = study.touchdown_values()
     inputs = uncertain(values)
     fixed = {name: value for name, value in values.items() if name not in inputs}
@@ -127,7 +130,6 @@ def _soil_dependencies(study: Study) -> dict[str, Any]:
 
 
 def _drawn_dependencies(study: Study) -> dict[str, Any]:
-    """What the draws of a run depend on, beside its seed."""
     return {
         "bed_count": study.bed_count,
         "azimuth": "random" if study.impact.azimuth_deg == "random" else "fixed",
@@ -136,6 +138,5 @@ def _drawn_dependencies(study: Study) -> dict[str, Any]:
 
 
 def touchdown_keys(study: Study, rows: Sequence[Mapping[str, float]], replicate: int) -> list[str]:
-    """The keys of these runs in the ledger."""
     context = touchdown_dependencies(study)
     return [run_key(row, study.seed, replicate, context) for row in rows]

@@ -1,5 +1,6 @@
-"""Landers on their way to their first touchdown: flown from states of another tool, or from where they are released."""
+"""Landers on their way to their first touchdown, from states of another tool or from where they are released."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -7,21 +8,91 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
-from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
-from lithobrake.pipeline.design.free_rotation import lander_inertia, turned_in_flight
-from lithobrake.pipeline.design.local_ground import on_ground
-from lithobrake.pipeline.design.release_draws import released_states
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_uniforms, met_ground
+from lithobrake.geometry.frames import directions
+from lithobrake.pipeline.design.arrivals import (
+    MEAN_INCIDENCE,
+    against_ground,
+    attitude_inputs,
+    first_uniforms,
+    icrf_to_body,
+    impact_inputs,
+    lander_inertia,
+    met_ground,
+    on_ground,
+    turned,
+    turned_in_flight,
+)
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
-from lithobrake.study.contact_checks import contact_problems
 from lithobrake.study.delivered_states import DeliveredStates, states_of
+from lithobrake.study.delivery_sections import SIDE, ReleaseSection
+from lithobrake.study.ground_checks import contact_problems
 from lithobrake.vocabulary.outcomes import FlightStatus
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Flights
+
+Array = np.ndarray
+# Coordinates of the sequence of a study beside the others.
+RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
+# Of a direction from the centre next to the pole, about which north is any.
+POLAR = 1e-9
+
+
+def released_states(release: ReleaseSection, uniforms: Array, first: int, pole: Array) -> DeliveredStates:
+    """A state for each row of uniform numbers [count, 6], in the axes of the release, numbered from `first` on.
+
+    pole: of the body in these axes, [3].
+    """
+    from scipy.special import ndtri
+
+    mean = np.array([*release.position, *release.velocity])
+    # Clipped, as ndtri is infinite at 0 and 1, where a point of the sequence may lie.
+    states = mean + spread(release, pole, ndtri(np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53)))
+    source = [f"the release of journey {first + row}" for row in range(len(states))]
+    return DeliveredStates(source, np.full(len(states), release.time), states[:, :3], states[:, 3:])
+
+
+def spread(release: ReleaseSection, pole: Array, normal: Array) -> Array:
+    """How far each state is off [m, m/s], [count, 6], by independent standard normal numbers [count, 6]."""
+    root = spread_root(release, pole)
+    # Not by a matrix product, whose rounding depends on how many rows there are.
+    return np.stack([(normal * row).sum(axis=1) for row in root], axis=1)
+
+
+def spread_root(release: ReleaseSection, pole: Array) -> Array:
+    """A matrix whose product with its transpose is the covariance of the release, [6, 6]."""
+    if release.covariance is not None:
+        return _root(np.array(release.covariance))
+    root = np.zeros((SIDE, SIDE))
+    if release.position_std is not None and release.velocity_std is not None:
+        axes = local_axes(np.array(release.position), pole).T
+        root[:3, :3], root[3:, 3:] = axes * release.position_std, axes * release.velocity_std
+    return root
+
+
+def local_axes(position: Array, pole: Array) -> Array:
+    """Up, north and east in rows, [3, 3]; up is away from the centre of the body."""
+    size = np.linalg.norm(position)
+    up = position / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+    east = np.cross(pole, up)
+    if np.linalg.norm(east) < POLAR:
+        east = np.cross(np.eye(3)[np.argmin(np.abs(up))], up)
+    east /= np.linalg.norm(east)
+    return np.stack([up, np.cross(up, east), east])
+
+
+def _root(covariance: Array) -> Array:
+    """The symmetric root of a covariance, by that of its correlations: entries have different units."""
+    variances = np.diag(covariance)
+    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    # Made symmetric, as what was written may differ by rounding, and eigh reads one half only.
+    values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T) / np.outer(scale, scale))
+    # Rounding takes an eigenvalue of 0 below it.
+    root: Array = scale[:, None] * (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+    return root
+
 
 Row = dict[str, float]
 AZIMUTH = "impact.azimuth_deg"
@@ -114,14 +185,12 @@ class Descents:
         )  # fmt: skip
 
     def _impact(self, lander: int) -> Row:
-        """Speed and incidence of a first touchdown, on the ground that is met."""
         met = impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
         if not self.study.site.roughness_deg:
             return met
         return met | {MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
 
     def _attitude(self, lander: int, row: Row) -> Row:
-        """Attitude and spin of a lander at its first touchdown, where its state has them."""
         if self.attitude is None or self.spin is None:
             return {}
         period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
@@ -156,7 +225,6 @@ def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.nd
 
 
 def _states(study: Study, first: int, uniforms: np.ndarray) -> DeliveredStates:
-    """The states of these journeys in the axes that the study names."""
     delivery = study.delivery
     assert delivery is not None
     if delivery.release is None:
@@ -169,12 +237,12 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     """Attitudes and spins at the start, fixed to the body."""
     if states.attitude is None or states.rates is None:
         return None, None
+    # The scalar stands first in the file and last in SciPy.
     given = Rotation.from_quat(np.roll(states.attitude, -1, axis=1))
     return Rotation.from_matrix(into_body) * given, turned(into_body, given.apply(states.rates))
 
 
 def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequence[str]) -> None:
-    """Raise StudyError for a state below the ground."""
     shape = site.body.shape
     for place, where in zip(position, source, strict=True):
         height = float(shape.height(place))
@@ -194,6 +262,38 @@ def _refuse_fast(study: Study, speed: np.ndarray) -> None:
     if not len(speed) or not study.has_soil:
         return
     fastest = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": float(speed.max())})})
+    # The overlap depends on the stiffness, and a region may have softer grains than [grain].
     for one in (fastest, *map(fastest.on_soil, study.soil)):
         if wrong := list(contact_problems(one)):
             raise StudyError(wrong)
+
+
+WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
+
+
+def descents_in_words(descents: Descents) -> str:
+    """Return how many landers reach the ground, when, how fast and where; and what the others do."""
+    flights, down = descents.flights, descents.touches_down
+    others = Counter(flights.status[~down].tolist())
+    said = f"Delivery: {int(down.sum())} of {len(flights)} landers reach the ground"
+    if down.any():
+        speed, hours = flights.impact_speed[down], flights.time[down] / 3600.0
+        said += (
+            f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
+            f"{100.0 * speed.max():.3g} cm/s"
+        )
+    ends = [f"{number} {WORDS.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
+    return "; ".join([said, *ends]) + "." + (_places(descents) if down.any() else "")
+
+
+def _places(descents: Descents) -> str:
+    """Where the first touchdowns lie about the aim point, whose distance is an arc of the radius there."""
+    site, places = Site(descents.study), descents.flights.position[descents.touches_down]
+    near, middle, far = np.quantile(site.ways_from_aim(places), (0.05, 0.5, 0.95))
+    shape = site.body.shape
+    latitude, longitude = shape.latitude_longitude(directions(*shape.latitude_longitude(places)).mean(axis=0))
+    return (
+        f" First touchdowns lie {middle:.3g} m from the aim point in the median (5 to 95 %: {near:.3g} to {far:.3g} "
+        f"m), about latitude {latitude:.1f} deg, longitude {longitude:.1f} deg; the aim point is at {site.aim[0]:.1f}, "
+        f"{site.aim[1]:.1f}."
+    )

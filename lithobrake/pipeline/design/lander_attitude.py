@@ -1,13 +1,15 @@
-"""The attitude of a study's lander at its touchdowns: terms that its symmetry leaves, and attitudes by a side."""
+"""The attitude of a study's lander at its touchdowns and at rest: terms, and sides that are down."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.attitude_terms import AttitudeTerms, orthonormal, seen_from_lander
-from lithobrake.pipeline.design.drawn_design import AZIMUTH, DrawnDesign
+from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, seen_from_lander
+from lithobrake.pipeline.design.design import AZIMUTH, DrawnDesign
 from lithobrake.study import Study
+from lithobrake.study.lander_section import SIDES
 from lithobrake.study.touchdown_model import lander, medians
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.quantities import ORIENTATION
@@ -61,6 +63,7 @@ def independent_terms(design: DrawnDesign, inputs: Mapping[str, np.ndarray]) -> 
     if terms is None or not tells_attitude(inputs):
         return None
     found, law = terms.at(*seen(inputs)), terms.uniform_law
+    # Attitudes that are pointed or propagated follow no law in closed form.
     if design.study.impact.orientation != "random" or design.is_flown:
         own = found - found.mean(axis=0)
         law = found.mean(axis=0), own.T @ own / len(own)
@@ -82,3 +85,13 @@ def with_side_down(down: Array, azimuth_deg: Array, turn: Array) -> Array:
     turned = Rotation.from_euler("z", azimuth_deg[:, None], degrees=True) * Rotation.from_matrix(into_frame)
     quaternions: Array = np.roll(turned.as_quat(), 1, axis=1)
     return quaternions
+
+
+def side_down(attitude: Rotation, acceleration: np.ndarray) -> tuple[str, float]:
+    """The side of the lander that points down most, and the angle [rad] between it and the plumb line.
+
+    attitude: of the lander, acceleration [m/s2]: of what rests there, both in one frame.
+    """
+    down = attitude.inv().apply(acceleration / np.linalg.norm(acceleration))
+    axis = int(np.argmax(np.abs(down)))
+    return SIDES[2 * axis + int(down[axis] < 0.0)], math.acos(min(abs(float(down[axis])), 1.0))

@@ -1,4 +1,4 @@
-"""The soils of a study by region: which region of the body a place lies in, and what the ground there is made of."""
+"""The soils of a study by region of the body, and the acceleration of what rests on the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,17 +8,44 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.pipeline.design.felt_acceleration import felt
+from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.site import Site
 from lithobrake.study import StudyError
+from lithobrake.study.ground_sections import facet_numbers
 from lithobrake.study.quantity import Scalar, uncertain
-from lithobrake.study.soil_section import facet_numbers
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
-    from lithobrake.smallbody import Shape
+    from lithobrake.smallbody import Body, Shape
+
+
+def felt(
+    body: "Body", points: np.ndarray, time: np.ndarray, mass: np.ndarray, spin_period: np.ndarray
+) -> np.ndarray:  # fmt: skip
+    """Acceleration [m/s2] of what rests on the ground, [count, 3], all body-fixed, at points [count, 3] and times [s].
+
+    The partner acts by its tide: as a point, less what it does to the body as a whole. Rotation and tide are those at
+    the times, where the body does not turn uniformly, too.
+    """
+    own: np.ndarray = body.effective_acceleration(points, mass=mass, spin_period=spin_period, time=time)
+    if body.partner is None:
+        return own
+    from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
+
+    orbit = body.orbit_with(GRAVITATIONAL_CONSTANT * mass, 2.0 * np.pi / spin_period)
+    if not np.any(orbit.distance):
+        return own
+    angle = orbit.angle + orbit.rate * time
+    centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+    centre *= np.reshape(orbit.distance, (-1, 1))
+    if body.rotation is not None:
+        centre = body.rotation.at(time).out_of_frame(centre)
+    way = centre - points
+    strength = body.partner.body.gravitational_parameter
+    near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))
+    return own + strength * (near - mean)
+
 
 Row = dict[str, float]
 # Parts of a facet along each edge, and how many parts there are at most, by which the areas of regions are summed.
@@ -105,6 +132,7 @@ class Soils:
     @cached_property
     def _map(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Latitudes and longitudes [deg] of a grid, and the place among `names` of each of its points."""
+        # Longitudes overlap by a column on either side, so that outlines reach the edges of a map.
         latitude, longitude = np.arange(-89.5, 90.0), np.arange(-180.5, 181.0)
         points, facets = self._shape.locate(latitude[:, None], longitude)
         numbers = self._numbers(points.reshape(-1, 3), facets.ravel())
@@ -137,6 +165,7 @@ class Soils:
         """The place among `names` of the region of each point [m], [count, 3], on its facet, [count]."""
         latitude, longitude = self._shape.latitude_longitude(points)
         found = np.full(len(points), len(self.site.study.soil))
+        # From the last to the first, since where regions overlap the first of the file applies.
         for number, (name, soil) in reversed(list(enumerate(self.site.study.soil.items()))):
             inside = np.full(len(points), True)
             if soil.latitude_deg is not None:
@@ -146,6 +175,7 @@ class Soils:
                 inside &= (longitude - west) % 360.0 <= (east - west) % 360.0
             if soil.facets is not None:
                 inside &= np.isin(facets, self._facets[name])
+            # Last, and only of what the other bounds leave: a slope takes the gravity of the body.
             if soil.slope_deg is not None and inside.any():
                 inside[inside] = _between(self._slopes_deg(facets[inside]), soil.slope_deg)
             found[inside] = number
@@ -153,12 +183,12 @@ class Soils:
 
     @cached_property
     def _facets(self) -> dict[str, tuple[int, ...]]:
-        """The facets that regions name by their numbers."""
         named = {name: soil.facets for name, soil in self.site.study.soil.items() if soil.facets is not None}
         return {name: facet_numbers(Path(path)) for name, path in named.items()}
 
     def _slopes_deg(self, facets: np.ndarray) -> np.ndarray:
         """Slope of each of these facets at its centre [deg], [count]."""
+        # Many places share a facet, and the gravity is worked out once for each.
         own, place = np.unique(facets, return_inverse=True)
         columns, centres = self.site.columns(len(own)), self._shape.corners[own].mean(axis=1)
         pull = felt(self.site.body, centres, self.site.clock(columns), columns["mass"], columns["spin_period"])
@@ -187,7 +217,6 @@ def _triangle_parts(count: int) -> np.ndarray:
 
 
 def _region(key: str) -> str:
-    """The region that a dotted key is of."""
     return key.split(".")[1]
 
 

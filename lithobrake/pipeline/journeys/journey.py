@@ -1,31 +1,120 @@
-"""One journey: where the lander is, what its next touchdown is given, and how it ended."""
+"""One journey: what it has in common with all, where the lander is, its next touchdown, and how it ended."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.campaign import Record, RunStatus
-from lithobrake.files.hashing import hashed_seed
-from lithobrake.geometry.contact_frame import attitude_of, from_frame, spin_of
-from lithobrake.pipeline.design.arrival import attitude_inputs, impact_inputs
-from lithobrake.pipeline.design.felt_acceleration import felt
-from lithobrake.pipeline.design.free_rotation import turned_in_flight
-from lithobrake.pipeline.design.local_ground import friction_of, ground_inputs
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, met_ground
-from lithobrake.pipeline.journeys.journey_model import on_ground
-from lithobrake.pipeline.journeys.resting_attitude import side_down
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.frames import attitude_of, from_frame, spin_of
+from lithobrake.pipeline.design.arrivals import (
+    MEAN_INCIDENCE,
+    attitude_inputs,
+    friction_of,
+    ground_inputs,
+    impact_inputs,
+    lander_inertia,
+    met_ground,
+    turned_in_flight,
+)
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import side_down
+from lithobrake.pipeline.design.soils import Soils, felt
+from lithobrake.pipeline.site import Site
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import VELOCITY_OUT
+from lithobrake.vocabulary.quantities import SOIL, VELOCITY_OUT
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-    from lithobrake.pipeline.journeys.journey_model import JourneyModel
-    from lithobrake.smallbody import Flights
+    from lithobrake.smallbody import Body, Flights, Shape
+
+# Steps toward the nearest ground: each leaves at most the sine of the angle between two facets of the way.
+PROJECTIONS = 8
+
+
+# Compared by identity, as the design.
+@dataclass(frozen=True, eq=False)
+class JourneyModel:
+    design: DrawnDesign
+    site: Site
+
+    @cached_property
+    def body(self) -> "Body":
+        return self.site.body
+
+    @property
+    def seed(self) -> int:
+        return self.design.study.seed
+
+    @property
+    def duration(self) -> float:
+        """Longest journey [s]."""
+        assert self.design.study.journey is not None
+        return self.design.study.journey.duration
+
+    @property
+    def is_ball(self) -> bool:
+        return self.design.study.lander.is_ball
+
+    def inertia(self, row: Mapping[str, float]) -> np.ndarray:
+        """Inertia of the lander of a journey about its centre of mass [kg m2], [3, 3]."""
+        return lander_inertia(self.design.study, row)
+
+    def place(self, x: float, y: float, row: Mapping[str, float]) -> tuple[float, float]:
+        """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""
+        if self.design.region is None:
+            return row[PLACE[0]], row[PLACE[1]]
+        (west, east), (south, north) = self.design.region
+        return west + x * (east - west), south + y * (north - south)
+
+    @cached_property
+    def soils(self) -> Soils:
+        return Soils(self.site)
+
+    def soil(self, journey: int, place: np.ndarray) -> dict[str, float]:
+        """The numbers of the grains that a lander meets at a place [m], [3], by dotted key; none where no region has a
+        soil of its own, and all ground is what the lander met first.
+        """
+        if not self.design.study.soil:
+            return {}
+        own = self.design.own_soil(journey)
+        (met,) = self.soils.on_soil([own | {"journey": float(journey)}], place[None])
+        return {key: met[key] for key in own}
+
+    def soil_column(self, place: np.ndarray) -> dict[str, str]:
+        """The region of a touchdown at a place [m], [3], as its table has it; nothing where there are no regions."""
+        return dict(zip(SOIL, self.soils.at(place[None]), strict=True)) if self.design.study.soil else {}
+
+    def fly(
+        self, position: np.ndarray, velocity: np.ndarray, left: float, start: float, mass: float, spin_period: float
+    ) -> "Flights":
+        """Fly one lander to its next impact, for at most `left` [s]."""
+        from lithobrake.smallbody import fly
+
+        return fly(
+            self.body, position, velocity, left, gravity=self.design.study.flight.gravity, start_time=start,
+            # One flight has nothing to share among threads, and starting them would take longer.
+            mass=np.array([mass]), spin_period=np.array([spin_period]), threads=1,
+        )  # fmt: skip
+
+
+def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
+    """The place on the ground [m], [3], nearest to a point beside it."""
+    place = point
+    for _ in range(PROJECTIONS):
+        height, facet = shape.nearest(place)
+        place = place - height * shape.normals[facet]
+    if shape.height(place) >= 0.0:
+        return place
+    # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
+    return shape.surface_point(*shape.latitude_longitude(point))
+
 
 Row = dict[str, float]
 # Of one journey; more would be a lander that moves along for ever.
@@ -96,8 +185,8 @@ class Journey:
             self.end, self.reason = JourneyEnd.FAILED, f"a touchdown ended as {outcome}"
 
     def _move(self, outputs: Mapping[str, float]) -> None:
-        """Go where the touchdown ended, and to when."""
         along, aside = outputs.get("displacement_x", 0.0), outputs.get("displacement_y", 0.0)
+        # A program of the user's own may give the duration of the contact alone.
         self.time += outputs.get("duration", outputs.get("contact_duration", 0.0))
         self.path_length += math.hypot(along, aside)
         self.contacts += max(1, round(outputs.get("contacts", 1.0)))
@@ -106,7 +195,7 @@ class Journey:
 
     @property
     def is_on_ground(self) -> bool:
-        """Whether the lander is on the ground of the body, and not aloft or on the partner."""
+        # A flight without a touchdown behind it has ended aloft or on the partner.
         return len(self.touchdowns) > len(self.flights)
 
     def _felt(self) -> np.ndarray:
@@ -116,7 +205,6 @@ class Journey:
         return found
 
     def _fly(self, outputs: Mapping[str, float]) -> None:
-        """Fly to the next impact and prepare its touchdown, or end."""
         left = self.model.duration - self.time
         if left <= 0.0 or len(self.touchdowns) == MOST_TOUCHDOWNS:
             self.end = JourneyEnd.UNDER_WAY
@@ -134,11 +222,12 @@ class Journey:
 
     def _tumbled(self, outputs: Mapping[str, float], time: float) -> "tuple[Rotation, np.ndarray]":
         """Attitude and spin [rad/s], against the ground, at the end of a flight, both fixed to the body."""
-        from lithobrake.smallbody.turning_ground import ground_spin
+        from lithobrake.smallbody.rotation import ground_spin
 
         ground, start = self.model.body.rotation, self.clock + self.time
         (turning,) = ground_spin(ground, np.array([start]), np.array([self.spin_period]))
         attitude = from_frame(self.axes) * attitude_of(outputs)
+        # A touchdown gives the spin against the ground, and torque-free rotation is that against axes that do not turn.
         spin = spin_of(outputs) @ self.axes + turning
         inertia = self.model.inertia(self.row)
         return turned_in_flight(inertia, attitude, spin, self.spin_period, time, ground=ground, start=start)
@@ -146,7 +235,9 @@ class Journey:
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
         number = len(self.touchdowns)
+        # The numbers of a touchdown follow from journey and touchdown, so more journeys change none.
         random = np.random.default_rng(hashed_seed(self.model.seed, "touchdowns", self.number, number))
+        # Five in every study: where the ground is flat or the place is given the others stay the same.
         x, y, turn, *gradient = random.random(5).tolist()
         incidence = self._meet_ground(flight, gradient)
         azimuth = 360.0 * turn
@@ -179,7 +270,6 @@ class Journey:
         )
 
     def _touchdown(self, record: Record, began: float, place: np.ndarray) -> dict[str, Any]:
-        """A row of the table of touchdowns."""
         latitude, longitude = (float(one) for one in self.model.body.shape.latitude_longitude(place))
         return {
             "journey": self.number,

@@ -1,21 +1,80 @@
-"""The journeys of the samples of an expansion, from bounce to bounce."""
+"""Journeys of the samples of an expansion, which is asked again at every impact."""
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.emulate.outgoing import rolling_spin
-from lithobrake.pipeline.emulate.samples import Samples
+from lithobrake.pipeline.first_bounces.bounce_laws import inputs_at
+from lithobrake.pipeline.first_bounces.bounces_to_rest import first_velocity, follow
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_bounce import soil_bounce
-from lithobrake.pipeline.rest.journeys import first_velocity, follow
+from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, outgoing, rolling_spin
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Bounce
+    from lithobrake.analysis import OutcomeModel
+    from lithobrake.chaos import Surrogate
+    from lithobrake.smallbody import Bounce, Impacts, Rebounds
+
+
+@dataclass(frozen=True)
+class SoilBounce:
+    """The refined expansion as a bounce of smallbody.hop.
+
+    inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
+              has met at first is the soil that it meets again
+    ranges    of the runs; an impact outside them is not answered
+    scatter   drawn anew at each impact; None: none
+
+    Of speed, incidence, spin and effective acceleration at an impact those enter that are inputs of the
+    study; the others stay as the study has them. The expansion gives the size of the outgoing spin; its axis is taken
+    as that of rolling along the outgoing velocity.
+    """
+
+    surrogate: "Surrogate"
+    outcome: "OutcomeModel"
+    inputs: dict[str, np.ndarray]
+    ranges: dict[str, tuple[float, float]]
+    scatter: Scatter | None
+
+    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
+        """Answer each impact with the outputs of the expansion, a draw of its scatter and a draw of the outcome.
+
+        A lander that leaves the bed sideways, is still in contact at the time limit, or is drawn with an elevation
+        outside 0 to 90 degrees, has no answer.
+        """
+        from lithobrake.smallbody import Rebounds
+
+        x, outside = inputs_at(impacts, self.inputs, self.ranges)
+        columns = [list(self.inputs).index(name) for name in self.surrogate.input_names]
+        outputs = np.asarray(self.surrogate(x[:, columns]))
+        if self.scatter is not None:
+            outputs = outputs + self.scatter.draw(impacts.speed, random)
+        names = self.surrogate.output_names
+        outputs, possible = outgoing(outputs, names)
+        drawn = self.outcome.draw(x, random)
+        captured = drawn == CAPTURED
+        outside |= ~captured & ~((drawn == CLEAR) & possible)
+        velocity = outputs[:, [names.index(name) for name in VELOCITY]]
+        velocity[captured] = 0.0
+        # An expansion of a size may fall below 0.
+        spin = rolling_spin(velocity, np.maximum(outputs[:, names.index("spin_out")], 0.0))
+        return Rebounds(velocity, spin, captured, outside)
+
+
+def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
+    """The bounce of a study for landers with these inputs, each of shape [lander_count]."""
+    from lithobrake.chaos import load
+
+    refined = load(job.folder / "refined.json")
+    # In the refined runs the inputs that the screening drops are at their medians, and have no range.
+    ranges = DesignRuns.load(job.folder, "screening").ranges(inputs)
+    scatter = Scatter.of(job, refined) if job.study.monte_carlo.scatter else None
+    return SoilBounce(refined, outcome_model(job), inputs, ranges, scatter)
 
 
 def follow_expansion_samples(job: Job) -> None:
-    """Follow the first samples of the expansion from bounce to bounce."""
     follow(job, "screening", _soil)
 
 

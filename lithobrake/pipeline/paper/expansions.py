@@ -1,33 +1,85 @@
-"""The expansions of a study, fitted to its runs and scored on them: all inputs first, then those that matter."""
+"""The expansions of a study: their designs, the runs of these, their fit, and their scores."""
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.paper_designs import kept_inputs
+from lithobrake.pipeline.runs.landings import drawn_rows, make_rows, say_gravity
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS
 
 if TYPE_CHECKING:
-    from lithobrake.chaos import Surrogate
+    from lithobrake.chaos import Distribution, Surrogate
+
+
+def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
+    """The smallest set of inputs that together explain the asked share of every deciding output.
+
+    Among sets of one size the one whose weakest output is explained best is taken; the first in order breaks a tie.
+    """
+    columns = [screening.output_names.index(name) for name in study.design.kept_outputs]
+    for size in range(1, len(screening.input_names) + 1):
+        groups = list(combinations(screening.input_names, size))
+        shares = [min(np.asarray(screening.sobol_group(group))[columns]) for group in groups]
+        best = int(np.argmax(shares))
+        # All inputs together explain everything, but for rounding.
+        if shares[best] >= study.design.kept_share or size == len(screening.input_names):
+            return groups[best]
+    raise AssertionError("a design has at least one input")
+
+
+def points(drawn: DrawnDesign, design: str, kept: Sequence[str]) -> np.ndarray:
+    """The points of a design, shape [point_count, input_count]; inputs that do not vary are at their median."""
+    from lithobrake.analysis import sample_inputs
+
+    study, inputs = drawn.study, drawn.inputs
+    varied = inputs if design in ("screening", "test_all") else {name: inputs[name] for name in kept}
+    # Of its own for each design, so that test points are independent of training points.
+    seed = hashed_seed(study.seed, design)
+    if design.startswith("test"):
+        x = sample_inputs(varied, study.design.test_count, seed=seed)
+    else:
+        x = _training_points(study, design, varied, seed)
+    # All inputs stand in every row, so that a run that two designs share has one key and is made once.
+    full = np.tile([distribution.median for distribution in inputs.values()], (len(x), 1))
+    full[:, [list(inputs).index(name) for name in varied]] = x
+    return full
+
+
+def _training_points(study: Study, design: str, varied: "dict[str, Distribution]", seed: int) -> np.ndarray:
+    """The points of a design to which an expansion is fitted, [point_count, len(varied)]."""
+    from lithobrake.chaos import fekete, latin_hypercube, smolyak, sobol_sequence
+
+    section = study.design
+    if section.points == "smolyak":
+        return smolyak(varied, level=getattr(section, f"{design}_level"))
+    count = getattr(section, f"{design}_count")
+    if section.points == "fekete":
+        return fekete(varied, count, seed, degree=getattr(section, f"{design}_degree"))
+    return (sobol_sequence if section.points == "sobol_sequence" else latin_hypercube)(varied, count, seed)
+
+
+def replicate_count(study: Study, design: str) -> int:
+    return 1 if design.startswith("test") else study.design.replicate_count
 
 
 def fit_screening(job: Job) -> None:
-    """Fit all inputs at medium order."""
     runs = DesignRuns.load(job.folder, "screening")
     _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / "screening.json")
 
 
 def fit_refined(job: Job) -> None:
-    """Fit the inputs that matter at higher order."""
     runs = DesignRuns.load(job.folder, "refined")
     _fit(job, "refined", runs, screened_inputs(job)).save(job.folder / "refined.json")
 
 
 def screened_inputs(job: Job) -> tuple[str, ...]:
-    """The inputs that the screening keeps."""
     from lithobrake.chaos import load
 
     return kept_inputs(job.study, load(job.folder / "screening.json"))
@@ -40,6 +92,7 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
     study, found = job.study, int(runs.has_outputs.sum())
     degree = getattr(study.design, f"{design}_degree")
     least_squares = study.design.fit == "ols"
+    # The sparse fits choose as many terms as their runs support.
     terms = term_count(len(names), degree) if least_squares else 1
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
@@ -66,7 +119,6 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
 
 
 def score_all(job: Job) -> None:
-    """Score both expansions on what they have seen and on what they have not."""
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
@@ -97,4 +149,31 @@ def _score(surrogate: "Surrogate", design: DesignRuns) -> dict[str, Any]:
 def _finite(value: Any) -> Any:
     if isinstance(value, list):
         return [_finite(entry) for entry in value]
+    # JSON has neither NaN nor infinity, as Q2 may be of an output that does not vary.
     return float(value) if np.isfinite(value) else None
+
+
+def make_screening_runs(job: Job) -> None:
+    say_gravity(job)
+    make_runs(job, "screening")
+
+
+def make_refined_runs(job: Job) -> None:
+    make_runs(job, "refined", screened_inputs(job))
+
+
+def make_test_runs(job: Job) -> None:
+    kept = screened_inputs(job)
+    for design in ("test_kept", "test_all"):
+        make_runs(job, design, kept)
+
+
+def make_runs(job: Job, design: str, kept: Sequence[str] = ()) -> None:
+    """Make the runs of a design, all points once, then again if asked; those that the ledger has are read from it.
+
+    Which runs they are is noted before they are made, so that whoever looks can tell them from all others.
+    Raises ValueError when too many have failed, or those that failed lie together.
+    """
+    x = points(job.design, design, kept)
+    replicates = range(replicate_count(job.study, design))
+    make_rows(job, design, [drawn_rows(job.design, x, replicate) for replicate in replicates])

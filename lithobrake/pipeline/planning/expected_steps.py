@@ -1,25 +1,143 @@
-"""How many time steps a bed and a touchdown will take, told before either is made.
-
-What follows from the study is worked out as the engine does it: the shortest contact, from which a step follows, the
-time of a fall, the period of a grain at rest. What cannot be known beforehand, how long grains take to come to rest and
-a lander to leave, is a multiple of these that was measured (benchmarks/plan_estimate.json).
-"""
+"""How many touchdowns a study asks for, and how many time steps these and its beds will take."""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.planning.planned_runs import planned_rows
+from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.design import SIDE_DESIGNS, DrawnDesign
+from lithobrake.pipeline.paper.expansions import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.beds import bed_recipe
-from lithobrake.pipeline.runs.shown_landing import landing_values
-from lithobrake.study.touchdown_model import lander, landing
+from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
+from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.study.touchdown_model import draw, lander, landing
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull
     from lithobrake.touchdown import BedRecipe, Lander, Landing
+
+# Designs with more runs are not gone through run by run: that would take longer than a second or two.
+MOST_NAMED = 10_000
+
+
+@dataclass(frozen=True)
+class PlannedRuns:
+    """Distinct touchdowns of a study in which so many inputs are kept after the screening.
+
+    A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
+    drawn, side: of a drawn study, which has none of the others.
+    """
+
+    kept_count: int
+    screening: int
+    refined: int
+    test: int
+    known: frozenset[str]
+    drawn: int = 0
+    side: int = 0
+
+    @property
+    def total(self) -> int:
+        return self.screening + self.refined + self.test + self.drawn + self.side
+
+    @property
+    def new(self) -> int:
+        return self.total - len(self.known)
+
+
+def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
+    """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
+
+    Of a drawn study those of its count; with a half width that is not met yet, also the most that there may be.
+
+    screened: the folder has the screening of this study. known: keys of runs that have ended.
+    """
+    study, inputs = drawn.study, tuple(drawn.inputs)
+    if study.design.method == "drawn":
+        return _possible_drawn(drawn, set(known))
+    if screened:
+        from lithobrake.chaos import load
+
+        choices = [kept_inputs(study, load(folder / "screening.json"))]
+    else:
+        choices = [inputs[:1], inputs] if len(inputs) > 1 else [inputs]
+    ended = set(known)
+    return [_planned(drawn, kept, ended) for kept in choices]
+
+
+def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[str, float]]:
+    """All inputs of up to `most` of the touchdowns, drawn by chance."""
+    study = drawn.study
+    if study.design.method == "drawn":
+        return drawn.rows[:most]
+    points_of_runs = _planned_points(drawn, kept_count, most).tolist()
+    return [
+        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed) for row in points_of_runs
+    ]
+
+
+def _planned_points(drawn: DrawnDesign, kept_count: int, most: int) -> np.ndarray:
+    """Up to `most` of the points at which touchdowns are made, drawn by chance, shape [point_count, input_count]."""
+    from lithobrake.analysis import sample_inputs
+
+    kept = tuple(drawn.inputs)[:kept_count]
+    parts = [points(drawn, one, kept) for one in PAPER_DESIGNS if _point_count(drawn, one, kept_count) <= MOST_NAMED]
+    if not parts:
+        return sample_inputs(drawn.inputs, most, seed=0)
+    # A fixed seed: the same plan whenever it is asked for.
+    return np.random.default_rng(0).permutation(np.concatenate(parts))[:most]
+
+
+def _possible_drawn(drawn: DrawnDesign, ended: set[str]) -> list[PlannedRuns]:
+    """The runs that are drawn, and the most that the half width may ask for where that is not known yet."""
+    fewest, most = _planned_drawn(drawn, ended), drawn.study.design.most_runs
+    if not fewest.new or most == drawn.study.design.run_count:
+        return [fewest]
+    return [fewest, _planned_drawn(drawn.with_run_count(most), ended)]
+
+
+def _planned_drawn(drawn: DrawnDesign, ended: set[str]) -> PlannedRuns:
+    side = SIDE_DESIGNS if drawn.study.design.side_runs else ()
+    keys = set(drawn.keys)
+    side_keys = {key for design in side for key in touchdown_keys(drawn.study, drawn.rows_of(design), 0)} - keys
+    known = frozenset((keys | side_keys) & ended)
+    return PlannedRuns(len(drawn.inputs), 0, 0, 0, known, drawn=len(keys), side=len(side_keys))
+
+
+def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> PlannedRuns:
+    study, seen = drawn.study, set[str]()
+    counts = dict.fromkeys(PAPER_DESIGNS, 0)
+    for design in PAPER_DESIGNS:
+        replicates = range(replicate_count(study, design))
+        counts[design] = len(replicates) * _point_count(drawn, design, len(kept))
+        if counts[design] > MOST_NAMED:
+            continue
+        x = points(drawn, design, kept)
+        keys = {
+            key for replicate in replicates for key in touchdown_keys(study, drawn_rows(drawn, x, replicate), replicate)
+        } - seen
+        counts[design] = len(keys)
+        seen |= keys
+    test = counts["test_kept"] + counts["test_all"]
+    return PlannedRuns(len(kept), counts["screening"], counts["refined"], test, frozenset(seen & ended))
+
+
+def _point_count(drawn: DrawnDesign, design: str, kept_count: int) -> int:
+    """Points of a design, counted without making them."""
+    from lithobrake.chaos import smolyak_count
+
+    section = drawn.study.design
+    if design.startswith("test"):
+        return section.test_count
+    if section.points != "smolyak":
+        return int(getattr(section, f"{design}_count"))
+    input_count = kept_count if design == "refined" else len(drawn.inputs)
+    return smolyak_count(input_count, getattr(section, f"{design}_level"))
+
 
 # Grains that are made to learn the shape of all.
 GRAIN_COUNT = 12
@@ -55,13 +173,13 @@ class ExpectedSoil:
 
     @classmethod
     def of(cls, design: DrawnDesign, kept_count: int) -> "ExpectedSoil":
-        """That of a study in which so many inputs are kept."""
         from lithobrake.touchdown.grains import make_grain
 
         study, recipe = design.study, bed_recipe(design.study, 0)
         generator = np.random.default_rng(recipe.seed)
         diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
         grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)
+        # The landing that is shown comes first, as it has a time of its own in the plan.
         drawn = [landing_values(design), *planned_rows(design, kept_count, LANDING_COUNT)]
         return cls(recipe, grains, tuple((lander(study, one), landing(study, one)) for one in drawn))
 
@@ -77,7 +195,6 @@ class ExpectedSoil:
         return volume / (SOLID_FRACTION * math.prod(self.recipe.width))
 
     def pour_steps(self) -> float:
-        """Steps to pour and settle it."""
         from lithobrake.touchdown.pouring import FALL_STEPS
 
         recipe = self.recipe

@@ -1,23 +1,115 @@
-"""How long a study will take, from its steps, what a step costs, and the speed of this machine.
-
-Times are CPU times of one core of the reference machine, measured by benchmarks/plan_estimate.py and kept in
-benchmarks/plan_estimate.json; here they are taken times the pace of this machine (pace.py).
-"""
+"""How long a study will take and how much room, from its steps and the speed of this machine."""
 
 import math
 import os
 import statistics
+import time
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from lithobrake.campaign import Record, available_cores
-from lithobrake.pipeline.planning.expected_disk import flight_count, journey_count
-from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.pace import engine_is_compiled, machine_pace
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns
+from lithobrake.pipeline.runs.landings import landing_files, telling_files
 from lithobrake.pipeline.site import Site
+from lithobrake.study import Study
+from lithobrake.vocabulary.quantities import OUTPUTS
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
+
+NUMBER = 8
+# A bed: hulls, poses and frames of a grain, and the history, a row in every eight steps.
+BED_GRAIN, BED_STEP = 1400, 4
+LANDING_BODY = 11_800  # poses of a body and forces on it in all frames of a landing
+LEDGER_RUN = 5_000
+FLIGHT_ROW, JOURNEY_ROW = 270, 120
+SHAPE_FACET = 45
+TOUCHDOWNS = 4  # of a journey
+REPORT_BYTES = 7_500_000  # page and figures, with expansions, scores and summary
+
+
+def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
+    """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
+    study = design.study
+    samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
+    # The outcome takes one byte.
+    row = NUMBER * (len(design.inputs) + len(OUTPUTS) * (1 + samples.scatter)) + 1
+    found = {
+        "runs": LEDGER_RUN * runs.total * (1 if study.journey is None else TOUCHDOWNS),
+        "samples": 0 if study.journey is not None else samples.sample_count * row,
+        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site.body.shape.faces),
+        "report": REPORT_BYTES,
+    }
+    if soil is not None:
+        grains = soil.recipe.grain_count
+        one = BED_GRAIN * grains + BED_STEP * round(soil.pour_steps())
+        shown = len(landing_files(study) + telling_files(study))
+        found["beds"] = study.bed_count * one + shown * LANDING_BODY * (grains + 1)
+    return found
+
+
+def flight_count(study: Study) -> int:
+    """Flights at most, with those of the expansion alone beside those with scatter."""
+    if study.journey is not None:
+        return 0
+    count = min(study.flight.flight_count or study.monte_carlo.sample_count, study.monte_carlo.sample_count)
+    return count * (1 + study.monte_carlo.scatter)
+
+
+def journey_count(study: Study) -> int:
+    """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
+    from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
+
+    if study.journey is not None:
+        return 0
+    count = min(study.rest.count, study.monte_carlo.sample_count)
+    return count if why_no_soil(study) else 2 * count
+
+
+# CPU time [s] of the piece of work where the times of expected_time.py were measured (benchmarks/plan_estimate.json).
+REFERENCE = 0.22
+EDGE, STEPS, TIME_STEP = 4, 10_000, 1e-4
+
+
+@cache
+def machine_pace() -> float | None:
+    """CPU time here over that of the reference machine; None where the engine has yet to be compiled."""
+    return probe() / REFERENCE if engine_is_compiled() else None
+
+
+def engine_is_compiled() -> bool:
+    from lithobrake.compilation.compiled import lies_on_disk
+    from lithobrake.dem.stepping.time_loop import advance
+
+    return lies_on_disk(advance)
+
+
+def probe() -> float:
+    """CPU time [s] of a heap of hulls that falls into a box and comes to lie."""
+    from lithobrake.dem import Material, World
+    from lithobrake.touchdown.grains import make_grain
+
+    generator = np.random.default_rng(0)
+    grains = [make_grain(generator, 14, 0.1) for _ in range(8)]
+    rock = Material(young_modulus=2e7, poisson_ratio=0.25, restitution=0.3, friction=0.5, density=2500.0)
+    world, room = World((0.0, 0.0, -1.0), TIME_STEP), 2.0 * max(grain.bounding_radius for grain in grains)
+    for number, place in enumerate(np.ndindex(EDGE, EDGE, EDGE)):
+        world.add_body(grains[number % len(grains)], rock, tuple(room * (np.array(place) + 0.5)))
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)
+    for axis in (0, 1):
+        inward = np.eye(3)[axis]
+        world.add_plane((0.0, 0.0, 0.0), tuple(inward), rock)
+        world.add_plane(tuple(EDGE * room * inward), tuple(-inward), rock)
+    # The first step also reads what is compiled.
+    world.run(steps=1)
+    start = time.process_time()
+    world.run(steps=STEPS)
+    return time.process_time() - start
+
 
 Span = tuple[float, float]
 
@@ -36,7 +128,7 @@ RESTING_GRAIN = 4.0e-5
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
-REPORT = 15.0  # s: fits, scores, samples, summary and page
+REPORT_SECONDS = 15.0  # s: fits, scores, samples, summary and page
 # An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
 SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 3.0
 # So many runs of a study tell how long the others take, to this factor at best.
@@ -74,13 +166,13 @@ def expected_seconds(
     flying += journeys_time(site) if made["journeys"][1] else 0.0
     if flying:
         found["flights and bounces"] = spread(pace * flying / cores)
-    found["fits, samples and report"] = spread(pace * REPORT)
+    found["fits, samples and report"] = spread(pace * REPORT_SECONDS)
+    # The upper ends alone: the other work may end before this study does.
     slower = busy_factor()
     return {what: span and (span[0], span[1] * slower) for what, span in found.items()}
 
 
 def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
-    """Where the expected times come from, in a sentence."""
     if made["touchdowns"][1] and len(walls_of(ended)) >= RUNS_THAT_TELL:
         said = f"Touchdowns by the times of the {len(walls_of(ended))} finished ones, all else estimated"
     elif _engine_works(made) and soil is not None:
@@ -205,5 +297,4 @@ def journeys_time(site: Site) -> float:
 
 
 def spread(seconds: float) -> Span:
-    """The range in which an estimated time lies."""
     return seconds / SPREAD, seconds * SPREAD

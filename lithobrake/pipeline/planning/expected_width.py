@@ -1,7 +1,8 @@
-"""How wide the interval of a study's answer will be: a range that holds nine of ten studies, and what it rests on."""
+"""How wide the interval of a study's answer will be, and how many runs each bed has for it."""
 
+import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -9,16 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.answer_of_run import answer_words, answers_of
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_answers import answer_words, answers_of
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
+from lithobrake.pipeline.planning.expected_time import journey_time, machine_pace, pour_time, run_time
 from lithobrake.pipeline.planning.study_warnings import expected_loss
 from lithobrake.pipeline.sequential_sampling import flown_shares
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
+from lithobrake.study.ground_sections import FEWEST_BEDS
 
 if TYPE_CHECKING:
-    from lithobrake.analysis.half_width_range import RunLaw
+    from lithobrake.analysis.half_width import RunLaw
 
 # Fraction at rest that may be expected at least, before a study has journeys.
 LEAST_AT_REST = 0.5
@@ -58,7 +61,6 @@ class ExpectedHalfWidth:
     level: float
 
     def lines(self) -> list[str]:
-        """The half width in words."""
         width = f"{_points(self.lower)} to {_points(self.upper)} points in nine of ten such studies"
         if self.lower == self.upper:
             width = f"{_points(self.lower)} points"
@@ -83,7 +85,7 @@ def expected_width(
     if study.design.method != "drawn" or study.bed_count == 1:
         return None
     from lithobrake.analysis import LEVEL
-    from lithobrake.analysis.half_width_range import AllOrNothing, half_width_range
+    from lithobrake.analysis.half_width import AllOrNothing, half_width_range
 
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
@@ -118,7 +120,6 @@ def expected_width(
 
 
 def expected_correlation(study: Study) -> float:
-    """Correlation of two runs on one bed to expect before a study has runs."""
     from lithobrake.analysis.half_width import CORRELATION, JOURNEY_CORRELATION
 
     return CORRELATION if study.journey is None else JOURNEY_CORRELATION
@@ -129,8 +130,7 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
 
     reach: fraction of the landers that reach the ground.
     """
-    from lithobrake.analysis.half_width import SPREAD_RANGE
-    from lithobrake.analysis.half_width_range import AllOrNothing, Shares
+    from lithobrake.analysis.half_width import SPREAD_RANGE, AllOrNothing, Shares
 
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
     if study.journey is not None:
@@ -150,7 +150,7 @@ def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
     """The same by the runs that have ended."""
     from lithobrake.analysis import scatter_of
     from lithobrake.analysis.confidence import answered_runs
-    from lithobrake.analysis.half_width_range import LikeRuns
+    from lithobrake.analysis.half_width import LikeRuns
 
     known, beds = answered_runs(values, bed)
     scatter = scatter_of(values, bed)
@@ -185,3 +185,60 @@ def _runs(design: DrawnDesign, values: np.ndarray, bed: np.ndarray) -> tuple[tup
 
 def _points(share: float) -> str:
     return f"{100 * share:.2g}"
+
+
+# Counts that cost less than this part more than the best are as good: what a bed costs is not known better.
+AS_GOOD = 0.1
+
+
+@dataclass(frozen=True)
+class RunsABed:
+    """Runs on each bed of a drawn study.
+
+    runs          what they are, one and more
+    count         on each bed, in the mean
+    bed_cost      time of a bed that is poured, over that of a run
+    best          on each bed, of as many runs on at least 12 beds, for the narrowest interval for the time
+    over_best     time of the study for an interval of one width over that with the best number, less 1
+    correlation   of two runs on one bed, on which that rests
+    """
+
+    runs: tuple[str, str]
+    count: float
+    bed_cost: float
+    best: float
+    over_best: float
+    correlation: float
+
+    def line(self) -> str:
+        one, more = self.runs
+        cost = f"{self.bed_cost:.2g} {one if self.bed_cost == 1.0 else more}"
+        judged = "is as good"
+        if self.over_best >= AS_GOOD:
+            judged = f"takes {100 * self.over_best:.0f} % more time for the same interval; bed.bed_count changes it"
+        return (
+            f"{more.capitalize()} on each bed: {self.count:.3g}. A bed takes the time of about {cost}, so about "
+            f"{max(round(self.best), 1)} on each, on at least {FEWEST_BEDS} beds, give the narrowest interval for the "
+            f"time (correlation of two on one bed {self.correlation:g}); {self.count:.3g} {judged}."
+        )
+
+
+def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
+    """Those of a drawn study on several beds of its own; None for any other. ended: runs of this study that have."""
+    from lithobrake.analysis import best_runs_a_bed, cost_over_best
+
+    if study.design.method != "drawn" or study.bed_count == 1 or soil is None:
+        return None
+    pace = machine_pace() or 1.0
+    if study.journey is None:
+        span, runs = run_time(soil, ended, pace), ("landing", "landings")
+    else:
+        span, runs = journey_time(soil, pace), ("journey", "journeys")
+    if span is None:
+        return None
+    # A span reaches as many times below its middle as above it.
+    run_count, cost = study.design.run_count, pace * pour_time(soil) / math.sqrt(math.prod(span))
+    count, correlation = run_count / study.bed_count, expected_correlation(study)
+    best = min(best_runs_a_bed(cost, correlation), max(run_count / FEWEST_BEDS, 1.0))
+    over_best = cost_over_best(count, best, cost, correlation) - 1.0
+    return RunsABed(runs, count, cost, best, over_best, correlation)

@@ -1,17 +1,21 @@
-"""What a study will do: how many of each it will make, how long that takes, how much room, and what to know of it."""
+"""What a study will do: counts, time, room and what to know of it, in words."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from lithobrake.pipeline.inference.expected_inference import ExpectedInference
+from lithobrake.pipeline.inferred_study import ExpectedInference
+from lithobrake.pipeline.planning.expected_steps import PlannedRuns
 from lithobrake.pipeline.planning.expected_time import Span
-from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
-from lithobrake.pipeline.planning.planned_beds import PlannedBeds, PlannedBoulders, PlannedGrains, PlannedTile
-from lithobrake.pipeline.planning.planned_ground import PlannedGround
-from lithobrake.pipeline.planning.planned_runs import PlannedRuns
-from lithobrake.pipeline.planning.planned_soils import PlannedSoils
-from lithobrake.pipeline.planning.runs_a_bed import RunsABed
+from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth, RunsABed
+from lithobrake.pipeline.planning.planned_ground import (
+    PlannedBeds,
+    PlannedBoulders,
+    PlannedGrains,
+    PlannedGround,
+    PlannedSoils,
+    PlannedTile,
+)
 
 
 @dataclass(frozen=True)
@@ -78,3 +82,133 @@ class Plan:
         runs = [asdict(one) | {"known": len(one.known), "new": one.new, "total": one.total} for one in self.runs]
         beds = [asdict(one) | {"new": one.new} for one in self.beds]
         return asdict(self) | {"beds": beds, "runs": runs, "time": self.time}
+
+
+# One, and more.
+NAMES = {
+    "beds": ("bed", "beds"),
+    "landings": ("preview landing", "preview landings"),
+    "touchdowns": ("touchdown", "touchdowns"),
+    "journeys to rest": ("journey to rest", "journeys to rest"),
+    "samples": ("sample", "samples"),
+    "flights": ("flight", "flights"),
+    "journeys": ("journey from bounce to bounce", "journeys from bounce to bounce"),
+}
+
+
+def plan_lines(plan: Plan) -> list[str]:
+    """Return the whole plan as lines of text."""
+    lines = [f"{plan.study}, in {plan.folder}"]
+    if not plan.stages:
+        lines += ["Nothing to do: all files are current."]
+    else:
+        lines += [f"To make: {_made(plan)}."]
+        lines += [f"Beds: {_beds(plan)}."] if plan.beds[0].total else []
+        lines += [plan.runs_a_bed.line()] if plan.runs_a_bed else []
+        lines += [f"Touchdowns: {_designs(plan)}.", f"Time: {_time(plan)}."]
+        lines += [f"  {what}: {_seconds(*part)}" for what, part in plan.seconds.items() if part is not None]
+        lines += [f"  {plan.basis}"]
+    lines += [_site(plan.site_slope_deg)]
+    lines += [plan.ground.line()] if plan.ground else []
+    lines += [plan.soils.line()] if plan.soils else []
+    lines += [plan.delivery] if plan.delivery else []
+    lines += [plan.tile.line()] if plan.tile else []
+    lines += [plan.grains.line()] if plan.grains else []
+    lines += [plan.boulders.line()] if plan.boulders else []
+    size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
+    lines += [f"Disk: about {size} when finished; {free} are free."]
+    lines += plan.half_width.lines() if plan.half_width else []
+    lines += plan.inference.lines() if plan.inference else []
+    lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
+    return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]
+
+
+def brief_lines(plan: Plan, command: str) -> list[str]:
+    """A plan in three lines; command: what says all of it."""
+    count = len(plan.warnings)
+    said = "No warnings." if count == 0 else f"{count} warning{'s, the first' * (count > 1)}: {plan.warnings[0]}"
+    return [
+        f"To make: {_made(plan)}.",
+        f"Expected: {_time(plan)}; {bytes_in_words(sum(plan.bytes.values()))} on disk when finished.",
+        f"{said} Full plan: {command}",
+    ]
+
+
+def _made(plan: Plan) -> str:
+    counts = [f"{_range(*ends)} {NAMES[what][ends[1] > 1]}" for what, ends in plan.made.items() if ends[1]]
+    return ", ".join(counts) or "summary and report"
+
+
+def _beds(plan: Plan) -> str:
+    fewest, most = plan.beds[0], plan.beds[-1]
+    there = f"{most.in_folder} in the folder, {most.in_library} in the library of beds"
+    return f"{_range(fewest.total, most.total)}; {there}, {_range(fewest.new, most.new)} to pour"
+
+
+def _site(slope_deg: float) -> str:
+    if slope_deg > 90.0:
+        return "Site: gravity and rotation together eject objects that rest on the ground."
+    return f"Site: the ground slopes by {slope_deg:.0f} deg against gravity and rotation together."
+
+
+def _designs(plan: Plan) -> str:
+    fewest, most = plan.runs[0], plan.runs[-1]
+    if most.drawn:
+        side = f", {most.side} side runs" if most.side else ""
+        until = ", until design.half_width is met" if fewest is not most else ""
+        drawn, total = _range(fewest.drawn, most.drawn), _range(fewest.total, most.total)
+        if plan.made["journeys to rest"][1]:
+            known = f"{len(most.known)} first touchdowns are known and reused"
+            return f"{drawn} journeys{until}, mostly of one to four touchdowns each; {known}"
+        return f"{drawn} drawn{until}{side}; {total} in all, of which {len(most.known)} are known and reused"
+    kept = (
+        f"{_range(fewest.kept_count, most.kept_count)} kept inputs" if fewest is not most else f"{most.kept_count} kept"
+    )
+    asked = (
+        f"{most.screening} screening, {_range(fewest.refined, most.refined)} refined ({kept}), {most.test} test runs"
+    )
+    return f"{asked}; {_range(fewest.total, most.total)} in all, of which {len(most.known)} are known and reused"
+
+
+def _time(plan: Plan) -> str:
+    workers = plan.process_count
+    where = f" on {workers} process{'es' * (workers != 1)}" if workers else ""
+    unknown = [what for what, span in plan.seconds.items() if span is None]
+    if not unknown:
+        return f"about {_seconds(*plan.time)}{where}"
+    why = "before some have been made" if workers else "on a cluster"
+    return f"about {_seconds(*plan.time)}{where}, and the {' and '.join(unknown)}, whose time is not known {why}"
+
+
+def _seconds(lower: float, upper: float) -> str:
+    (first, unit), (last, other) = (_in_unit(seconds) for seconds in (lower, upper))
+    if unit == other:
+        return f"{_range(first, last)} {unit}"
+    return f"{_rounded(first)} {unit} to {_rounded(last)} {other}"
+
+
+def _in_unit(seconds: float) -> tuple[float, str]:
+    for limit, unit, size in ((100.0, "s", 1.0), (6000.0, "min", 60.0), (172_800.0, "h", 3600.0)):
+        if seconds < limit:
+            return seconds / size, unit
+    return seconds / 86_400.0, "days"
+
+
+def bytes_in_words(count: float) -> str:
+    for limit, unit, size in ((1e6, "kB", 1e3), (1e9, "MB", 1e6), (1e12, "GB", 1e9)):
+        if count < limit:
+            return f"{_rounded(count / size)} {unit}"
+    return f"{_rounded(count / 1e12)} TB"
+
+
+def _range(lower: float, upper: float) -> str:
+    """Two numbers, or one where they read the same; without a lower end where that is none."""
+    ends = [f"{end:,}".replace(",", " ") if isinstance(end, int) else _rounded(end) for end in (lower, upper)]
+    if ends[0] == ends[1]:
+        return ends[0]
+    return f"up to {ends[1]}" if lower == 0 else f"{ends[0]} to {ends[1]}"
+
+
+def _rounded(number: float) -> str:
+    """Two digits, never in powers of ten."""
+    return f"{float(f'{number:.2g}'):.15g}"

@@ -1,14 +1,141 @@
-"""The ground of the first touchdowns of journeys before they are made: how hard it pulls, and how it slopes."""
+"""The beds, the ground and the soils of a study before it runs."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.local_ground import STEEPEST_DEG, friction_of
-from lithobrake.study.period_checks import LEAST_FRICTION
-from lithobrake.vocabulary.quantities import GROUND
+from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, friction_of, smallest_width
+from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.runs.beds import bed_recipe
+from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.study import Study
+from lithobrake.study.checks import narrowest_period
+from lithobrake.study.ground_checks import LEAST_FRICTION
+from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_the_study
+from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
+
+
+@dataclass(frozen=True)
+class PlannedBeds:
+    """Beds of a study: all of them, those that its folder has, those that the library of beds has beside them."""
+
+    total: int
+    in_folder: int
+    in_library: int
+
+    @property
+    def new(self) -> int:
+        return self.total - self.in_folder - self.in_library
+
+
+def planned_beds(study: Study, folder: StudyFolder) -> PlannedBeds:
+    """The beds of a study; none where a program of the user's own makes the touchdowns."""
+    from lithobrake.touchdown import is_stored
+
+    key, files = stage_keys(study)["bed"], bed_files(study)
+    absent = [index for index, file in enumerate(files) if not folder.is_current([file], key)]
+    with in_words_of_the_study():
+        stored = sum(is_stored(bed_recipe(study, index)) for index in absent)
+    return PlannedBeds(len(files), len(files) - len(absent), stored)
+
+
+@dataclass(frozen=True)
+class PlannedTile:
+    """Ground that repeats [m]: its widths along x and y, and the least for this lander and these grains.
+
+    At the least no two meet through two images, and no wave of an image meets the first impact.
+    """
+
+    width: tuple[float, float]
+    smallest: float
+
+    def line(self) -> str:
+        along, across = self.width
+        return (
+            f"Ground: repeats after {along:g} m along x and {across:g} m along y; the smallest tile for this lander "
+            f"and these grains is {math.ceil(1e3 * self.smallest) / 1e3:g} m."
+        )
+
+
+def planned_tile(study: Study) -> PlannedTile | None:
+    """The tile of a study's ground; None where it does not repeat, or there is none."""
+    if not study.has_soil or study.bed.sides == "walls":
+        return None
+    return PlannedTile(study.bed.width, max(narrowest_period(study), smallest_width(study)))
+
+
+# Of grains that are larger than the diameter that is told.
+LARGE_FRACTION = 0.1
+
+
+@dataclass(frozen=True)
+class PlannedGrains:
+    """Diameters [m]: smallest, largest, their mean, and that which a tenth of the grains exceeds; and how many grains
+    there are over a square metre of the bed, from its surface to its floor."""
+
+    smallest: float
+    largest: float
+    mean: float
+    large: float
+    count_per_m2: float
+
+    def line(self) -> str:
+        return (
+            f"Grains: {self.smallest:.3g} to {self.largest:.3g} m in diameter, mean {self.mean:.3g} m; "
+            f"{self.count_per_m2:.3g} per m2 of bed, of which {LARGE_FRACTION * self.count_per_m2:.3g} are larger than "
+            f"{self.large:.3g} m."
+        )
+
+
+@dataclass(frozen=True)
+class PlannedBoulders:
+    """How many a bed has in the mean, their diameters [m], the median of the largest one in all beds [m], and the part
+    of the ground under them."""
+
+    count: float
+    smallest: float
+    largest: float
+    likely_largest: float
+    coverage: float
+
+    def line(self) -> str:
+        sizes = f"{self.smallest:.3g} to {self.largest:.3g}" if self.smallest < self.largest else f"{self.largest:.3g}"
+        return (
+            f"Boulders: {self.count:.3g} in a bed in the mean, {sizes} m in diameter, on {100.0 * self.coverage:.3g} % "
+            f"of the ground; the largest of all beds is likely {self.likely_largest:.2g} m."
+        )
+
+
+def planned_boulders(study: Study) -> PlannedBoulders | None:
+    """The boulders of a study's beds; None where there are none."""
+    rocks = boulders(study) if study.has_soil else None
+    if rocks is None:
+        return None
+    count = rocks.mean_count(math.prod(study.bed.width))
+    # Of so many draws half have no boulder beyond this part of the sizes.
+    part = 0.5 ** (1.0 / max(count * study.bed_count, 1.0))
+    likely = float(rocks.sizes.draw(np.array([part]))[0])
+    return PlannedBoulders(count, rocks.sizes.lower, rocks.sizes.upper, likely, rocks.coverage)
+
+
+def planned_grains(study: Study) -> PlannedGrains | None:
+    """The grains of a study's beds; None where they all have one size, or there are none."""
+    if not study.has_soil:
+        return None
+    sizes = grain_sizes(study)
+    if sizes.lower == sizes.upper:
+        return None
+    large = float(sizes.draw(np.array([1.0 - LARGE_FRACTION]))[0])
+    count = study.bed.grain_count / math.prod(study.bed.width)
+    return PlannedGrains(sizes.lower, sizes.upper, sizes.mean_diameter, large, count)
+
 
 # Of the touchdowns: those between which nine in ten lie, and those with a smaller slope.
 LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
@@ -29,7 +156,6 @@ class PlannedGround:
     roughness_deg: float
 
     def line(self) -> str:
-        """All of it in a line of text."""
         low, middle, high = self.gravity
         median, most = self.slope_deg
         rough = f", with a roughness of {self.roughness_deg:g} deg rms" if self.roughness_deg else ""
@@ -54,5 +180,28 @@ def planned_ground(design: DrawnDesign) -> PlannedGround | None:
     held = [min(STEEPEST_DEG, math.degrees(math.atan(friction_of(row) / LEAST_FRICTION))) for row in design.rows]
     low, middle, high = np.quantile(strength, [LOW, MEDIAN, HIGH]).tolist()
     median, most = np.quantile(slope, [MEDIAN, HIGH]).tolist()
+    # A tilt that was cut at the limit equals it but for the rounding of degrees and radians.
     steeper = float(np.mean(slope > np.array(held) - 1e-9))
     return PlannedGround((low, middle, high), (median, most), steeper, study.site.roughness_deg or 0.0)
+
+
+@dataclass(frozen=True)
+class PlannedSoils:
+    """area_shares: of the surface, by region in the order of the file and ELSEWHERE. aim: region of the aim point."""
+
+    area_shares: Mapping[str, float]
+    aim: str
+
+    def line(self) -> str:
+        shares = [f"{name} {percent(share, 1)}" for name, share in self.area_shares.items()]
+        where = "outside of these regions, on [grain]" if self.aim == ELSEWHERE else f"in {self.aim}"
+        return f"Soils: {', '.join(shares)} of the surface; the aim point is {where}."
+
+
+def planned_soils(site: Site) -> PlannedSoils | None:
+    """The soils of a study; None where it has one."""
+    if not site.study.soil:
+        return None
+    soils, place = Soils(site), (site.medians["latitude_deg"], site.medians["longitude_deg"])
+    (aim,) = soils.at(site.body.shape.surface_point(*place)[None])
+    return PlannedSoils(soils.area_shares(), aim)

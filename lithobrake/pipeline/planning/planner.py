@@ -7,36 +7,36 @@ from dataclasses import replace
 from pathlib import Path
 
 from lithobrake.campaign import available_cores
-from lithobrake.pipeline.design.descent_words import descents_in_words
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.descents import descents_in_words
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.folder.owner import refuse_others_folder
-from lithobrake.pipeline.folder.study_folder import StudyFolder
-from lithobrake.pipeline.inference.expected_inference import ExpectedInference
-from lithobrake.pipeline.inference.inferred_study import InferredStudy
+from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
-from lithobrake.pipeline.planning.expected_disk import expected_bytes, flight_count, journey_count
-from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import basis, expected_seconds
-from lithobrake.pipeline.planning.expected_width import expected_width
-from lithobrake.pipeline.planning.plan import Plan
-from lithobrake.pipeline.planning.plan_in_words import bytes_in_words
-from lithobrake.pipeline.planning.planned_beds import (
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
+from lithobrake.pipeline.planning.expected_time import (
+    basis,
+    expected_bytes,
+    expected_seconds,
+    flight_count,
+    journey_count,
+)
+from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
+from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
+from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
     planned_beds,
     planned_boulders,
     planned_grains,
+    planned_ground,
+    planned_soils,
     planned_tile,
 )
-from lithobrake.pipeline.planning.planned_ground import planned_ground
-from lithobrake.pipeline.planning.planned_runs import PlannedRuns, possible_runs
-from lithobrake.pipeline.planning.planned_soils import planned_soils
-from lithobrake.pipeline.planning.runs_a_bed import runs_a_bed
 from lithobrake.pipeline.planning.study_warnings import study_warnings
-from lithobrake.pipeline.runs.touchdown_runs import known_runs
+from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import stages_of
+from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
@@ -61,7 +61,6 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
-    """What observed bounces would say, or what is to be run before that can be told."""
     why = None
     if study.design.method == "paper":
         why = 'their information follows from an emulator, which needs design.method = "drawn"'
@@ -74,20 +73,19 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
 
 
 def _delivery(design: DrawnDesign) -> str | None:
-    """Where and when the landers that are delivered as states reach the ground, in sentences."""
     return None if design.descents is None else descents_in_words(design.descents)
 
 
 def plan_of(
     design: DrawnDesign, site: Site, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
 ) -> Plan:
-    """The plan of a study that has been read."""
     study, keys = design.study, stage_keys(design.study)
     old = [one for one in stages_of(study) if not folder.is_current(one.files(study), keys[one.name])]
     stale = {stage.name: stage.title for stage in old}
     known = known_runs(study, folder)
     runs = tuple(possible_runs(design, folder, "screen" not in stale, known))
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
+    # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds)
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
@@ -123,7 +121,6 @@ def plan_of(
 def _made(
     study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...]
 ) -> dict[str, tuple[int, int]]:
-    """How many of each are to be made, at least and at most."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
@@ -135,13 +132,13 @@ def _made(
         "touchdowns": touchdowns,
         "journeys to rest": journeys,
         "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
+        # How many samples leave the surface is known when they are drawn.
         "flights": (0, flight_count(study) if "fly" in stale else 0),
         "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),
     }
 
 
 def _no_room(needed: int, free: int) -> list[str]:
-    """A disk that is too small."""
     if needed <= free:
         return []
     return [
@@ -151,6 +148,6 @@ def _no_room(needed: int, free: int) -> list[str]:
 
 
 def _free(path: Path) -> int:
-    """Free bytes where a folder is, or will be."""
+    # The folder need not be there yet.
     place = next(parent for parent in (path.absolute(), *path.absolute().parents) if parent.is_dir())
     return shutil.disk_usage(place).free

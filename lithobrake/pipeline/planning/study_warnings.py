@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.place_region import smallest_width
+from lithobrake.pipeline.design.arrivals import smallest_width
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
-from lithobrake.study.bed_section import FEWEST_BEDS
+from lithobrake.study.ground_sections import FEWEST_BEDS
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 
@@ -32,7 +32,6 @@ SHARED = ("restitution", "friction", "rolling_friction", "spinning_friction", "c
 
 
 def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -> list[str]:
-    """What to know before the study runs, in sentences, the most important first."""
     study, ground = design.study, [warning for warning in (site.warning, site.gravity_warning) if warning]
     touchdown = (
         [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
@@ -224,7 +223,6 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
 
 
 def _reach(value: Scalar) -> tuple[float, float]:
-    """Smallest and largest possible value."""
     return value.support() if isinstance(value, Uncertain) else (value, value)
 
 

@@ -1,23 +1,185 @@
-"""The beds of a study: what they follow from, and how they are poured."""
+"""The beds of a study: what they follow from, and how they are poured, with the kernels compiled first."""
 
+import logging
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, wait
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.pouring import pour_at_once
+from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import (
     acceleration,
     boulders,
     contact,
+    engine_hash,
     grain,
     grain_sizes,
     in_words_of_the_study,
     medians,
+    refuse_other_code,
 )
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe
+
+WHAT = "compiling kernels"
+
+
+def compile_kernels(tell: Callable[..., None], busy: int = 0) -> None:
+    """Compile what beds and landings call, unless it lies on disk; workers that start afterwards find it there.
+
+    tell: called as the progress of a job, with how many kernels are done, of how many. busy: cores that compile
+    something else. On one that idles a second process compiles a part of the engine: sooner done, at more CPU time,
+    as what both parts call is prepared twice.
+    """
+    from lithobrake.compilation.compiled import disk_cache, lies_on_disk, watched
+    from lithobrake.dem.example_world import step_locally, step_together
+    from lithobrake.dem.stepping.time_loop import advance
+
+    tell(0, 1, WHAT)
+    with watched("dem", lambda done, total: tell(done, total, WHAT, f"{done} of {total} kernels")):
+        if lies_on_disk(advance) or available_cores() < 2 + busy or not disk_cache("dem").keeps:
+            step_locally()
+        else:
+            with _meanwhile(step_together):
+                step_locally()
+        step_together()
+    tell(1, 1, WHAT)
+
+
+def compile_flights(job: Job) -> int:
+    """Have one of several workers of this machine compile what flights and journeys call, unless it lies on disk.
+
+    Returns how many workers are at it. Nobody waits for it; where it fails the flights will compile, and say why.
+    """
+    from lithobrake.compilation.compiled import disk_cache, lies_on_disk
+    from lithobrake.smallbody.integration import integrate_flights
+
+    if not isinstance(job.executor, LocalExecutor) or job.executor.worker_count == 1:
+        return 0
+    # Without a cache on the disk no other process would find what was compiled.
+    if lies_on_disk(integrate_flights) or not disk_cache("smallbody").keeps:
+        return 0
+    job.executor.submit(_quietly, fly_briefly, job.study)
+    return 1
+
+
+def fly_briefly(study: Study) -> None:
+    """Fly one lander from the site of a study for a second, and have another slide there; makes the gravity table."""
+    from lithobrake.smallbody import HardSurface, Launch, hop
+
+    site = Site(study)
+    origin, axes = site.frames(site.columns(2))
+    launch = Launch(origin, np.outer([1.0, 0.0], axes[0, 2]), captured=[False, True])
+    # No bounce: what happens at an impact is nothing that is compiled.
+    hop(site.body, launch, HardSurface(0.0), 1.0, friction=1.0, gravity=study.flight.gravity, bounce_limit=0)
+
+
+@contextmanager
+def _meanwhile(function: Callable[[], None]) -> Iterator[None]:
+    """Have another process call a function, and wait until it has; where that fails, nothing has been compiled."""
+    executor = LocalExecutor(1)
+    try:
+        called = executor.submit(_quietly, function)
+        yield
+        wait([called])
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def _quietly(function: Callable[..., None], *arguments: object) -> None:
+    """Call a function and say nothing of what is compiled: the process that waits for it says so."""
+    logging.disable(logging.WARNING)
+    try:
+        function(*arguments)
+    finally:
+        logging.disable(logging.NOTSET)
+
+
+# Which beds are being poured is looked at so often [s].
+_POLL_INTERVAL = 0.5
+
+
+def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None:
+    """Pour beds, each by its number with its recipe and the path of its file, on the workers of a study.
+
+    Raises ValueError that names the beds which cannot be poured, when all others are there.
+    """
+    # Workers that start afterwards find the kernels on the disk, where else each would compile them.
+    compile_kernels(job.progress, busy=compile_flights(job))
+    failures = _pour_here(job, beds) if len(beds) == 1 else _pour_on_workers(job, beds)
+    if failures:
+        raise ValueError(_refusal(failures, job.study.bed_count))
+
+
+def pour_one(
+    recipe: "BedRecipe", path: Path, engine: str, tell: Callable[[float, str], None] | None = None
+) -> None:  # fmt: skip
+    """Write the bed of a recipe to a file, in this process; engine: hash of the code of the coordinator.
+
+    Raises ValueError or FloatingPointError for a bed that does not come to rest, ValueError where the code is another.
+    """
+    from lithobrake.touchdown import pour_bed, stored_or_poured
+
+    refuse_other_code(engine)
+    with in_words_of_the_study():
+        # Another study may have poured it meanwhile, and a worker on another machine may have a library of its own.
+        stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=tell))
+
+
+def _pour_here(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> dict[str, list[int]]:
+    """Pour a single bed and show how far it is, which a worker cannot; give the reason if it fails."""
+    ((number, bed),) = beds.items()
+    count = job.study.bed_count
+    numbered = f"bed {number + 1} of {count}: " if count > 1 else ""
+    try:
+        pour_one(*bed, engine_hash(), lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
+    except (ValueError, FloatingPointError) as error:
+        return {_reason(error): [number]}
+    return {}
+
+
+def _pour_on_workers(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> dict[str, list[int]]:
+    """Pour beds on the workers; give the numbers of those that failed, by their reasons."""
+    engine = engine_hash()
+    numbers = {job.executor.submit(pour_one, *bed, engine): number for number, bed in beds.items()}
+    failures: dict[str, list[int]] = {}
+    pending, total = set(numbers), len(numbers)
+    while pending:
+        running = sorted(numbers[future] + 1 for future in pending if future.running())
+        done = total - len(pending)
+        detail = f"{done} of {total} beds, at work: {', '.join(map(str, running)) or 'none'}"
+        job.progress(done, total, "pouring beds", detail)
+        ended, pending = wait(pending, _POLL_INTERVAL, FIRST_COMPLETED)
+        for future in ended:
+            # The other beds go on: when the study is run again only those that failed are poured.
+            if error := future.exception():
+                failures.setdefault(_reason(error), []).append(numbers[future])
+    job.progress(total, total, "pouring beds")
+    return failures
+
+
+def _reason(error: BaseException) -> str:
+    """What a bed could not be poured for; what its user did not cause asks for nothing but another try."""
+    if isinstance(error, ValueError | FloatingPointError):
+        return str(error)
+    return f"{type(error).__name__}: {error}; give the same command again"
+
+
+def _refusal(failures: Mapping[str, list[int]], bed_count: int) -> str:
+    """All beds that failed, by their reasons, counted from 1."""
+    parts = []
+    for reason, found in failures.items():
+        beds = f"bed{'s' * (len(found) > 1)} {', '.join(str(number + 1) for number in sorted(found))}"
+        parts.append(f"{beds} of {bed_count} cannot be poured ({reason})")
+    return "; ".join(parts)
 
 
 def pour_beds(job: Job) -> None:
@@ -36,6 +198,7 @@ def pour_beds(job: Job) -> None:
     if found:
         job.say(f"bed: {found} of {len(names)} {'was' if found == 1 else 'were'} in the library of beds")
     if new:
+        # Absolute, as a worker may have another current folder.
         pour_at_once(job, {index: (recipe, job.folder.path.absolute() / names[index]) for index, recipe in new.items()})
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander, stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -35,7 +35,6 @@ class EnergyBound(NamedTuple):
     gyration: "NDArray[np.float64]"
 
     def at(self, rows: "slice | NDArray[np.int64]") -> "EnergyBound":
-        """The bound of some of the landers."""
         return EnergyBound(self.speed[rows], self.gyration[rows])
 
     def spin(self, speed: "NDArray[np.float64] | float" = 0.0) -> "NDArray[np.float64]":
@@ -65,6 +64,8 @@ def energy_bound(
     fallen = farthest(design.study, known["impact.speed"], gravity * slope) if across is None else across
     gained = gravity * (bed_height + fallen * slope)
     smallest, largest = gyrations(design, known)
+    # The spin before counts about the stiffest axis and the spin after about the easiest, so that the bound holds for
+    # every attitude.
     return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
@@ -73,6 +74,7 @@ def farthest(
 ) -> "NDArray[np.float64] | float":
     """How far [m] a lander comes downhill that impacts at a speed [m/s], by its acceleration [m/s2] along the slope."""
     if study.bed.sides == "walls":
+        # No two places of a box are farther apart than its diagonal.
         return float(np.hypot(*study.bed.width))
     limit = study.landing.time_limit
     return speed * limit + 0.5 * downhill * limit**2
@@ -141,6 +143,7 @@ def gyrations(
     """Smallest and largest principal moment of inertia over the mass [m2], [count] each."""
     section, mass = design.study.lander, values["lander.mass"]
     if section.inertia is None and _is_sphere(design.study):
+        # Two fifths of the squared radius, of a homogeneous ball.
         return 0.1 * values["lander.diameter"] ** 2, 0.1 * values["lander.diameter"] ** 2
     body = lander(design.study, design.medians)
     if section.inertia is not None:

@@ -4,16 +4,15 @@ The ledger knows every run that was ever made; `designs/NAME.csv` holds those th
 that what comes after needs neither the ledger nor the model.
 """
 
-import csv
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from lithobrake.campaign import Runs
-from lithobrake.files.atomic import atomic_path
+from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.folder.study_folder import AGAIN, StudyFolder
+from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study.units import run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -38,7 +37,6 @@ class DesignRuns:
 
     @classmethod
     def of(cls, runs: Runs) -> "DesignRuns":
-        """Those of a campaign."""
         records = runs.records
         return cls(
             keys=[one.key for one in records],
@@ -50,7 +48,7 @@ class DesignRuns:
 
     @classmethod
     def distinct(cls, designs: Sequence["DesignRuns"]) -> "DesignRuns":
-        """Every run of several designs once."""
+        # np.unique sorts by key; the sorted places give the order of the designs back.
         first = np.sort(np.unique([key for one in designs for key in one.keys], return_index=True)[1])
 
         def words(name: str) -> list[str]:
@@ -74,13 +72,13 @@ class DesignRuns:
 
     @property
     def run_count(self) -> int:
-        """How many runs."""
         return len(self.keys)
 
     @property
     def y(self) -> np.ndarray:
         """Fitted outputs, shape [run_count, output_count]; a row of NaN where the lander did not leave."""
         y = np.column_stack([self.output(name) for name in OUTPUTS])
+        # Outputs are fitted and drawn jointly, so a run counts with all of them or with none.
         clear = np.array(self.outcomes) == TouchdownOutcome.CLEAR
         return np.where((clear & ~np.isnan(y).any(axis=1))[:, None], y, np.nan)
 
@@ -111,13 +109,11 @@ class DesignRuns:
         head = [f"input:{name}" + _unit(name, units) for name in self.inputs]
         head += [f"output:{name}" + _unit(name, units) for name in self.outputs]
         columns = [*self.inputs.values(), *self.outputs.values()]
+        # repr has all digits, so that what is read is what was computed, to the last bit.
         cells = [["" if np.isnan(value) else repr(value) for value in column.tolist()] for column in columns]
         path = folder / file_of(design)
         path.parent.mkdir(exist_ok=True)
-        with atomic_path(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
-            table = csv.writer(file)
-            table.writerow([*PLAIN_COLUMNS, *head])
-            table.writerows(zip(self.keys, self.outcomes, self.reasons, *cells, strict=True))
+        write_rows(path, [*PLAIN_COLUMNS, *head], zip(self.keys, self.outcomes, self.reasons, *cells, strict=True))
 
     @classmethod
     def load(cls, folder: StudyFolder, design: str) -> "DesignRuns":
@@ -137,7 +133,6 @@ class DesignRuns:
 
 
 def file_of(design: str) -> str:
-    """Name of the file of a design."""
     return f"designs/{design}.csv"
 
 

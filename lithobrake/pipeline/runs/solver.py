@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lithobrake.campaign import Command, ModelServer
-from lithobrake.campaign.main_module import pickled
+from lithobrake.campaign.worker import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
@@ -50,6 +50,7 @@ class ServerModel:
         vectors = self.server.evaluate([[values[name] for name in self.names]], config)
         numbers = [number for vector in vectors for number in vector]
         outcomes = tuple(TouchdownOutcome)
+        # A float is in a range of whole numbers only where it is whole.
         if len(numbers) != len(LANDING) or numbers[0] not in range(len(outcomes)):
             raise ValueError(
                 f"{self.server.address} answered {reprlib.repr(numbers)}; allowed: {len(LANDING)} numbers, "
@@ -62,8 +63,6 @@ class ServerModel:
 
 @dataclass(frozen=True)
 class FunctionModel:
-    """Touchdowns by a function of the user's own, called with the values and the seed of a run."""
-
     function: Model
 
     def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
@@ -124,6 +123,7 @@ def refuse_contradictions(what: str, outputs: Mapping[str, float]) -> None:
     _refuse_parts(what, outputs)
     components = {name: value for name, value in outputs.items() if name.startswith(("velocity_out_", "spin_out_"))}
     for name, follows in completed(components).items():
+        # Speed, elevation and components are read by different stages, which would describe different landings.
         if not math.isclose(outputs[name], follows, rel_tol=PRINTED, abs_tol=0.0):
             raise ValueError(
                 f"{what} has {outputs[name]:.8g} for {name}, and {follows:.8g} follows from "

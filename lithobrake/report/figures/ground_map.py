@@ -1,10 +1,19 @@
-"""The ground about a place laid flat without a change of area: a local panel in metres, or both halves of the body."""
+"""The ground about a place laid flat, the density of places on it, and their marks."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, to_rgb
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import Normal, Stroke
 from numpy.typing import NDArray
+
+from lithobrake.report.figures.style import INK
+from lithobrake.results.dispersion import RestRegion
 
 Array = NDArray[np.float64]
 # Lines of the graticule: so many points each, and round steps between them [deg].
@@ -110,3 +119,101 @@ def round_length(most: float) -> float:
     """The largest of 1, 2 and 5 times a power of ten that is not more."""
     power = 10.0 ** np.floor(np.log10(most))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= most * (1.0 + 1e-12)))
+
+
+# Below this cells would be mostly empty, and each place is a dot.
+MANY = 1000
+# Cells along the width of a map.
+CELLS = 60
+
+
+def density_colours(colour: str) -> LinearSegmentedColormap:
+    """From a pale tint of a colour over itself to a dark shade, ever darker."""
+    own = np.array(to_rgb(colour))
+    ends = [tuple(1.0 - 0.3 * (1.0 - own)), tuple(own), tuple(0.3 * own)]
+    return LinearSegmentedColormap.from_list(f"density of {colour}", ends)
+
+
+def draw_cells(
+    axes: Axes, ground: GroundMap, places: tuple[Array, Array], panel: MapPanel | None, norm: LogNorm, colour: str
+) -> None:
+    """Draw how many places lie in each cell of a panel, or of the half of the body.
+
+    places: latitude and longitude [deg], shape [count] each.
+    """
+    counts, (x, y), _ = cell_counts(ground, places, panel)
+    shown = np.ma.masked_equal(counts.T, 0)
+    axes.pcolormesh(x, y, shown, norm=norm, cmap=density_colours(colour), zorder=1.4, rasterized=True)
+
+
+def cell_counts(
+    ground: GroundMap, places: tuple[Array, Array], panel: MapPanel | None
+) -> tuple[Array, tuple[Array, Array], float]:
+    """Counts in cells [CELLS, CELLS], the edges of these east and north [m], and the width of a cell [m]."""
+    shown = panel or MapPanel(0.0, 0.0, ground.edge)
+    seen = ground.facing(*places) >= 0.0
+    east, north = ground.places(*(one[seen] for one in places))
+    edges = np.linspace(-shown.half, shown.half, CELLS + 1)
+    x, y = shown.east + edges, shown.north + edges
+    return np.histogram2d(east, north, bins=(x, y))[0], (x, y), 2.0 * shown.half / CELLS
+
+
+def density_norm(counts: Sequence[Array]) -> LogNorm:
+    """One scale for several maps."""
+    return LogNorm(1.0, max([10.0, *(float(one.max()) for one in counts)]))
+
+
+# Four strokes that point at the place and leave it open: a site is where impacts may be densest.
+CROSSHAIR = Path(
+    [(0.4, 0.0), (1.0, 0.0), (-0.4, 0.0), (-1.0, 0.0), (0.0, 0.4), (0.0, 1.0), (0.0, -0.4), (0.0, -1.0)],
+    [Path.MOVETO, Path.LINETO] * 4,
+)
+# The white rim keeps the thin strokes readable on dark and on bright places alike.
+SITE_STYLE: dict[str, Any] = {
+    "marker": CROSSHAIR,
+    "markersize": 17,
+    "fillstyle": "none",
+    "markeredgecolor": INK,
+    "markeredgewidth": 1.6,
+    "path_effects": [Stroke(linewidth=3.4, foreground="white"), Normal()],
+}
+# Of the edges of regions with a soil of their own.
+SOIL_STYLE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "linestyle": (0, (1.0, 1.6))}
+Outlines = Sequence[Sequence[tuple[float, float]]]
+# Beyond this a region is dashed.
+LARGE_SHARE = 0.9
+
+
+def mark_site(axes: Axes, x: float, y: float) -> None:
+    """Mark the landing site; what lies there stays in sight."""
+    axes.plot(x, y, zorder=6, **SITE_STYLE)
+
+
+def region_style(region: RestRegion) -> Literal["-", "--"]:
+    """Style of the edge of a region."""
+    return "-" if region.share < LARGE_SHARE else "--"
+
+
+def fill_regions(axes: Axes, regions: Sequence[RestRegion], ground: GroundMap, colour: str) -> None:
+    """Fill regions on a map that holds them whole; the smaller lies in the larger, and the ground is darker there."""
+    for region in regions:
+        pieces = [Path(np.column_stack(ground.places(*np.array(line).T)), closed=False) for line in region.outlines]
+        if pieces:
+            path = Path.make_compound_path(*pieces)
+            axes.add_patch(PathPatch(path, facecolor=colour, alpha=0.16, linewidth=0.0, zorder=1.5))
+
+
+def draw_edges(axes: Axes, regions: Sequence[RestRegion], ground: GroundMap, colour: str) -> None:
+    """The edges of regions, as far as they lie on this half of the body."""
+    for region in regions:
+        for line in region.outlines:
+            x, y = ground.line(*np.array(line).T)
+            axes.plot(x, y, color="white", linewidth=2.4, zorder=3.5, alpha=0.8)
+            axes.plot(x, y, region_style(region), color=colour, linewidth=1.3, zorder=4)
+
+
+def draw_soils(axes: Axes, soils: Mapping[str, Outlines], ground: GroundMap) -> None:
+    """The edges of regions with a soil of their own, latitude and longitude [deg], on this half of the body."""
+    for lines in soils.values():
+        for line in lines:
+            axes.plot(*ground.line(*np.array(line).T), zorder=2.5, **SOIL_STYLE)

@@ -8,14 +8,13 @@ from matplotlib.colors import LogNorm, to_hex, to_rgb
 from numpy.typing import NDArray
 
 from lithobrake.report.content import LiveSection
-from lithobrake.report.figures.body_figure import BARE, COLOURS, colour_ends, facet_density
+from lithobrake.report.figures.body_figures import BARE, COLOURS, colour_ends, facet_density
 from lithobrake.report.figures.style import INK, LANDER, QUIET
 from lithobrake.report.live.views import geometry, orbit, section, still
 from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
 from lithobrake.report.words.captions import BODIES
 from lithobrake.report.words.numbers import number
-from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd
 
 Array = NDArray[np.float64]
 # Over the radius of the body: a pin, the marker of a lander, the ends of the axis and of the line to the partner.

@@ -1,20 +1,56 @@
-"""The explorer of the page: the coefficients of the emulator or expansion and the flown starts, for a browser."""
+"""The explorer of the page: emulator or expansion as tables, one touchdown of journeys, and arrays in a page."""
 
-from collections.abc import Mapping, Sequence
+import base64
+import json
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from lithobrake.report.content import LiveSection
-from lithobrake.report.live.packed import packed, script_data
-from lithobrake.report.page_data import DrawnPage, PageData, PaperPage
+from lithobrake.report.page_data import DrawnPage, JourneyPage, PageData, PaperPage
 from lithobrake.report.words.captions import action, input_words, listing, thousands
-from lithobrake.report.words.drawn_warnings import has_interval
+from lithobrake.report.words.drawn_captions import has_interval
 from lithobrake.report.words.labels import output
-from lithobrake.report.words.numbers import in_html, raised_units
+from lithobrake.report.words.numbers import in_html, number, raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.quantities import GROUND
+
+TYPES = ("float64", "float32", "int32", "int16", "uint8")
+
+
+def packed(arrays: Mapping[str, np.ndarray]) -> dict[str, dict[str, Any]]:
+    """Arrays as JSON values: type, shape, and little-endian bytes as base64. Raises ValueError for another type."""
+    return _values(arrays, lambda data: data)
+
+
+def deflated(arrays: Mapping[str, np.ndarray]) -> dict[str, dict[str, Any]]:
+    """The same with the bytes of each array deflated (RFC 1950), for those of which much is alike."""
+    return _values(arrays, lambda data: zlib.compress(data, 9))
+
+
+def _values(arrays: Mapping[str, np.ndarray], made: Callable[[bytes], bytes]) -> dict[str, dict[str, Any]]:
+    found = {}
+    for name, array in arrays.items():
+        if array.dtype.name not in TYPES:
+            raise ValueError(f"{name} has type {array.dtype}, but must have one of {', '.join(TYPES)}")
+        data = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<")).tobytes()
+        found[name] = {
+            "type": array.dtype.name,
+            "shape": list(array.shape),
+            "base64": base64.b64encode(made(data)).decode("ascii"),
+        }
+    return found
+
+
+def script_data(name: str, content: Mapping[str, Any]) -> str:
+    """An element of the page that holds JSON and is read by its name."""
+    text = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
+    return f'<script type="application/json" id="{name}">{text}</script>\n'
+
 
 # More flown starts would make the page heavier, and no cell of them noticeably smaller.
 MOST_STARTS = 20_000
@@ -162,3 +198,61 @@ def _flown(flights: Table) -> dict[str, np.ndarray]:
         "status": np.array([statuses.index(str(word)) for word in first["status"]], dtype=np.uint8),
         "places": np.column_stack(places).astype(np.float32),
     }
+
+
+# What differs from touchdown to touchdown, in the order in which the page says it; the first one by its logarithm.
+SPEED = "impact.speed"
+OF_TOUCHDOWN = (SPEED, "impact.incidence_deg", *GROUND[:2])
+
+
+def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
+    """The explorer with all its numbers; none where the touchdowns have no emulator."""
+    explorer = data.explorer
+    if explorer is None:
+        return []
+    outcomes = data.touchdowns["outcome"]
+    fitted = data.touchdowns.where(np.isin(outcomes, explorer.outcome_names))
+    beds = len(np.unique(fitted["bed"]))
+    # Refits draw runs where those that left lie on one bed.
+    over_beds = 1 < beds == explorer.group_count
+    moved = [name for name in explorer.input_names if name not in explorer.attitude_inputs]
+    facts = law_facts(explorer, moved, fitted) | {
+        # Of all touchdowns that are drawn, those that are captured.
+        "ofAll": True,
+        "holds": True,
+        "action": "come to rest at this touchdown",
+        "reach": explorer.interval_reach if over_beds else None,
+    }
+    note = f"{_what(fitted, beds)} {_law(explorer)} {emulator_bands(explorer, over_beds)} "
+    return [explorer_section(note, facts, explorer)]
+
+
+def _what(fitted: Table, beds: int) -> str:
+    """What is evaluated, and over which range it is known."""
+    ranges = listing([_range(fitted, name) for name in OF_TOUCHDOWN])
+    return (
+        "Any touchdown of a journey: move the two ends of an input range, and this page evaluates the emulator of all "
+        "touchdowns over it. The emulator was fitted to "
+        f"{thousands(fitted.row_count)} touchdowns on {beds} {'bed' if beds == 1 else 'beds'}, with {ranges}; the "
+        "sliders extend to the end of its training range."
+    )
+
+
+def _range(fitted: Table, name: str) -> str:
+    """The range of an input, "speed at impact from 0.01 to 0.08 m/s"."""
+    low, high = (number(float(end), 2) for end in (fitted[name].min(), fitted[name].max()))
+    return f"{input_words(name)} from {low} to {high} {fitted.columns[name].units}"
+
+
+def _law(explorer: ExplorerTables) -> str:
+    """What the inputs are drawn from, and what no slider moves."""
+    even = listing([input_words(name) for name in OF_TOUCHDOWN if name != SPEED])
+    attitude = "Attitudes are uniform over all rotations, or have one side toward the ground; s"
+    attitude = attitude if explorer.attitude else "S"
+    named = {*OF_TOUCHDOWN, *explorer.attitude_inputs}
+    others = "Soil and lander follow their input distributions; " if set(explorer.input_names) - named else ""
+    words = (
+        f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, independently of the "
+        f"number of touchdowns there. {attitude}pin and bed are part of the scatter."
+    )
+    return f"{words[:1].upper()}{words[1:]}"

@@ -13,7 +13,7 @@ from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.ground_map import round_length
 from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import RULE
-from lithobrake.report.live.packed import deflated, script_data
+from lithobrake.report.live.explorer import deflated, script_data
 from lithobrake.report.page_data import PageData
 from lithobrake.report.words.numbers import in_html, number
 

@@ -5,11 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import Content, PageSection, Plot
-from lithobrake.report.figures.aim_figure import aim_figure
-from lithobrake.report.figures.calibration_figure import calibration_figure
-from lithobrake.report.figures.rare_figure import rare_figure
-from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
-from lithobrake.report.figures.variance_figure import variance_figure
+from lithobrake.report.figures.model_figures import calibration_figure
+from lithobrake.report.figures.option_figures import aim_figure, rare_figure
+from lithobrake.report.figures.run_figures import LandingsOfRuns, runs_figure, variance_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
 from lithobrake.report.page_data import DrawnPage, RunsPage
@@ -17,8 +15,7 @@ from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables import drawn_tables as tables
 from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_captions import rare_caption
-from lithobrake.report.words.drawn_warnings import warnings
+from lithobrake.report.words.drawn_captions import rare_caption, warnings
 from lithobrake.vocabulary.quantities import OVER_RIM
 
 if TYPE_CHECKING:

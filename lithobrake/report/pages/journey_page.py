@@ -1,21 +1,27 @@
-"""The page of a study of journeys: where and when they end, why, how sure that is, and the first touchdown."""
+"""The page of a study of journeys, and a page about one journey."""
 
+import base64
+import io
 from collections.abc import Mapping
+from html import escape
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.report.content import Content, PageSection, Plot
-from lithobrake.report.figures.aim_figure import aim_figure
-from lithobrake.report.figures.journey_numbers import RestSpread, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.hulls import scene
+from lithobrake.report.figures.map_frames import track_map
+from lithobrake.report.figures.option_figures import aim_figure
 from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, outcomes_figure, places_by_end
-from lithobrake.report.figures.shares import Share
-from lithobrake.report.figures.variance_figure import variance_figure
+from lithobrake.report.figures.run_figures import variance_figure
+from lithobrake.report.figures.share_figures import RestSpread, Share, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.style import figure_style
 from lithobrake.report.live.body_view import end_views
-from lithobrake.report.live.touchdown_explorer import touchdown_sections
-from lithobrake.report.live.views import landing_views
+from lithobrake.report.live.explorer import deflated, script_data, touchdown_sections
+from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_views, landing_words
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
+from lithobrake.report.pages.html import own_file
 from lithobrake.report.pages.shared_plots import draw_bed
 from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables import journey_tables as tables
@@ -24,9 +30,9 @@ from lithobrake.report.words import captions
 from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
+from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 from lithobrake.results.journey_results import EndShare
-from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 
 if TYPE_CHECKING:
@@ -188,3 +194,97 @@ def _of_rest(data: JourneyPage, name: str) -> np.ndarray:
     """A number of the landers at rest, shape [lander]."""
     values: np.ndarray = data.journeys[name][data.journeys["end"] == JourneyEnd.AT_REST]
     return values
+
+
+MAP_WORDS = "Impacts in their order, joined by straight lines, and where the lander ended. The flights are not drawn."
+HINT = "Drag to rotate; after a click on the picture the wheel zooms; two fingers do both."
+
+
+def one_journey_page(motion: JourneyMotion) -> str:
+    """The page as HTML that needs nothing but itself."""
+    track = motion.track
+    shown = list(zip(track.touchdowns, motion.bodies, strict=False))
+    title = f"Journey {track.number}"
+    scripts = "".join(own_file(name) for name in ("pages/page.js", *SCRIPTS, "live/touchdowns.js"))
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>
+{own_file("pages/style.css")}</style>
+</head>
+<body><main>
+<header>
+<p class="kind">One lander</p>
+<h1>{title}</h1>
+<p class="answer">{escape(track.end_words)}</p>
+</header>
+{_table(track)}
+<figure><img alt="{escape(MAP_WORDS)}" src="data:image/png;base64,{_map(track)}">
+<figcaption>{escape(MAP_WORDS)}</figcaption></figure>
+{_touchdowns(shown)}
+<footer>Written by lithobrake. SI units; degrees where a label says so. Numbers count from 0.</footer>
+</main>
+<script>
+{scripts}</script>
+</body>
+</html>
+"""
+
+
+def _table(track: JourneyTrack) -> str:
+    """The touchdowns, a row each."""
+    heads = (
+        "touchdown", "after delivery", "impact speed [m/s]", "incidence [deg]", "rebound speed [m/s]", "on the bed [s]",
+        "to the next [m]",
+    )  # fmt: skip
+    head = "".join(f'<th class="number">{name}</th>' for name in heads)
+    rows = [one.cells(track.to_next(number)) for number, one in enumerate(track.touchdowns)]
+    cells = ["".join(f'<td class="number">{escape(cell)}</td>' for cell in row) for row in rows]
+    body = "".join(f"<tr>{row}</tr>\n" for row in cells)
+    box = f"<table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table>"
+    return f'<div class="scroll" tabindex="0">{box}</div>'
+
+
+def _map(track: JourneyTrack) -> str:
+    """The map as a PNG in base64."""
+    memory = io.BytesIO()
+    with figure_style():
+        # The picture's own metadata would differ between versions of matplotlib.
+        track_map(track).savefig(memory, format="png", metadata={"Software": None})
+    return base64.b64encode(memory.getvalue()).decode("ascii")
+
+
+def _touchdowns(shown: list[tuple[TouchdownFacts, MovingBodies]]) -> str:
+    """The view in three dimensions with the choice of a touchdown, and the numbers of each."""
+    if not shown:
+        return ""
+    options = "".join(
+        f'<option value="touchdown-{facts.number}">{escape(facts.words)}</option>' for facts, _ in shown
+    )  # fmt: skip
+    data = "".join(_data(facts, bodies) for facts, bodies in shown)
+    return f"""<h2>In three dimensions</h2>
+<section id="touchdowns-3d" class="view3d">
+<p class="tools"><select aria-label="Touchdown">{options}</select></p>
+<div></div>
+<p class="note"></p>
+</section>
+{data}"""
+
+
+def _near(bodies: MovingBodies) -> float:
+    """How far away [m] a tile of the ground is seen whole."""
+    return AWAY * float(max(bodies.attributes["width"]))
+
+
+def _data(facts: TouchdownFacts, bodies: MovingBodies) -> str:
+    """What a browser draws a touchdown from."""
+    drawn = scene(bodies, has_lander=True)
+    arrays, numbers = landing_arrays(drawn)
+    # Where the lander goes far over ground that repeats, it would be a dot beside its whole way.
+    if bodies.attributes.get("sides") == "periodic" and numbers["orbit"]["distance"] > (near := _near(bodies)):
+        numbers |= {"follows": True, "orbit": {**numbers["orbit"], "distance": near}}
+    words = f"{landing_words(drawn, arrays, numbers)} {HINT}"
+    return script_data(f"touchdown-{facts.number}-data", {**numbers, "words": words, "arrays": deflated(arrays)})

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import Content, PageSection, Plot
-from lithobrake.report.figures.count_figure import Design, count_figure
-from lithobrake.report.figures.error_figure import error_figure
-from lithobrake.report.figures.sobol_figure import sobol_figure
+from lithobrake.report.figures.expansion_figures import Design, count_figure, sobol_figure
+from lithobrake.report.figures.model_figures import error_figure
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.live.views import landing_views
 from lithobrake.report.page_data import PaperPage

@@ -5,23 +5,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import PageSection, Plot
-from lithobrake.report.figures.bed_figure import bed_figure
-from lithobrake.report.figures.body_figure import body_figure
+from lithobrake.report.figures.body_figures import body_figure
+from lithobrake.report.figures.expansion_figures import scatter_figure
 from lithobrake.report.figures.hulls import scene
-from lithobrake.report.figures.landing_figure import landing_figure
-from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, outcomes_figure
-from lithobrake.report.figures.rest_figure import RestMap, rest_figure
-from lithobrake.report.figures.scatter_figure import scatter_figure
-from lithobrake.report.figures.shares import Share
+from lithobrake.report.figures.landing_figure import bed_figure, landing_figure
+from lithobrake.report.figures.place_map import (
+    PlaceMap,
+    Places,
+    Regions,
+    RestMap,
+    local_figure,
+    outcomes_figure,
+    rest_figure,
+)
+from lithobrake.report.figures.share_figures import Share
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
 from lithobrake.report.words import captions
 from lithobrake.report.words.captions import hours, thousands
 from lithobrake.report.words.labels import PAPER_OUTPUTS
-from lithobrake.results.shares import CountedShare
-from lithobrake.vocabulary.fate_colours import FATE_COLOURS
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus, JourneyStatus, TouchdownOutcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,7 +10,7 @@ from lithobrake.report.words.numbers import area, flat, number
 from lithobrake.results.dispersion import GroundResults, ImpactNumber
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.json_values import to_json
-from lithobrake.results.shares import CountedShare, EmulatorShares
+from lithobrake.results.run_results import CountedShare, EmulatorShares
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 

@@ -7,13 +7,11 @@ from typing import Any
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed
-from lithobrake.report.tables.limit_state_tables import limit_state_tables
+from lithobrake.report.tables.limit_tables import limit_state_tables, rare_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
-from lithobrake.report.tables.rare_tables import rare_tables
-from lithobrake.report.words.captions import action, hours, input_words
-from lithobrake.report.words.chance import BAND
-from lithobrake.report.words.drawn_captions import RETURNS, output_words
-from lithobrake.report.words.drawn_warnings import (
+from lithobrake.report.words.captions import BAND, action, hours, input_words
+from lithobrake.report.words.drawn_captions import (
+    RETURNS,
     as_sentence,
     drawn_things,
     has_interval,
@@ -21,12 +19,12 @@ from lithobrake.report.words.drawn_warnings import (
     left_out,
     missing_sentence,
     outcome_label,
+    output_words,
 )
 from lithobrake.report.words.journey_captions import quantile_words
 from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
-from lithobrake.results.run_results import SideRuns, VarianceParts
-from lithobrake.results.shares import Estimate
+from lithobrake.results.run_results import Estimate, SideRuns, VarianceParts
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.percentages import interval_digits, percent, span, with_interval
 

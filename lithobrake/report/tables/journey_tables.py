@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from lithobrake.report.content import PageTable, Tile
 from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.words.drawn_warnings import as_sentence, interval
+from lithobrake.report.words.drawn_captions import as_sentence, interval
 from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
 from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import EndShare, RestQuantiles

@@ -8,8 +8,8 @@ from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.words.captions import action, input_words
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
-from lithobrake.results.expansions import Ends
 from lithobrake.results.json_values import to_json
+from lithobrake.results.model_results import Ends
 from lithobrake.results.telling_numbers import TellingNumbers
 from lithobrake.vocabulary.percentages import percent
 

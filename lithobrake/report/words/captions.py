@@ -2,13 +2,13 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from lithobrake.report.page_data import PageData, PaperPage, SampledPage
 from lithobrake.report.words.labels import PAPER_OUTPUTS, PART_KEY, output
 from lithobrake.report.words.numbers import area, number, q2_words
-from lithobrake.results.expansions import DesignCounts, ExpansionResults, OutputErrors
 from lithobrake.results.journey_results import JourneyRest
+from lithobrake.results.model_results import DesignCounts, ExpansionResults, OutputErrors
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 
@@ -295,3 +295,28 @@ def _float(value: object) -> float:
     if not isinstance(value, int | float):
         raise ValueError(f"landing.h5 has {value!r} where a number is needed; make the landing again")
     return float(value)
+
+
+# Half of the middle nine tenths of a normal distribution, in standard deviations.
+NINE_TENTHS = 1.645
+# What the bands of the emulator should hold of the runs (band_90 of its scores).
+BAND = 0.9
+
+
+def luck(counts: Sequence[int]) -> tuple[float, float]:
+    """Between which counts nine of ten bins lie where all is right, if runs are independent."""
+    total, bins = sum(counts), len(counts)
+    half = NINE_TENTHS * math.sqrt(total / bins * (1.0 - 1.0 / bins))
+    return total / bins - half, total / bins + half
+
+
+def unlucky(counts: Sequence[int]) -> list[bool]:
+    """Which bins lie outside of that."""
+    low, high = luck(counts)
+    return [not low <= count <= high for count in counts]
+
+
+def band_luck(run_count: int) -> tuple[float, float]:
+    """Between which shares nine of ten right bands hold as many independent runs."""
+    half = NINE_TENTHS * math.sqrt(BAND * (1.0 - BAND) / run_count)
+    return BAND - half, BAND + half

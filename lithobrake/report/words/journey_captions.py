@@ -2,8 +2,7 @@
 
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import hours, place_words
-from lithobrake.report.words.drawn_captions import detected_words, floor_words, variance
-from lithobrake.report.words.drawn_warnings import landing_warnings
+from lithobrake.report.words.drawn_captions import detected_words, floor_words, landing_warnings, variance
 from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import RestQuantile
 from lithobrake.vocabulary.outcomes import JourneyEnd

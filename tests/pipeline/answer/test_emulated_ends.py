@@ -5,8 +5,8 @@ import pytest
 
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, _agrees, _narrowed
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.emulated_journeys import COPIES
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.journeys.emulated_journeys import COPIES
 from lithobrake.results.journey_results import EndShare
 from lithobrake.vocabulary.outcomes import JourneyEnd
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.answer.first_sides import first_sides, with_journeys
-from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides, with_journeys
 from lithobrake.pipeline.design.lander_attitude import with_side_down
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study, check_tables

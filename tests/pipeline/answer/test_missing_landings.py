@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.answer.missing_landings import described, left_in_flight, missing_landings, missing_warning
+from lithobrake.pipeline.answer.run_answers import described, left_in_flight, missing_landings, missing_warning
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.run_results import MissingLandings
 from lithobrake.study import Study, check_tables

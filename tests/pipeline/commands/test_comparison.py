@@ -15,8 +15,8 @@ from lithobrake.cli import app
 from lithobrake.pipeline import StudyFolder, compare_studies, study_status
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
 from lithobrake.pipeline.commands.running_estimates import running_estimates
-from lithobrake.results.comparison import StudyComparison
 from lithobrake.results.json_values import from_json
+from lithobrake.results.questions import StudyComparison
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 

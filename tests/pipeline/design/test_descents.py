@@ -14,21 +14,19 @@ from scipy.special import ndtri
 
 from lithobrake.files.ephemeris_message import message_states
 from lithobrake.pipeline import stage_keys
-from lithobrake.pipeline.design.body_fixed import against_ground, icrf_to_body, turned
+from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
-from lithobrake.pipeline.design.descents import Descents
-from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.design.descents import Descents, spread, spread_root
+from lithobrake.pipeline.design.design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
-from lithobrake.pipeline.design.place_region import place_region, smallest_width
-from lithobrake.pipeline.design.release_draws import spread, spread_root
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
 from lithobrake.study import Study, StudyError, check_tables
-from lithobrake.study.bed_section import LANDINGS_A_BED, default_bed_count
-from lithobrake.study.flight_sections import SiteSection
-from lithobrake.study.lander_sides import directions_of_sides, side_words, sides_down
-from lithobrake.study.release_section import ReleaseSection
+from lithobrake.study.delivery_sections import ReleaseSection
+from lithobrake.study.ground_sections import LANDINGS_A_BED, default_bed_count
+from lithobrake.study.impact_sections import SiteSection
+from lithobrake.study.lander_section import directions_of_sides, side_words, sides_down
 from lithobrake.study.source import StudySource
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import PLACE, draw, medians

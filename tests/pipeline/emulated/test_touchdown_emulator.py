@@ -17,21 +17,18 @@ from lithobrake.campaign import read_records
 from lithobrake.cli import app
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import plan_lines, plan_study, served_models
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.delivery_options import option_arrivals
-from lithobrake.pipeline.emulated.emulated_journeys import COPIES, MOST_LANDINGS
-from lithobrake.pipeline.inference.bounce_table import read_bounces
-from lithobrake.pipeline.inference.expected_inference import ExpectedInference
-from lithobrake.pipeline.inference.inferred_study import InferredStudy, infer_study
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
+from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS, option_arrivals
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
-from lithobrake.results.emulated_results import EmulatedJourneys
+from lithobrake.results.journey_results import EmulatedJourneys
 from lithobrake.study import StudyError, StudySource
-from lithobrake.study.lander_sides import sides_down
+from lithobrake.study.lander_section import sides_down
 from lithobrake.study.reader import check_tables
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION
@@ -141,7 +138,7 @@ def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResu
 
 def test_the_emulator_of_touchdowns_is_served(results: StudyResults, monkeypatch: pytest.MonkeyPatch) -> None:
     # A function has no beds, and study.toml does not name it.
-    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    monkeypatch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
     served = {one.name: one for one in served_models(results.folder / "study.toml", results.folder)}["emulator"]
     assert served.inputs[-4:] == ("impact.speed", "impact.incidence_deg", "surface.gravity", "surface.slope_deg")
     point = [float(np.median(results.touchdowns[name])) for name in served.inputs]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.folder.owner import refuse_others_folder
+from lithobrake.pipeline.study_folder import refuse_others_folder
 from lithobrake.study import StudySource
 
 STAGES = {

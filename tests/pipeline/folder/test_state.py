@@ -17,9 +17,8 @@ from typer.testing import CliRunner
 from lithobrake.cli import app
 from lithobrake.files.atomic import locked
 from lithobrake.pipeline.commands.status import StudyStatus
-from lithobrake.pipeline.folder.notes import Notes
-from lithobrake.pipeline.folder.state import FolderState, StageState
-from lithobrake.pipeline.folder.study_folder import FileState
+from lithobrake.pipeline.folder_state import FolderState, StageState
+from lithobrake.pipeline.study_folder import FileState, Notes
 from lithobrake.results import open_study
 
 from ...command_line import lithobrake

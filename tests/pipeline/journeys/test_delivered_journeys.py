@@ -16,20 +16,19 @@ import lithobrake
 from lithobrake.cli import app
 from lithobrake.export import Push, write_push
 from lithobrake.pipeline.commands.status import study_status
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning.expected_width import law_before
-from lithobrake.pipeline.planning.plan_in_words import plan_lines
+from lithobrake.pipeline.planning.plan import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sky.seen_from_rest import rows_of, sky_dependencies
-from lithobrake.pipeline.sky.where_they_stand import Days, where_it_stands
+from lithobrake.pipeline.sky import Days, rows_of, sky_dependencies, where_it_stands
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
-from lithobrake.study.lander_sides import SIDES
+from lithobrake.study.lander_section import SIDES
 from lithobrake.vocabulary.quantities import SKY
 
 from ...paper_tables import paper_tables, with_keys

@@ -18,15 +18,15 @@ from lithobrake.export import ExportOptions, export_study
 from lithobrake.export.flown import Flown
 from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
-from lithobrake.pipeline.answer.variance_of_runs import parts_of_journeys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulated.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
-from lithobrake.pipeline.folder.study_folder import StudyFolder
+from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.journeys.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.figures.ground_map import GroundMap, round_length
@@ -37,8 +37,7 @@ from lithobrake.report.words import journey_captions as words
 from lithobrake.results import ExplorerTables, StudyResults
 from lithobrake.results.journey_results import EndShare
 from lithobrake.study import StudySource, check_tables, read_study
-from lithobrake.vocabulary.fate_colours import END_COLOURS
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
 from ...command_line import lithobrake
@@ -394,7 +393,7 @@ PHONE = 390
 @pytest.fixture
 def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
     # A function has no beds.
-    monkeypatch.setattr("lithobrake.pipeline.emulated.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    monkeypatch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
     return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
 
 

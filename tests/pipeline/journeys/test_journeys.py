@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.campaign import read_records
-from lithobrake.geometry.contact_frame import about_z, attitude_of, from_frame, quaternion
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.rough_ground import MEAN_INCIDENCE, first_axes
-from lithobrake.pipeline.journeys.resting_attitude import side_down
-from lithobrake.pipeline.rest.journeys import hard_surface, on_rough
+from lithobrake.geometry.frames import about_z, attitude_of, from_frame, quaternion
+from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import side_down
+from lithobrake.pipeline.first_bounces.bounces_to_rest import hard_surface, on_rough
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, Launch, RoughGround, fly, hop
 from lithobrake.study import Study, StudyError

@@ -16,7 +16,7 @@ import pytest
 import lithobrake
 from lithobrake.campaign import Ledger, RunStatus, read_records
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.journeys.journey_tables import FILES
+from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
@@ -31,7 +31,7 @@ from .soil_journeys import STUDY
 MOMENTS = (3, 9, 16)
 WORKERS = 2
 ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ")
-TABLES = (*FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
+TABLES = (*JOURNEY_FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
 
@@ -48,7 +48,7 @@ def calm(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def begun(calm: Path, tmp_path: Path) -> Path:
     """A folder that has the beds of the study and nothing of its journeys, beside the study file."""
     shutil.copy(calm.parent / "soil.toml", tmp_path)
-    shutil.copytree(calm, tmp_path / "out", ignore=shutil.ignore_patterns("runs.sqlite*", *FILES, "designs"))
+    shutil.copytree(calm, tmp_path / "out", ignore=shutil.ignore_patterns("runs.sqlite*", *JOURNEY_FILES, "designs"))
     # A ledger that is being made is there a moment before its table.
     Ledger(tmp_path / "out" / "runs.sqlite").close()
     return tmp_path / "out"

@@ -16,19 +16,26 @@ from lithobrake.cli import app
 from lithobrake.export import write_site_cells
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
-from lithobrake.pipeline.answer.shares_over_refits import Refits
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.emulated.touchdown_emulator import TouchdownEmulator
+from lithobrake.pipeline.answer.emulated_ends import Refits
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sites.site_cells import MOST_UNKNOWN, all_at_rest, share_of_known, site_cells
-from lithobrake.pipeline.sites.site_ground import PLACES, SiteGround
-from lithobrake.pipeline.sites.site_landers import SiteLanders, site_arrivals
+from lithobrake.pipeline.site_grid import (
+    MOST_UNKNOWN,
+    PLACES,
+    SiteGround,
+    SiteLanders,
+    all_at_rest,
+    share_of_known,
+    site_arrivals,
+    site_cells,
+)
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import from_json, to_json
-from lithobrake.results.site_map import SiteMap
+from lithobrake.results.site_results import SiteMap
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.percentages import LEVEL
 

@@ -13,13 +13,13 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline import run_study, study_status
-from lithobrake.pipeline.answer.variance_of_runs import parts_of_variance
-from lithobrake.pipeline.commands.one_landing import landing_inputs
+from lithobrake.pipeline.answer.run_estimates import parts_of_variance
+from lithobrake.pipeline.commands.one_lander import landing_inputs
 from lithobrake.pipeline.commands.site_maps import map_sites
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.planning.planned_soils import planned_soils
+from lithobrake.pipeline.planning.planned_ground import planned_soils
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity

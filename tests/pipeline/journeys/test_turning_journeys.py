@@ -13,13 +13,12 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.export import Push, export_study, write_push
+from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, ground_inputs, turned_in_flight
 from lithobrake.pipeline.design.descents import Descents
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.felt_acceleration import felt
-from lithobrake.pipeline.design.free_rotation import turned_in_flight
-from lithobrake.pipeline.design.local_ground import STEEPEST_DEG, ground_inputs
-from lithobrake.pipeline.journeys.stages import journey_dependencies
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.stages import journey_dependencies
 from lithobrake.smallbody import (
     Body,
     Flights,

@@ -12,13 +12,12 @@ import pytest
 
 import lithobrake
 from lithobrake.chaos import coefficient_changes, load
-from lithobrake.files.hashing import hashed_seed
+from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import StudyFolder, stage_keys
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.paper.expansion_samples import outcome_model
-from lithobrake.pipeline.paper.paper_designs import points
-from lithobrake.pipeline.paper.run_noise import Scatter
+from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
+from lithobrake.pipeline.paper.expansions import points
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults, open_study

@@ -20,19 +20,23 @@ from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
 from lithobrake.pipeline.design.dependencies import pour_seed
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.samples import Samples
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
-from lithobrake.pipeline.planning.expected_disk import expected_bytes
-from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.planning.expected_time import SPREAD, SPREAD_OF_TOUCHDOWNS, landing_time, pour_time, run_time
-from lithobrake.pipeline.planning.plan_in_words import brief_lines
-from lithobrake.pipeline.planning.planned_beds import planned_boulders, planned_grains, planned_tile
-from lithobrake.pipeline.planning.planned_ground import planned_ground
-from lithobrake.pipeline.planning.planned_runs import PlannedRuns
+from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns
+from lithobrake.pipeline.planning.expected_time import (
+    SPREAD,
+    SPREAD_OF_TOUCHDOWNS,
+    expected_bytes,
+    landing_time,
+    pour_time,
+    run_time,
+)
+from lithobrake.pipeline.planning.plan import brief_lines
+from lithobrake.pipeline.planning.planned_ground import planned_boulders, planned_grains, planned_ground, planned_tile
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import _missed, expected_loss, study_warnings
+from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
@@ -527,7 +531,7 @@ def test_more_processes_than_cores_are_no_faster_and_a_cluster_has_no_known_time
 
 
 def test_without_a_compiled_engine_the_pace_is_that_of_the_reference_machine(tmp_path: Path) -> None:
-    code = "from lithobrake.pipeline.planning.pace import machine_pace; print(machine_pace())"
+    code = "from lithobrake.pipeline.planning.expected_time import machine_pace; print(machine_pace())"
     environment = os.environ | {"LITHOBRAKE_CACHE": str(tmp_path)}
     shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert shown.stdout.strip() == "None"

@@ -10,10 +10,10 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.aim_results import aim_statement
-from lithobrake.pipeline.emulate.fitted_emulator import REFIT_COUNT
-from lithobrake.pipeline.rest.aiming import _distances
-from lithobrake.pipeline.rest.hard_equivalents import implied
+from lithobrake.pipeline.answer.question_answers import aim_statement
+from lithobrake.pipeline.first_bounces.aiming import _distances
+from lithobrake.pipeline.first_bounces.bounce_laws import implied
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json
 from lithobrake.results.summary import DrawnResults

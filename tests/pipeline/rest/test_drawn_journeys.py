@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import lithobrake
-from lithobrake.pipeline.answer.run_shares import PARTS
+from lithobrake.pipeline.answer.run_estimates import PARTS
 from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
 from lithobrake.results.json_values import to_json

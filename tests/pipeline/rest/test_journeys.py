@@ -14,22 +14,24 @@ from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, proportion, rest_results
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.emulate.outgoing import rolling_spin
-from lithobrake.pipeline.emulate.samples import SAMPLE_OUTCOMES, Samples
-from lithobrake.pipeline.fly.flights import COLUMNS, read_table, write_table
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.bounce_laws import (
+    FRICTIONS,
+    INTERCEPT,
+    SLOPE,
+    SlowArrivals,
+    effective_friction,
+    why_no_soil,
+)
+from lithobrake.pipeline.first_bounces.bounces_to_rest import COLUMNS as REST
+from lithobrake.pipeline.first_bounces.bounces_to_rest import Sites, arc_rows, rest_dependencies, sliding_friction
+from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.paper.expansion_bounce import SoilBounce
-from lithobrake.pipeline.paper.expansion_journeys import follow_expansion_samples
-from lithobrake.pipeline.paper.paper_designs import points
-from lithobrake.pipeline.paper.run_noise import Scatter
-from lithobrake.pipeline.rest.bounce_inputs import why_no_soil
-from lithobrake.pipeline.rest.journey_arcs import arc_rows
-from lithobrake.pipeline.rest.journeys import COLUMNS as REST
-from lithobrake.pipeline.rest.journeys import Sites, rest_dependencies, sliding_friction
-from lithobrake.pipeline.rest.sliding_law import FRICTIONS, INTERCEPT, SLOPE, effective_friction
-from lithobrake.pipeline.rest.slow_arrivals import SlowArrivals
+from lithobrake.pipeline.paper.expansion_journeys import SoilBounce, follow_expansion_samples
+from lithobrake.pipeline.paper.expansion_samples import Scatter
+from lithobrake.pipeline.paper.expansions import points
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, rolling_spin
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Arcs, HardSurface, Impacts, Rebounds
 from lithobrake.study import Study, check_tables

@@ -12,7 +12,7 @@ import pytest
 from lithobrake.campaign import LocalExecutor
 from lithobrake.compilation.compiled import disk_cache
 from lithobrake.files.atomic import atomic_path
-from lithobrake.pipeline.runs import kernels
+from lithobrake.pipeline.runs import beds
 
 QUICK = Path(__file__).parents[3] / "scenarios" / "first_bounce.toml"
 
@@ -21,7 +21,7 @@ SCRIPT = """
 import sys
 from lithobrake.compilation.compiled import Kernel
 from lithobrake.dem import Box, Material
-from lithobrake.pipeline.runs.kernels import compile_kernels
+from lithobrake.pipeline.runs.beds import compile_kernels
 from lithobrake.touchdown import BedRecipe, GrainSizes, Lander, Landing, land, pour_bed
 
 def called():
@@ -48,7 +48,7 @@ print(shown[-1], all(0 <= done <= total for done, total, *_ in shown))
 """
 
 COLD = """
-import lithobrake.pipeline.runs.kernels as kernels
+import lithobrake.pipeline.runs.beds as kernels
 from lithobrake.dem.stepping.time_loop import advance
 kernels.available_cores = lambda: 2
 shown = []
@@ -64,7 +64,7 @@ import sys
 from pathlib import Path
 from dataclasses import replace
 from lithobrake.compilation.compiled import Kernel
-from lithobrake.pipeline.runs.kernels import fly_briefly
+from lithobrake.pipeline.runs.beds import fly_briefly
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import HardSurface, Launch, fly, hop
 from lithobrake.study import read_study
@@ -131,5 +131,5 @@ def test_one_of_several_workers_compiles_flights_that_are_not_on_disk(monkeypatc
     monkeypatch.setattr("lithobrake.compilation.compiled.lies_on_disk", lambda kernel: on_disk)
     monkeypatch.setattr(LocalExecutor, "submit", lambda self, *call: asked.append(call[1:]))
     with LocalExecutor(workers) as executor:
-        assert kernels.compile_flights(SimpleNamespace(executor=executor, study="the study")) == calls
-    assert asked == [(kernels.fly_briefly, "the study")] * calls
+        assert beds.compile_flights(SimpleNamespace(executor=executor, study="the study")) == calls
+    assert asked == [(beds.fly_briefly, "the study")] * calls

@@ -8,7 +8,7 @@ import pytest
 
 from lithobrake.files.reading import DamagedFileError
 from lithobrake.report import write_corner
-from lithobrake.report.figures.corner_figure import corner_figure
+from lithobrake.report.figures.model_figures import corner_figure
 from lithobrake.report.figures.style import figure_style
 
 GRID = (np.arange(200) + 0.5) / 200

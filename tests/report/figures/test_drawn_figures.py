@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from lithobrake.report.figures.calibration_figure import calibration_figure
-from lithobrake.report.figures.runs_figure import LandingsOfRuns, runs_figure
+from lithobrake.report.figures.model_figures import calibration_figure
+from lithobrake.report.figures.run_figures import LandingsOfRuns, pieces, runs_figure, variance_figure
 from lithobrake.report.figures.style import TEST, TRAINING, figure_style
-from lithobrake.report.figures.variance_figure import pieces, variance_figure
-from lithobrake.report.words.chance import band_luck, luck
-from lithobrake.results.emulator_results import OutputScore
+from lithobrake.report.words.captions import band_luck, luck
+from lithobrake.results.model_results import OutputScore
 from lithobrake.results.run_results import VariancePart, VarianceParts
 
 

@@ -8,25 +8,22 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from lithobrake.report.figures.aim_figure import aim_figure
-from lithobrake.report.figures.bed_figure import bed_figure, three_moments
-from lithobrake.report.figures.body_figure import body_figure, colour_ends, facet_density
-from lithobrake.report.figures.count_figure import Design, count_figure
-from lithobrake.report.figures.error_figure import error_figure
+from lithobrake.report.figures.body_figures import body_figure, colour_ends, facet_density
+from lithobrake.report.figures.expansion_figures import Design, count_figure, scatter_figure, sobol_figure
 from lithobrake.report.figures.hulls import Hull, Scene
-from lithobrake.report.figures.landing_figure import instants, landing_figure
-from lithobrake.report.figures.scatter_figure import scatter_figure
-from lithobrake.report.figures.shares import Share, draw_shares
-from lithobrake.report.figures.sobol_figure import sobol_figure
+from lithobrake.report.figures.landing_figure import bed_figure, instants, landing_figure, three_moments
+from lithobrake.report.figures.model_figures import error_figure
+from lithobrake.report.figures.option_figures import aim_figure
+from lithobrake.report.figures.share_figures import Share, draw_shares
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_outcomes, draw_rest
 from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results import MovingBodies
-from lithobrake.results.aims import AimOnGround, AimResult, AimResults, BestAim
-from lithobrake.results.expansions import OutputErrors
-from lithobrake.results.shares import Estimate, ShareInterval
-from lithobrake.vocabulary.fate_colours import END_COLOURS, FATE_COLOURS
+from lithobrake.results.model_results import OutputErrors
+from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
+from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS
 
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
 FACES = np.array([(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)])

@@ -7,8 +7,7 @@ from matplotlib.figure import Figure
 
 from lithobrake.dem import ConvexHull
 from lithobrake.geometry.attitude import rotation_matrices
-from lithobrake.report.figures.hulls import Camera, Hull, frame_axes, paint, subdivide
-from lithobrake.report.figures.shading import SUN, direction
+from lithobrake.report.figures.hulls import SUN, Camera, Hull, direction, frame_axes, paint, subdivide
 
 CUBE = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 STRAIGHT = np.array([[1.0, 0.0, 0.0, 0.0]])

@@ -9,15 +9,29 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
 
-from lithobrake.report.figures.density import cell_counts, density_norm, draw_cells
-from lithobrake.report.figures.ground_map import GroundMap, MapPanel, panel_around, step_of
+from lithobrake.report.figures.ground_map import (
+    GroundMap,
+    MapPanel,
+    cell_counts,
+    density_norm,
+    draw_cells,
+    mark_site,
+    panel_around,
+    step_of,
+)
 from lithobrake.report.figures.map_frames import degrees, frame_half, frame_local
-from lithobrake.report.figures.map_marks import mark_site
-from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, local_figure, outcomes_figure
-from lithobrake.report.figures.rest_figure import RestMap, rest_figure
-from lithobrake.report.figures.shares import Share
+from lithobrake.report.figures.place_map import (
+    PlaceMap,
+    Places,
+    Regions,
+    RestMap,
+    local_figure,
+    outcomes_figure,
+    rest_figure,
+)
+from lithobrake.report.figures.share_figures import Share
 from lithobrake.report.figures.style import INK, figure_style
-from lithobrake.results.regions import RestRegion
+from lithobrake.results.dispersion import RestRegion
 
 GREEN = "#2aa884"
 NONE = np.empty(0)

@@ -23,11 +23,11 @@ from lithobrake.chaos import (
     Uniform,
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
-from lithobrake.geometry.attitude_terms import AttitudeTerms
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.geometry.attitude import AttitudeTerms
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.figures.ground_map import GroundMap
-from lithobrake.report.live.packed import packed, script_data
+from lithobrake.report.live.explorer import packed, script_data
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.study import check_tables
 

@@ -12,7 +12,7 @@ from lithobrake.report.live.body_view import body_views
 from lithobrake.report.live.views import LARGEST, landing_arrays, landing_views
 from lithobrake.report.page_data import PaperPage
 from lithobrake.results import MovingBodies
-from lithobrake.vocabulary.fate_colours import FATE_COLOURS
+from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
 from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES
 

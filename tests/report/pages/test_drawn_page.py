@@ -18,13 +18,12 @@ from lithobrake.report.page_data import DrawnPage, page_results
 from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables.dispersion_tables import parts
-from lithobrake.report.tables.rare_tables import rare_tables
+from lithobrake.report.tables.limit_tables import rare_tables
 from lithobrake.report.words import captions, drawn_captions
-from lithobrake.report.words.drawn_warnings import warnings
+from lithobrake.report.words.drawn_captions import warnings
 from lithobrake.results import open_study
-from lithobrake.results.emulator_results import EmulatorScores, JointScore, OutputScore
-from lithobrake.results.run_results import OutputDirection, VariancePart, VarianceParts
-from lithobrake.results.shares import Estimate
+from lithobrake.results.model_results import EmulatorScores, JointScore, OutputScore
+from lithobrake.results.run_results import Estimate, OutputDirection, VariancePart, VarianceParts
 from lithobrake.vocabulary.percentages import with_interval
 
 ONE_BED: dict[str, Any] = {"lower": None, "upper": None, "next_bed": None, "why": "One bed was poured."}

@@ -8,7 +8,7 @@ import pytest
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot, Tile
 from lithobrake.report.pages.html import LONG, page
 from lithobrake.report.words.numbers import area, flat, number, raised_units, show, unit_scales
-from lithobrake.vocabulary.fate_colours import FATE_COLOURS
+from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
 
 def drawn(name: str, title: str, sentence: str) -> Plot:

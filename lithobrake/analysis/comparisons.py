@@ -1,0 +1,322 @@
+"""Which of several choices is best, and the difference between two studies paired by run."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lithobrake.analysis.confidence import (
+    LEVEL,
+    Bounds,
+    IntervalEstimate,
+    answers,
+    numbered_beds,
+    share_interval,
+    t_quantile,
+)
+from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.analysis.output_estimates import quantile_estimate
+from lithobrake.analysis.share_estimate import share_estimate
+from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
+
+
+@dataclass(frozen=True)
+class BestChoice:
+    """The choice of the largest mean.
+
+    best, runner_up  places among the choices; runner_up is None where only one was allowed
+    shares           of refits in which each choice is the best, [choice_count]; 0 of those not allowed. No probability
+                     that it is: refits scatter about one fit, whose own error they share
+    difference       of the best over the runner-up
+    own              how often the best meets the event, less what its selection adds: the mean of the best of many is
+                     too high by several points. A little of the excess is left where many are alike; the interval
+                     holds it (docs/aiming.md has the coverage)
+    not_worse        places of the best and of all that cannot be told from it; they hold the true best at the level
+    """
+
+    best: int
+    runner_up: int | None
+    shares: Array
+    difference: IntervalEstimate | None
+    own: IntervalEstimate
+    not_worse: tuple[int, ...]
+
+
+def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoice:
+    """Find the choice that meets an event most often, met [choice_count, refit_count, draw_count], of those allowed.
+
+    bed_count: beds that the emulator was fitted to. The same place in two choices is the same draw of all but the
+    choice, so differences are taken draw by draw. Refits scatter by what beds do and by what so few draws add; their
+    distances from the mean are scaled to the first, and to what all draws together leave of the second.
+    Raises ValueError for fewer than two refits, draws or beds, and where nothing is allowed.
+    Source: [Sun-2011] (variance between, freed of that within); [Efron-1983] (what selection adds); [Hsu-1981] (all
+    that cannot be told from the best).
+    """
+    values, open_to = numbers("met", met), np.flatnonzero(np.asarray(allowed, dtype=bool))
+    if values.ndim != 3 or np.shape(allowed) != values.shape[:1] or not np.isfinite(values).all():
+        raise ValueError(
+            f"met has shape {values.shape} and allowed {np.shape(allowed)}, but must be finite numbers [choice_count, "
+            "refit_count, draw_count], and whether each choice is allowed [choice_count]"
+        )
+    if min(values.shape[1:]) < 2 or whole_number("bed_count", bed_count, 0) < 2 or not len(open_to):
+        raise ValueError(
+            f"draws have shape {values.shape} on {bed_count} beds, and {len(open_to)} choices are allowed; give at "
+            "least two refits, two draws of each and two beds, and allow one choice"
+        )
+    means = values.mean(axis=(1, 2))
+    order = open_to[np.argsort(-means[open_to], kind="stable")]
+    best, runner_up = int(order[0]), int(order[1]) if len(order) > 1 else None
+    scaled = np.array([_scaled(one, bed_count) for one in values[open_to]])
+    # Choices that are alike in a refit share it.
+    wins = scaled >= scaled.max(axis=0)
+    shares = np.zeros(len(values))
+    shares[open_to] = (wins / wins.sum(axis=0)).mean(axis=1)
+    not_worse = _not_worse(values, best, open_to, bed_count)
+    own = _own(values, best, open_to, not_worse, bed_count)
+    if runner_up is None:
+        return BestChoice(best, None, shares, None, own, not_worse)
+    between = values[best] - values[runner_up]
+    half = t_quantile(bed_count - 1) * math.sqrt(_error_variance(between, bed_count))
+    value = float(between.mean())
+    return BestChoice(best, runner_up, shares, IntervalEstimate(value, value - half, value + half), own, not_worse)
+
+
+def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, float]) -> tuple[float, float, float]:
+    """Quantile of values [count] and its bounds, those at the levels that the share below it may have.
+
+    A bound beyond the outermost value is minus or plus infinity: so few values do not tell it. Raises ValueError for no
+    value, one that is not finite, and a probability or levels outside 0 to 1.
+    Source: [Woodruff-1952]; [Hyndman-1996], definition 5.
+    """
+    finite_number("probability", probability, at_least=0.0, at_most=1.0)
+    first, second = (finite_number("levels", one, at_least=0.0, at_most=1.0) for one in levels)
+    ordered = np.sort(numbers("values", values))
+    if ordered.ndim != 1 or not len(ordered) or not np.isfinite(ordered).all() or first > second:
+        raise ValueError(
+            f"values have shape {ordered.shape}, levels are {first} and {second}; give at least one value, all of them "
+            "finite, and the lower level first"
+        )
+    places = (np.arange(len(ordered)) + 0.5) / len(ordered)
+    lower, middle, upper = np.interp([first, probability, second], places, ordered).tolist()
+    return middle, lower if first >= places[0] else -math.inf, upper if second <= places[-1] else math.inf
+
+
+def _own(
+    values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int
+) -> IntervalEstimate:
+    """The mean of the best less its optimism, with the error that those which cannot be distinguished from it have.
+
+    That the best is chosen among them chooses a small error of its own, too. So the variance is theirs together, as a
+    part of p (1 - p), on the logit scale near 0 and 1.
+    """
+    value = min(max(float(values[best].mean()) - _optimism(values[allowed], bed_count), 0.0), 1.0)
+    limit = upper_limit(bed_count, LEVEL)
+    means = values[list(near)].mean(axis=(1, 2))
+    spread = float((means * (1.0 - means)).sum())
+    # Where no draw scatters so many beds bound what was never seen.
+    if value in (0.0, 1.0) or spread <= 0.0:
+        return IntervalEstimate(value, value * (1.0 - limit), value + (1.0 - value) * limit)
+    part = sum(_error_variance(values[one], bed_count) for one in near) / spread
+    lower, upper = share_interval(value, t_quantile(bed_count - 1) * math.sqrt(part * value * (1.0 - value)))
+    return IntervalEstimate(value, lower, upper)
+
+
+def _optimism(values: Array, bed_count: int) -> float:
+    """How far the best of a refit lies above its own mean over all refits, of [choice_count, refit_count, draw_count].
+
+    Choices scatter alike, so what refits and draws add is told from all of them together: that of one choice alone is
+    told so roughly from few draws that too much would be taken off.
+    """
+    means = values.mean(axis=2)
+    centres = means.mean(axis=1, keepdims=True)
+    total = float(means.var(axis=1, ddof=1).mean())
+    within = float(values.var(axis=2, ddof=1).mean()) / values.shape[2]
+    error = max(total - within, 0.0) * bed_count / (bed_count - 1) + within / values.shape[1]
+    deviations = math.sqrt(error / total) * (means - centres) if total > 0.0 else means - centres
+    winners = (centres + deviations).argmax(axis=0)
+    return float(deviations[winners, np.arange(len(winners))].mean())
+
+
+def _not_worse(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> tuple[int, ...]:
+    """Places of the best and of those whose difference to it is within its error, all together (Bonferroni)."""
+    from scipy import special
+
+    others = [int(one) for one in allowed if one != best]
+    reach = float(special.stdtrit(bed_count - 1, 1.0 - (1.0 - LEVEL) / max(len(others), 1)))
+    differences = {one: values[best] - values[one] for one in others}
+    near = [one for one, gap in differences.items() if gap.mean() <= reach * math.sqrt(_error_variance(gap, bed_count))]
+    return tuple(sorted([best, *near]))
+
+
+def _error_variance(draws: Array, bed_count: int) -> float:
+    """Variance of the error of the mean of draws [refit_count, draw_count], over other beds and draws."""
+    refit_count, draw_count = draws.shape
+    total = float(draws.mean(axis=1).var(ddof=1))
+    within = float(draws.var(axis=1, ddof=1).mean()) / draw_count
+    # What so few draws cannot tell from chance counts as its own standard error, as in refit_interval.
+    between = max(total - within, total * math.sqrt(2.0 / refit_count))
+    # Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
+    return between * bed_count / (bed_count - 1) + within / refit_count
+
+
+def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
+    """Means of refits [refit_count], scattered about that of all as far as that may be wrong."""
+    means = draws.mean(axis=1)
+    deviations = means - means.mean()
+    total = float(means.var(ddof=1))
+    scale = math.sqrt(_error_variance(draws, bed_count) / total) if total > 0.0 else 0.0
+    scaled: NDArray[np.float64] = means.mean() + scale * deviations
+    return scaled
+
+
+# With so few beds their sums say less of a correlation than the pairs do.
+FEWEST_BEDS = 8
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """A number of one study, in its unit; a bound that the runs cannot give is None."""
+
+    value: float | None
+    lower: float | None
+    upper: float | None
+
+
+@dataclass(frozen=True)
+class PairedDifference:
+    """The second study less the first, in the unit of the answer.
+
+    first, second   the answer of each, from the pairs alone
+    value           the difference; None where one of them has no answer
+    lower, upper    its interval; None where one of the studies cannot bound it
+    level           confidence of the interval
+    correlation     of the two runs of a pair, about the answer of each study; None where one of them does not vary
+    unpaired        lower and upper bound that two studies of the same sizes would give without pairs; None likewise
+    pairs           with an answer in both studies
+    """
+
+    first: Estimated
+    second: Estimated
+    value: float | None
+    lower: float | None
+    upper: float | None
+    level: float
+    correlation: float | None
+    unpaired: Bounds | None
+    pairs: int
+
+    @property
+    def landings_saved(self) -> float | None:
+        """How many times the runs an unpaired comparison takes for an interval as narrow; None where there is none."""
+        if self.unpaired is None or self.lower is None or self.upper is None or self.upper <= self.lower:
+            return None
+        return ((self.unpaired[1] - self.unpaired[0]) / (self.upper - self.lower)) ** 2
+
+
+def share_difference(
+    first: ArrayLike, second: ArrayLike, bed: ArrayLike, *, why: str | None = None
+) -> PairedDifference:
+    """Difference of the means of shares [pair_count], each 0 to 1, NaN without an outcome, on these beds [pair_count].
+
+    why: a reason why the pairs give no interval, as one impact point. Intervals of both as `share_estimate` has them,
+    so landings without an outcome widen them. Raises ValueError where no pair has an outcome in both.
+    """
+
+    def estimated(shares: Array) -> tuple[Estimated, Array]:
+        found = share_estimate(shares, bed, why=why)
+        return Estimated(found.share, found.lower, found.upper), shares
+
+    return _difference(estimated, first, second, bed)
+
+
+def quantile_difference(
+    first: ArrayLike,
+    second: ArrayLike,
+    bed: ArrayLike,
+    probability: float,
+    *,
+    counts: bool = False,
+    why: str | None = None,
+) -> PairedDifference:
+    """Difference of a quantile of an output [pair_count], NaN where a run has none, on these beds [pair_count].
+
+    Each quantile is over the runs that have the output in its own study. counts, why: as for `quantile_estimate`.
+    """
+
+    def estimated(values: Array) -> tuple[Estimated, Array]:
+        found = quantile_estimate(values, bed, probability, counts=counts, why=why)
+        if found.value is None:
+            return Estimated(None, None, None), values
+        below = np.where(np.isfinite(values), (values <= found.value).astype(float), np.nan)
+        # The quantile is the higher the fewer values lie below it.
+        return Estimated(found.value, found.lower, found.upper), -below
+
+    return _difference(estimated, first, second, bed)
+
+
+def _difference(
+    estimated: Callable[[Array], tuple[Estimated, Array]], first: ArrayLike, second: ArrayLike, bed: ArrayLike
+) -> PairedDifference:
+    """From the estimate of each study and what each run contributes to it."""
+    of_first, of_second = answers("first", first), answers("second", second)
+    beds = numbered_beds(bed, len(of_first))
+    if len(of_first) != len(of_second):
+        raise ValueError(f"first has {len(of_first)} runs and second {len(of_second)}; give the same pairs of both")
+    (one, given), (two, taken) = estimated(of_first), estimated(of_second)
+    pairs = int((np.isfinite(given) & np.isfinite(taken)).sum())
+    value = None if one.value is None or two.value is None else two.value - one.value
+    correlation = pair_correlation(given, taken, beds)
+    bounds, unpaired = (_bounds(one, two, r) for r in (correlation or 0.0, 0.0))
+    lower, upper = bounds if bounds is not None else (None, None)
+    return PairedDifference(one, two, value, lower, upper, LEVEL, correlation, unpaired, pairs)
+
+
+def _bounds(first: Estimated, second: Estimated, correlation: float) -> Bounds | None:
+    """Bounds of second less first; None where one of both lacks an end."""
+    ends = (first.value, first.lower, first.upper, second.value, second.lower, second.upper)
+    if None in ends:
+        return None
+    one, one_low, one_high, two, two_low, two_high = (float(end) for end in ends if end is not None)
+    return difference_bounds((one, one_low, one_high), (two, two_low, two_high), correlation)
+
+
+def difference_bounds(
+    first: tuple[float, float, float], second: tuple[float, float, float], correlation: float = 0.0
+) -> Bounds:
+    """Bounds of second less first, each given as value, lower and upper bound.
+
+    Source: [Zou-2008] (the variances are recovered at the bounds that decide).
+    """
+    (one, one_low, one_high), (two, two_low, two_high) = first, second
+
+    def reach(a: float, b: float) -> float:
+        return math.sqrt(max(a * a + b * b - 2.0 * correlation * a * b, 0.0))
+
+    return two - one - reach(one_high - one, two - two_low), two - one + reach(one - one_low, two_high - two)
+
+
+def pair_correlation(first: Array, second: Array, beds: Labels) -> float | None:
+    """Correlation of what the two runs of a pair contribute, each [pair_count] with NaN; None where one does not vary.
+
+    That of the pairs or that of the sums over beds, whichever is lower: an interval is then never too narrow for a
+    correlation that one of them has by chance.
+    """
+    both = np.isfinite(first) & np.isfinite(second)
+    if both.sum() < 3:
+        return None
+    one, two = (values[both] - values[both].mean() for values in (first, second))
+    found = [_correlation(one, two)]
+    number = np.unique(beds[both], return_inverse=True)[1]
+    if number.max() + 1 >= FEWEST_BEDS:
+        sums = [np.bincount(number, values).astype(np.float64) for values in (one, two)]
+        found.append(_correlation(sums[0], sums[1]))
+    known = [r for r in found if r is not None]
+    return min(known) if known else None
+
+
+def _correlation(one: Array, two: Array) -> float | None:
+    norm = math.sqrt(float(one @ one) * float(two @ two))
+    return float(one @ two) / norm if norm > 0.0 else None

@@ -1,0 +1,292 @@
+"""Bodies in free motion between two kicks, and when two of them could touch."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.dem.bodies.arrays import (
+    Bodies,
+    Cores,
+    Flags,
+    Floats,
+    Integers,
+    Pairs,
+    Planes,
+    both_roundings,
+    both_shapes,
+    first_shape,
+)
+from lithobrake.dem.bodies.motion import turn_by
+from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
+from lithobrake.dem.narrow_phase.feature_distance import SPHERES, feature_indices, feature_kind, listed_feature
+from lithobrake.dem.narrow_phase.feature_list import travelled
+
+# Largest angle [rad] by which a body turns freely at once.
+LARGEST_TURN = 0.2
+
+
+class Flight(NamedTuple):
+    """Per body, between its kicks."""
+
+    time: Floats  # [body_count], s, to which it was last moved
+    velocity: Floats  # [body_count, 3], m/s, for which its pairs were planned
+    momentum: Floats  # [body_count, 3], kg m2/s, the same
+    slack: Floats  # [body_count], m/s, change of the speed of its surface for which the plans hold
+    turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
+    mass: Floats  # [part_count], kg, smallest that a contact meets
+    head: Integers  # [body_count], first entry of the list of its pairs, -1: none
+    stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
+    held: Flags  # [body_count], see holding.py
+    held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
+    held_momentum: Floats  # [body_count, 3], kg m2/s, the same
+    fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
+    resolved_speed: Floats  # [1], m/s, of collisions that take all steps; slower ones take fewer
+
+
+class Rules(NamedTuple):
+    gravity: Vector  # m/s2
+    drag: float  # 1/s
+    paper_mass: bool  # as in Step
+    steps: float  # in the duration of a contact
+    skin: float  # m, gap below which two are neighbours
+
+
+@kernel
+def spin_of(bodies: Bodies, body: int) -> Vector:
+    """Return the angular velocity of a body [rad/s]."""
+    return times(bodies.inverse_inertia, body, row(bodies.angular_momentum, body))
+
+
+@kernel
+def spin_bound(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on the size of a body's angular velocity [rad/s], however it tumbles."""
+    momentum = row(bodies.angular_momentum, body)
+    return flight.turning[body] * dot(momentum, momentum) ** 0.5
+
+
+@kernel
+def surface_speed(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on the speed of a body's surface [m/s]."""
+    velocity = row(bodies.velocity, body)
+    return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * spin_bound(bodies, flight, body)
+
+
+@kernel
+def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> None:
+    """Move a body in free flight to an instant [s]. Writes to bodies and flight."""
+    time = now - flight.time[body]
+    if time <= 0.0:
+        return
+    flight.time[body] = now
+    if flight.held[body]:
+        return
+    before = row(bodies.velocity, body)
+    after = fall(bodies, body, before, time, rules)
+    spin = spin_bound(bodies, flight, body)
+    # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
+    fastest = max(dot(before, before), dot(after, after)) ** 0.5
+    bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
+    parts = 1 + int(spin * time / LARGEST_TURN)
+    for _ in range(parts):
+        turn_freely(bodies, body, time / parts)
+
+
+@kernel
+def fall(bodies: Bodies, body: int, before: Vector, time: float, rules: Rules) -> Vector:
+    """Move a body for a time [s] under gravity and drag, exactly; return its velocity then. Writes to bodies."""
+    if rules.drag == 0.0:
+        after = plus(before, scaled(time, rules.gravity))
+        add(bodies.position, body, time, plus(before, scaled(0.5 * time, rules.gravity)))
+    else:
+        kept = np.exp(-rules.drag * time)
+        # What drag and gravity come to in the end.
+        last = scaled(1.0 / rules.drag, rules.gravity)
+        after = plus(last, scaled(kept, minus(before, last)))
+        way = plus(scaled(time, last), scaled((1.0 - kept) / rules.drag, minus(before, last)))
+        add(bodies.position, body, 1.0, way)
+        momentum = row(bodies.angular_momentum, body)
+        # The motion is exact; the ledger takes the mean of the losses at both ends.
+        turning = dot(momentum, spin_of(bodies, body)) * (1.0 + kept * kept)
+        moving = bodies.mass[body] * (dot(before, before) + dot(after, after))
+        bodies.dragged[body] += 0.5 * rules.drag * time * (moving + turning)
+        put(bodies.angular_momentum, body, scaled(kept, momentum))
+    put(bodies.velocity, body, after)
+    return after
+
+
+@kernel
+def turn_freely(bodies: Bodies, body: int, time: float) -> None:
+    """Turn a body freely for a time [s] by the spin at its middle, to the second order. Writes to bodies."""
+    momentum, spin = row(bodies.angular_momentum, body), spin_of(bodies, body)
+    if not bodies.isotropic[body]:
+        # Euler's equations: the angular momentum stands still while the body turns under it.
+        spin = plus(spin, scaled(0.5 * time, times(bodies.inverse_inertia, body, cross(momentum, spin))))
+    turn_by(bodies, body, spin, time)
+
+
+@large_kernel
+def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None:
+    """Move all bodies to an instant [s] before which no contact is due. Writes to bodies and flight."""
+    for body in range(len(bodies.mass)):
+        fly_to(bodies, flight, body, now, rules)
+
+
+@kernel
+def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> Vector:
+    """Return where a body will be at an instant [s] unless it is kicked before [m]."""
+    if flight.held[body]:
+        return row(bodies.position, body)
+    time = now - flight.time[body]
+    way, drop = time, 0.5 * time * time
+    if rules.drag > 0.0:
+        way = (1.0 - np.exp(-rules.drag * time)) / rules.drag
+        drop = (time - way) / rules.drag
+    moved = plus(scaled(way, row(bodies.velocity, body)), scaled(drop, rules.gravity))
+    return plus(row(bodies.position, body), moved)
+
+
+@kernel
+def weight(rules: Rules) -> float:
+    """Return the size of gravity [m/s2]."""
+    return dot(rules.gravity, rules.gravity) ** 0.5
+
+
+@kernel
+def relative_weight(flight: Flight, first: int, second: int, rules: Rules) -> float:
+    """Return a bound on the acceleration [m/s2] with which two fall against each other: none where both are held.
+
+    Of two that move freely, one may fly while the other rests on a third.
+    """
+    both_held = second >= 0 and flight.held[first] and flight.held[second]
+    return 0.0 if both_held else weight(rules)
+
+
+@kernel
+def time_to_close(gap: float, speed: float, acceleration: float) -> float:
+    """Return the shortest time [s] in which a gap [m] closes at a speed [m/s] under an acceleration [m/s2]."""
+    fastest = speed + (speed * speed + 2.0 * acceleration * gap) ** 0.5
+    return 2.0 * gap / fastest if fastest > 0.0 else np.inf
+
+
+class Approach(NamedTuple):
+    gap: float  # m, of the feature that may touch first; not above 0 where one touches
+    speed: float  # m/s, at which that one meets at most while the plans hold
+    time: float  # s, before which none touches
+
+
+@kernel
+def closing_speed(bodies: Bodies, flight: Flight, first: int, second: int) -> float:
+    """Return a bound on the speed at which the surfaces of two near each other while their plans hold [m/s]."""
+    turning = bodies.turning_radius[first] * spin_bound(bodies, flight, first)
+    between, slack = row(bodies.velocity, first), flight.slack[first]
+    if second >= 0:
+        turning += bodies.turning_radius[second] * spin_bound(bodies, flight, second)
+        between = minus(between, row(bodies.velocity, second))
+        slack += flight.slack[second]
+    return dot(between, between) ** 0.5 + turning + slack
+
+
+@kernel
+def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int, speed: float, rules: Rules) -> float:
+    """Return a bound on how the speed at which a feature closes grows [m/s2]; speed: at which any closes at most [m/s].
+
+    In the frame of a face: the fall, the turning of either's points, and what the turning of the face adds.
+    """
+    spin = spin_bound(bodies, flight, first)
+    acceleration = relative_weight(flight, first, second, rules)
+    acceleration += 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
+    if second < 0:
+        return acceleration
+    spin = spin_bound(bodies, flight, second)
+    return acceleration + 2.0 * spin * (bodies.turning_radius[second] * spin + speed)
+
+
+@kernel
+def sooner(approach: Approach, gap: float, closing: float, slack: float, acceleration: float) -> Approach:
+    """Return the sooner of an approach and of a feature at a gap [m] that closes at a speed and a slack [m/s]."""
+    speed = max(closing, 0.0) + slack
+    time = time_to_close(max(gap, 0.0), speed, acceleration)
+    if gap > 0.0 and time >= approach.time:
+        return approach
+    return Approach(gap, speed + acceleration * time if time < np.inf else 0.0, time)
+
+
+@kernel
+def approach_of(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight, rules: Rules
+) -> Approach:
+    """Return how near a pair is to touching, from the features that are listed and the motion of either."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    # What is not listed is farther away than the motion for which the list still serves.
+    left, speed = pairs.wake[pair] - travelled(bodies, first, second), closing_speed(bodies, flight, first, second)
+    acceleration = closing_acceleration(bodies, flight, first, second, speed, rules)
+    if pairs.feature_count[pair] < 0 or left <= 0.0:
+        return Approach(0.0, speed, 0.0)
+    approach = sooner(Approach(left, 0.0, np.inf), left, speed, 0.0, acceleration)
+    if second < 0:
+        return approach_to_plane(pair, bodies, cores, planes, pairs, flight, acceleration, approach)
+    return approach_to_body(pair, bodies, cores, pairs, flight, acceleration, approach)
+
+
+@kernel
+def approach_to_plane(
+    pair: int, bodies: Bodies, cores: Cores, planes: Planes, pairs: Pairs, flight: Flight,
+    acceleration: float, approach: Approach,
+) -> Approach:  # fmt: skip
+    body, plane = pairs.first[pair], -1 - pairs.second[pair]
+    shape, outward, spin = first_shape(pair, bodies, pairs), row(planes.normal, plane), spin_of(bodies, body)
+    level = dot(outward, row(bodies.position, body)) - planes.offset[plane] - cores.rounding[shape]
+    for k in range(pairs.feature_count[pair]):
+        corner = row(cores.vertex, cores.vertex_start[shape] + feature_indices(listed_feature(pair, pairs, k))[0])
+        arm = times(bodies.rotation, body, corner)
+        closing = -dot(outward, plus(row(bodies.velocity, body), cross(spin, arm)))
+        approach = sooner(approach, level + dot(outward, arm), closing, flight.slack[body], acceleration)
+    return approach
+
+
+@kernel
+def approach_to_body(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, flight: Flight, acceleration: float, approach: Approach
+) -> Approach:
+    first, second = pairs.first[pair], pairs.second[pair]
+    apart, shapes = way_between(bodies, first, second), both_shapes(pair, bodies, pairs)
+    between = minus(row(bodies.velocity, second), row(bodies.velocity, first))
+    slack, left = flight.slack[first] + flight.slack[second], approach.gap
+    if feature_kind(pairs.feature[pair, 0]) == SPHERES:
+        return approach_of_spheres(pair, bodies, cores, pairs, between, slack, acceleration, approach)
+    reach = both_roundings(cores, shapes)
+    spin, other_spin = spin_of(bodies, first), spin_of(bodies, second)
+    for k in range(pairs.feature_count[pair]):
+        feature = listed_feature(pair, pairs, k)
+        on_first, normal, distance = measure_feature(
+            bodies, cores, feature, (first, second), shapes, apart, reach + left
+        )
+        if distance < reach + left:
+            on_second = minus(plus(on_first, scaled(distance, normal)), apart)
+            moving = plus(between, minus(cross(other_spin, on_second), cross(spin, on_first)))
+            approach = sooner(approach, distance - reach, -dot(moving, normal), slack, acceleration)
+            if approach.gap <= 0.0:
+                break
+    return approach
+
+
+@kernel
+def approach_of_spheres(
+    pair: int, bodies: Bodies, cores: Cores, pairs: Pairs, between: Vector, slack: float, acceleration: float,
+    approach: Approach,
+) -> Approach:  # fmt: skip
+    """Return the sooner of an approach and of two spheres whose bodies move against each other, `between` [m/s]."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    centre, apart, central = sphere_centres(pair, bodies, cores, pairs)
+    # A ball about its centre of mass turns without moving its surface; one off the centre is carried round.
+    if not central:
+        arm = minus(centre, row(bodies.position, first))
+        other_arm = minus(plus(arm, apart), way_between(bodies, first, second))
+        turning = minus(cross(spin_of(bodies, second), other_arm), cross(spin_of(bodies, first), arm))
+        between = plus(between, turning)
+    distance = dot(apart, apart) ** 0.5
+    radius = bodies.contact_radius
+    gap = distance - radius[pairs.first_part[pair]] - radius[pairs.second_part[pair]]
+    return sooner(approach, gap, -dot(between, apart) / distance if distance > 0.0 else 0.0, slack, acceleration)

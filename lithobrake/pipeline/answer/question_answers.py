@@ -1,0 +1,326 @@
+"""What the study file asks for: the probability of each limit state, and the best of its delivery options."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lithobrake.analysis import (
+    LEVEL,
+    best_choice,
+    drawn_counts,
+    failure_inputs,
+    failure_probability,
+    regression_terms,
+    wilson_interval,
+)
+from lithobrake.analysis.limit_states import limit_state_met
+from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.answer.answer_sentences import limit_statement
+from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
+from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
+from lithobrake.pipeline.answer.run_answers import CAPTURED, failing_runs, left_in_flight, why_no_interval
+from lithobrake.pipeline.answer.typed_estimates import finite_estimate, limit_state, share_interval
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.run_flights import RunFlights
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import Samples
+from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
+from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim, LimitStateResult
+from lithobrake.results.run_results import CountedShare, Estimate, ShareInterval
+from lithobrake.study import Study
+from lithobrake.study.lander_section import side_words
+from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
+from lithobrake.study.units import input_units
+from lithobrake.vocabulary.limit_state import LOFTED, RETURNS, SETTLED, LimitState
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, PURE, UNKNOWN_END
+
+
+def limit_state_results(
+    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, CountedShare], *, holds: bool
+) -> dict[str, LimitStateResult]:
+    """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
+
+    shares: the table of how landings end (`run_shares`), from which a limit state of one of its words has its numbers.
+
+    Raises ValueError for an output that no run has.
+    """
+    conditions = study.limit_states.conditions()
+    if not conditions:
+        return {}
+    runs, samples = DesignRuns.load(folder, "drawn"), Samples.load(folder)
+    fates = RunFlights.load(folder, "drawn").fates
+    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
+    states = {name: LimitState.of(text) for name, text in conditions.items()}
+    found = {}
+    for name, state in states.items():
+        one, of_word = _one(study, name, state, runs, fates, of_samples), _of_one_word(state, shares)
+        if of_word is not None:
+            one = replace(one, probability=of_word.share, lower=of_word.lower, upper=of_word.upper)
+            one = replace(one, runs=replace(one.runs, **vars(of_word)))
+        found[name] = replace(one, statement=limit_statement(name, one))
+    return found
+
+
+def _one(
+    study: Study, name: str, state: LimitState, runs: DesignRuns, fates: np.ndarray, of_samples: dict[str, np.ndarray]
+) -> LimitStateResult:
+    """The results of one limit state, without its statement."""
+    for output in state.outputs:
+        if not np.isfinite(runs.output(output)).any():
+            raise ValueError(
+                f"limit_states.{name} uses {output}, which no run has; have the program that simulates the touchdowns "
+                "return it, or leave the limit state out"
+            )
+    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).inputs
+    if not np.isfinite(failing).any():
+        raise ValueError(
+            f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "
+            "ended); choose another condition, or correct the outcomes"
+        )
+    x = runs.columns(list(inputs))
+    found = failure_probability(
+        failing,
+        runs.inputs["bed"],
+        terms=regression_terms(inputs, x),
+        drawn=_drawn(state, of_samples),
+        like_missing=left_in_flight(runs),
+        why=why_no_interval(study),
+    )
+    several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
+    of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
+    return limit_state(state.text, found, float(np.nansum(failing)), of_inputs)
+
+
+def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> ShareInterval | None:
+    """Probability and bounds of a limit state that is a fate, or its opposite; None of another."""
+    if state.outputs or len(state.fates) != 1:
+        return None
+    (word,) = state.fates
+    one = shares[word]
+    so, otherwise = (
+        limit_state_met(state, {CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
+    )
+    if so == otherwise:
+        return None
+    if otherwise:
+        lower, upper = (None if end is None else 1.0 - end for end in (one.upper, one.lower))
+        return ShareInterval(1.0 - one.share, lower, upper)
+    return ShareInterval(one.share, one.lower, one.upper)
+
+
+def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:
+    """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
+    total = len(met["returns"])
+    known = ~met["missing"]
+    words = {status.value: met[status] for status in FlightStatus}
+    captured = met[SampleOutcome.CAPTURED]
+    words |= {RETURNS: met["returns"], CAPTURED: captured, SETTLED: captured & holds, LOFTED: captured & (not holds)}
+    values = {name: samples.output(name)[:total] for name in samples.output_names}
+    return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
+
+
+def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
+    """How many samples of each refit meet a limit state, and how many are known; None where the runs alone are asked.
+
+    Of a fate alone the flights of the runs are an estimate already, that of results.shares. And the emulator samples no
+    outputs of landers that are captured: where one decides, only the runs can tell.
+    """
+    if not state.outputs or any(name not in values for name in state.outputs):
+        return None
+    met, refit = limit_state_met(state, values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
+    if np.isnan(met[values[CAPTURED] == 1.0]).any():
+        return None
+    drawn = drawn_counts(met, refit, REFIT_COUNT)
+    # Of so few samples no scatter between refits can be told.
+    return drawn if drawn[1].min() >= 2 else None
+
+
+FAR = 0.95
+# The outcome of these landers is unknown.
+UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
+# The words of bounces and of journeys.
+RESTS = (SETTLED, AT_REST)
+HOUR = 3600.0
+# More options than these make no sentence.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class Landers:
+    """Landers on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
+
+    status: np.ndarray
+    time: np.ndarray
+    distance: np.ndarray
+    refit: np.ndarray
+
+    @property
+    def settled(self) -> np.ndarray:
+        """Which have come to rest where the ground holds them."""
+        rests: np.ndarray = np.isin(self.status, RESTS)
+        return rests
+
+
+def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults | None:
+    """The results of every aim of a study on both grounds, and the best; None where it has no aims."""
+    if not study.aim.names:
+        return None
+    aims, units = study.aim.aims(), {SIDE: "", **input_units()}
+    limits = [limit for limit in map(AimLimit.of, study.aim.within) if limit]
+    soil = _landers(folder, "soil", len(aims))
+    on_soil, best_on_soil = _on_ground(soil, aims, limits, fitted, "soil")
+    on_hard: Sequence[AimOnGround | None] = [None] * len(aims)
+    best_on_hard: BestAim | None = None
+    if study.journey is None:
+        on_hard, best_on_hard = _on_ground(_landers(folder, "hard", len(aims)), aims, limits, fitted, "hard")
+    results = AimResults(
+        names=study.aim.names,
+        units=tuple(units[name].removeprefix(PURE) for name in study.aim.names),
+        within=tuple(study.aim.within),
+        lander_count=soil.status.shape[1],
+        refit_count=REFIT_COUNT,
+        level=LEVEL,
+        why=fitted.why,
+        aims=tuple(
+            AimResult(tuple(aim.values()), *both)
+            for aim, both in zip(aims, zip(on_soil, on_hard, strict=True), strict=True)
+        ),
+        best_on_soil=best_on_soil,
+        best_on_hard=best_on_hard,
+        statement="",
+        sides=tuple(side_words(study.lander, side) for side in study.aim.sides),
+    )
+    return replace(results, statement=aim_statement(results))
+
+
+def _landers(folder: StudyFolder, ground: str, aim_count: int) -> Landers:
+    """The landers on one ground."""
+    rows = [row for row in read_rows(folder / AIM_FILE, AIM_COLUMNS, AGAIN) if row["ground"] == ground]
+    shape = (aim_count, len(rows) // aim_count)
+    numbers = ([float(row[name] or "nan") for row in rows] for name in ("time_s", "distance"))
+    time, distance = (np.reshape(one, shape) for one in numbers)
+    status = np.reshape(np.array([row["status"] for row in rows], dtype=object), shape)
+    return Landers(status, time, distance, np.reshape([int(row["refit"]) for row in rows], shape))
+
+
+def _on_ground(
+    landers: Landers, aims: Sequence[dict[str, float]], limits: list[AimLimit], fitted: Refits, ground: str
+) -> tuple[list[AimOnGround], BestAim | None]:
+    """Every aim on one ground, and the best of those that keep all limits."""
+    parts = [_of_aim(landers, row, ground, fitted) for row in range(len(aims))]
+    parts = [replace(part, allowed=_keeps(limits, aim, part)) for aim, part in zip(aims, parts, strict=True)]
+    bed_count = fitted.bed_count if ground == "soil" and fitted.why is None else None
+    return _best(landers, parts, bed_count)
+
+
+def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGround:
+    """Shares and 95 % quantiles of one aim, with their intervals where there are any; not yet whether it is allowed."""
+    settled, refit = landers.settled[row], landers.refit[row]
+
+    def far(values: np.ndarray) -> Estimate | None:
+        """Where most of those that settle lie, or when."""
+        return quantile_of_some(values, settled, FAR, lambda met: _share(met, settled, refit, ground, fitted))
+
+    return AimOnGround(
+        settled=_share(settled, np.ones(len(settled), dtype=bool), refit, ground, fitted),
+        missing=float(np.isin(landers.status[row], UNKNOWN).mean()),
+        distance_p95=far(landers.distance[row]),
+        time_p95=far(landers.time[row]),
+        allowed=False,
+    )
+
+
+def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> ShareInterval:
+    """Share of some landers that have met an event, with its bounds: over refits on soil, by their number on hard."""
+    if ground == "hard":
+        share = float(met.sum() / of.sum())
+        return ShareInterval(share, *wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
+    return fitted.share(met, of, refit)
+
+
+def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:
+    """Whether an aim and what comes of it keep all limits."""
+    known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
+    known |= dict.fromkeys(RESTS, part.settled.share) | {"missing": part.missing}
+    far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
+    known |= {name: None if one is None else one.value for name, one in far.items()}
+    return all(limit.keeps(known[limit.name]) for limit in limits)
+
+
+def _best(
+    landers: Landers, parts: list[AimOnGround], bed_count: int | None
+) -> tuple[list[AimOnGround], BestAim | None]:
+    """The aims with their shares of refits, and that at which most landers settle, of those allowed.
+
+    None where none is allowed, or nobody settles. bed_count: None where refits tell nothing, as on hard ground; then
+    there is no share of refits and no interval.
+    """
+    allowed = [part.allowed for part in parts]
+    shares = np.where(allowed, [part.settled.share for part in parts], -1.0)
+    if shares.max() <= 0.0:
+        return parts, None
+    if bed_count is None:
+        return parts, BestAim(int(shares.argmax()), None, None, None, None, None)
+    order = np.argsort(landers.refit[0], kind="stable")
+    found = best_choice(landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1), bed_count, allowed)
+    parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
+    others = tuple(aim for aim in found.not_worse if aim != found.best)
+    difference = None if found.difference is None else finite_estimate(found.difference)
+    share = float(found.shares[found.best])
+    return parts, BestAim(found.best, share, share_interval(found.own), others, found.runner_up, difference)
+
+
+def aim_statement(table: AimResults) -> str:
+    """The options that cannot be distinguished from the best, the best's own share, and what hard ground says."""
+    aims, within = table.aims, f" within {', '.join(table.within)}" if table.within else ""
+    count = sum(aim.soil.allowed for aim in aims)
+    best, hard = table.best_on_soil, table.best_on_hard
+    if best is None:
+        return (
+            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
+        )
+    said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
+    part = aims[best.aim].soil
+    # The largest of many shares is too high by its selection, so the sentence has the share without it.
+    share = with_interval(best.own or part.settled, level=table.level)
+    most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
+    first = f"{most} come to rest with {_words(table, best.aim)}: {share}"
+    if part.distance_p95 is not None and part.time_p95 is not None:
+        far, late = part.distance_p95.value, part.time_p95.value / HOUR
+        first += f", {percent(FAR)} of these within {far:.3g} m and {late:.3g} h"
+    if part.missing >= 0.005:
+        first += f"; {percent(part.missing)} have an unknown outcome{_rivals(table, best.aim)}"
+    said.append(first)
+    on_hard = None if hard is None else aims[hard.aim].hard
+    if hard is not None and on_hard is not None:
+        where = "the same option" if best.aim == hard.aim else _words(table, hard.aim)
+        said.append(f"On hard ground the best is {where}: {with_interval(on_hard.settled)}")
+    return ". ".join(said) + "."
+
+
+def _alike(table: AimResults, places: Sequence[int], count: int, within: str) -> str:
+    """Which of the allowed options cannot be distinguished from the best, it among them."""
+    surely = f"with {percent(table.level)} confidence"
+    if count == 1:
+        return f"Of {len(table.aims)} delivery options one is allowed{within}"
+    if len(places) == 1:
+        return f"One of {count} delivery options{within} is better than every other, {surely}"
+    named = f": {'; '.join(_words(table, place) for place in sorted(places))}" if len(places) <= NAMED else ""
+    return f"{len(places)} of {count} delivery options{within} cannot be distinguished from the best, {surely}{named}"
+
+
+def _rivals(table: AimResults, best: int) -> str:
+    """How many other options would be better if all landers of unknown outcome were at rest there."""
+    least = table.aims[best].soil.settled.share
+    count = sum(one.soil.settled.share + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
+    return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
+
+
+def _words(table: AimResults, place: int) -> str:
+    """An option in words."""
+    option = zip(table.names, table.aims[place].values, strict=True)
+    return ", ".join(f"{name} = {table.value_words(name, value)}" for name, value in option)

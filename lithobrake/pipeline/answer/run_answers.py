@@ -1,0 +1,238 @@
+"""What each run answers: its bed, its scope, what is missing, and which limit states it meets."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.analysis import highest_density
+from lithobrake.analysis.limit_states import limit_state_met
+from lithobrake.analysis.regions import HighestDensity
+from lithobrake.campaign import Record
+from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.run_flights import FATES as RUN_FATES
+from lithobrake.pipeline.run_flights import RETURNS as RETURNING
+from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
+from lithobrake.results.dispersion import RestRegion
+from lithobrake.results.run_results import MissingLandings
+from lithobrake.results.site_results import SiteResults
+from lithobrake.study import Study
+from lithobrake.vocabulary.limit_state import FATES, RETURNS, LimitState
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
+
+# The stage after which every run has its answer.
+ANSWERED_AFTER = "fly_runs"
+
+
+def answer_words(study: Study) -> str:
+    """What the answers of a study's runs are a share of, in words."""
+    if study.journey is not None:
+        return "the fraction at rest"
+    asked = study.design.half_width_of
+    return "the return fraction" if asked is None else f"the probability of {asked}"
+
+
+def read_shares(folder: StudyFolder) -> dict[str, float]:
+    """What a folder's table of the flights of runs says of them, by key."""
+    rows = read_rows(folder / RUN_FLIGHTS_FILE, ("design", "key", "returns"), AGAIN)
+    return {row["key"]: float(row["returns"] or "nan") for row in rows if row["design"] == "drawn"}
+
+
+def answers_of(
+    keys: Sequence[str], known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Answer of each run that has ended and flown, from 0 to 1, NaN where it has none, and its bed, both [run_count].
+
+    keys: of the runs that are asked for; known: runs that have ended, by key; flown: as flown_shares gives it.
+    """
+    answered = [key for key in keys if key in known and key in flown]
+    return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
+
+
+def answers_of_design(
+    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same of the runs of a design, with 0 for each lander that is flown to the ground and never touches down."""
+    values, bed = answers_of(design.keys, known, flown)
+    if design.descents is None:
+        return values, bed
+    aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
+    return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
+
+
+# What a study on one bed, at one impact point or in one attitude leaves open.
+OTHERS = "Another bed, impact point or attitude would change this number; this study cannot show by how much"
+
+
+@dataclass(frozen=True)
+class Scope:
+    """where: words that the answer begins with. why: why its share has no interval. landings: "on 1 bed"."""
+
+    where: str
+    why: str
+    landings: str
+
+
+def scope(study: Study) -> Scope:
+    """What the runs of a study have in common, and what that leaves unsaid."""
+    if not study.has_soil:
+        return Scope(
+            "With the touchdowns of this study's own program",
+            "Another contact model would change this number; this study cannot show by how much.",
+            "of the study's own program",
+        )
+    count = study.bed_count
+    fixed = ["on this bed"] if count == 1 else []
+    fixed += ["at this impact point"] if DrawnDesign(study).one_place else []
+    beds = "on 1 bed" if count == 1 else f"on {count} beds"
+    if fixed or study.impact.orientation != "random":
+        where = ", ".join(fixed or ["in this attitude"]).capitalize()
+        return Scope(where, f"{OTHERS}.", beds)
+    return Scope(
+        f"On these {count} beds, at random impact points and attitudes",
+        "This number has no interval: the effect of other beds, impact points and attitudes and the error of the "
+        "expansion are not quantified.",
+        beds,
+    )
+
+
+def why_no_interval(study: Study) -> str | None:
+    """Why drawn runs say nothing of other beds and places; None where they do."""
+    one_place = DrawnDesign(study).one_place
+    if study.bed_count > 1 and not one_place:
+        return None
+    where, remedies = [], []
+    if study.bed_count == 1:
+        where, remedies = ["on one bed"], ["bed.bed_count to 12 or more"]
+    if one_place:
+        where, remedies = [*where, "at one impact point"], [*remedies, "impact.region to the area where it may land"]
+    return f"All runs landed {' and '.join(where)}. {OTHERS}. To get an interval, set {' and '.join(remedies)}."
+
+
+FAILED = "failed"
+KNOWN = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
+# In the order in which a sentence names them.
+LOST = (TouchdownOutcome.LEFT_SIDEWAYS, TouchdownOutcome.TIME_LIMIT, FAILED)
+# Share of the landings without an outcome above which a study warns of it [-].
+WARNED = 0.02
+WORDS = {outcome.value: outcome.label for outcome in TouchdownOutcome} | {FAILED: FAILED}
+REMEDIES = {
+    TouchdownOutcome.LEFT_SIDEWAYS: "a wider bed (bed.width, with bed.grain_count) or a steeper impact "
+    "(impact.incidence_deg)",
+    TouchdownOutcome.TIME_LIMIT: "a longer landing.time_limit",
+    FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
+}
+# A program of the user's own has neither bed nor time limit in the study file.
+OF_A_PROGRAM = "a program that returns clear or captured for every touchdown"
+
+
+def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
+    """How many of the landings have no outcome, by how they ended; outcomes: landings by outcome."""
+    lost = {str(name): outcomes[name] for name in LOST if outcomes.get(name)}
+    count, total = sum(lost.values()), sum(outcomes.values())
+    return MissingLandings(count, count / total if total else 0.0, lost)
+
+
+def missing_words(lost: Mapping[str, int]) -> str:
+    """The kinds of missing landings with their counts, as in a list."""
+    return ", ".join(f"{count} {WORDS[name]}" for name, count in lost.items())
+
+
+def missing_warning(study: Study, outcomes: Mapping[str, int]) -> str | None:
+    """What missing landings do to the numbers of a study, and how to avoid them; None for few or none."""
+    found, total = missing_landings(outcomes), sum(outcomes.values())
+    if found.share <= WARNED:
+        return None
+    remedies = [REMEDIES[name] for name in found.outcomes] if study.has_soil else [OF_A_PROGRAM]
+    return (
+        f"{found.count} of {total} landings ({percent(found.share)}) have no outcome "
+        f"({missing_words(found.outcomes)}): medians, quantiles, variance shares and the emulator describe only the "
+        f"other {total - found.count}; to avoid this: {', '.join(remedies)}"
+    )
+
+
+def left_in_flight(runs: DesignRuns) -> np.ndarray:
+    """Which runs left across the edge of the bed in flight, [run_count]: the nearest to those that are missing."""
+    clear = np.array(runs.outcomes) == TouchdownOutcome.CLEAR
+    found: np.ndarray = clear & (runs.output(OVER_RIM) == 1.0)
+    return found
+
+
+def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
+    """Which of the landings a number describes, in words; known: those that have one [run_count]."""
+    met = {outcome for outcome, one in zip(outcomes, known, strict=True) if one}
+    words = " or ".join(
+        words for outcome, words in ((KNOWN[0], "left the surface"), (KNOWN[1], "were captured")) if outcome in met
+    )
+    return f"the {int(known.sum())} of {len(outcomes)} landings that {words or 'have this number'}"
+
+
+CAPTURED = TouchdownOutcome.CAPTURED.value
+# Words of a run that its touchdown alone decides; all others take flights.
+OF_TOUCHDOWN = (CAPTURED,)
+
+
+def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:
+    """Share of the flights of each run that meet a limit state, NaN where nobody knows, [run_count].
+
+    fates [run_count, len(RUN_FATES)]: how many of its flights ended so.
+    """
+    values = values_of_runs(runs)
+    unflown = {word: np.full(runs.run_count, np.nan) for word in FATES if word != CAPTURED}
+    found = limit_state_met(state, values | unflown)
+    counts = fates.sum(axis=1)
+    if set(state.fates) <= set(OF_TOUCHDOWN) or not counts.any():
+        return found
+    by_fate = np.column_stack([limit_state_met(state, values | _words(fate, runs.run_count)) for fate in RUN_FATES])
+    met = np.where(fates > 0, fates * by_fate, 0.0).sum(axis=1)
+    return np.where(counts > 0, met / np.maximum(counts, 1), found)
+
+
+def values_of_runs(runs: DesignRuns) -> dict[str, np.ndarray]:
+    """What limit states may name of touchdowns, [run_count] each: outputs, and whether the lander was captured."""
+    outcomes = np.array(runs.outcomes)
+    # A run without a known end was neither captured nor not.
+    ended = np.isin(outcomes, [TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED])
+    captured = np.where(ended, (outcomes == CAPTURED).astype(float), np.nan)
+    return {name: runs.output(name) for name in TOUCHDOWN} | {CAPTURED: captured}
+
+
+def _words(fate: str, count: int) -> dict[str, np.ndarray]:
+    """Whether each word of the grammar holds of flights that ended so, [count] each; `captured` is of the touchdown."""
+    held = {word: word == fate for word in RUN_FATES} | {RETURNS: fate in RETURNING}
+    return {word: np.full(count, float(one)) for word, one in held.items()}
+
+
+SHARES = (0.5, 0.95)
+# Of more places than these, the first: they are samples, and the work grows with their square.
+MOST_PLACES = 5000
+
+
+def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
+    """Regions of highest density as results."""
+    return tuple(
+        RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
+        for one in density.regions
+    )
+
+
+def place_regions(site: SiteResults, rows: Sequence[dict[str, str]], status: str) -> tuple[RestRegion, ...]:
+    """Regions of the places of the rows with this status, on a sphere of the radius at the site."""
+    down = [row for row in rows if row["status"] == status][:MOST_PLACES]
+    if not down:
+        return ()
+    latitude, longitude = (
+        np.radians([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude")
+    )
+    level = np.cos(latitude)
+    directions = np.column_stack([level * np.cos(longitude), level * np.sin(longitude), np.sin(latitude)])
+    return rest_regions(highest_density(float(np.linalg.norm(site.place_m)) * directions, SHARES))
+
+
+def _line(outline: np.ndarray) -> tuple[tuple[float, float], ...]:
+    return tuple((latitude, longitude) for latitude, longitude in outline.tolist())

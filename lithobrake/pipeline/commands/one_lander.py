@@ -1,0 +1,276 @@
+"""One landing of a study file, or one lander followed from delivery to its end, made at once."""
+
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from lithobrake.campaign import Record, RunStatus, run_key
+from lithobrake.pipeline.design.arrivals import on_local_ground
+from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
+from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.journeys.campaign import begin, begun_aloft, journey_row
+from lithobrake.pipeline.journeys.journey import Journey, JourneyModel
+from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
+from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
+from lithobrake.results.journey_track import HEADS
+from lithobrake.study import Study, StudyError, fixed_study
+from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
+from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TOUCHDOWN
+
+if TYPE_CHECKING:
+    from lithobrake.results.motions import MovingBodies
+    from lithobrake.touchdown import Bed, Lander, Landing, Outcome
+
+FRAMES = 120
+# A number of TOML, and nothing else of it: no truth values, no comments, no second line.
+_NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)", re.ASCII)
+# What a touchdown of a journey is given by where the lander is, and by when.
+OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT, *GROUND)
+# Seeds of pours are told apart by the number of the bed in so many bits.
+LAST_BED = 2**32 - 1
+
+
+@dataclass(frozen=True)
+class OneLanding:
+    """A landing with all that it followed from.
+
+    values: every number that it read, by dotted key in the units of the study file, drawn ones included.
+    """
+
+    values: dict[str, float]
+    bed: "Bed"
+    lander: "Lander"
+    landing: "Landing"
+    outcome: "Outcome"
+
+    def lines(self) -> list[str]:
+        """What came out, in lines: how it ended, and every output with its unit."""
+        outcome = self.outcome
+        rows = [f"The landing ended as {outcome.status} after {outcome.simulated_time:.4g} s."]
+        for name, value in outcome.outputs.items():
+            if name in TOUCHDOWN and not math.isnan(value):
+                what = TOUCHDOWN[name]
+                rows.append(f"  {name:<18} {value:>12.5g} {what.units:<6} {what.long_name}")
+        return rows
+
+    def to_json(self) -> dict[str, Any]:
+        """The same for a program, with every number that was read; what is not known is null."""
+        outputs = {name: None if math.isnan(value) else value for name, value in self.outcome.outputs.items()}
+        return {
+            "outcome": str(self.outcome.status), "simulated_time": self.outcome.simulated_time, "outputs": outputs,
+            "inputs": self.values,
+        }  # fmt: skip
+
+    def bodies(self) -> "MovingBodies":
+        """The hulls and how they moved, the lander last."""
+        from lithobrake.results.motions import MovingBodies
+
+        return MovingBodies.of_landing(self.outcome, self.bed, self.lander, self.landing)
+
+    def save(self, path: Path) -> None:
+        """Write hulls and frames to an HDF5 file, as a study keeps its landing."""
+        self.outcome.save_frames(path, self.bed, self.lander, self.landing)
+
+
+def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> dict[str, float]:
+    """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
+
+    By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
+    number. Raises ValueError for a change of what a landing does not read or the study file may not have, a study
+    without soil, or a number that no run of it has.
+    """
+    if not study.has_soil:
+        raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
+    study = with_site_gravity(study, "the study")
+    Soils(Site(study)).refuse("the study")
+    values = _values(study, number)
+    own = OF_JOURNEYS if study.journey is not None else ()
+    free = {key: value for key, value in values.items() if key not in own}
+    changed = dict(_changed(change, free) for change in changes)
+    if not changed:
+        return values
+    if DrawnDesign(study).is_flown:
+        raise ValueError(
+            f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
+            "(delivery.states, delivery.release), which determine the first impact; change the study file"
+        )
+    if study.soil and any(key.startswith(GRAIN) for key in changed):
+        raise ValueError(
+            f"--set names {', '.join(changed)}; allowed: no key of grain in a study with [soil], whose touchdowns "
+            "take the soil of their region; change the study file"
+        )
+    _refuse(study, free | changed)
+    if study.journey is None:
+        return values | changed
+    # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
+    return on_local_ground(study, [values | changed], number)[0]
+
+
+def land_one(
+    study: Study, values: dict[str, float], progress: Callable[[float, str], None] = lambda fraction, what: None
+) -> OneLanding:
+    """Land once with all that a landing reads, see landing_inputs.
+
+    The bed is that of the study and the number that the values have, from the library or poured: another grain is
+    another soil that is landed on, and not another bed.
+    """
+    study = with_site_gravity(study, "the study")
+    return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
+
+
+def bed_of(study: Study, number: int, progress: Callable[[float, str], None]) -> "Bed":
+    """The bed of a number, from the library or poured; the study has the gravity of its site."""
+    from lithobrake.touchdown import pour_bed, stored_or_poured
+    from lithobrake.touchdown.bed import Bed
+
+    # A folder of its own, since no file of a study is read or written here.
+    with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
+        recipe, path = bed_recipe(study, number), Path(folder) / "bed.h5"
+
+        def pour() -> "Bed":
+            compile_kernels(lambda done, total, what, *_: progress(done / total, what))
+            return pour_bed(recipe, progress=progress)
+
+        stored_or_poured(recipe, path, pour)
+        return Bed.load(path)
+
+
+def landed(
+    study: Study, values: dict[str, float], bed: "Bed", progress: Callable[[float, str], None]
+) -> OneLanding:  # fmt: skip
+    """Land once with all that a landing reads on this bed; the study has the gravity of its site."""
+    from lithobrake.touchdown import land
+
+    with in_words_of_the_study():
+        body, arrival = lander(study, values), landing(study, values)
+        return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
+
+
+def _values(study: Study, number: int) -> dict[str, float]:
+    if study.design.method == "paper":
+        return draw(study, DrawnDesign(study).medians, study.seed)
+    last = study.design.most_runs - 1
+    if not 0 <= number <= last:
+        raise ValueError(f"the number of a run is {number}; allowed: 0 to {last}, the runs of the study")
+    return DrawnDesign(study).row(number)
+
+
+def _refuse(study: Study, values: Mapping[str, float]) -> None:
+    try:
+        fixed_study(study, {key: value for key, value in values.items() if key != "bed"})
+    except StudyError as error:
+        raise ValueError(f"--set: {'; '.join(error.problems)}") from error
+
+
+def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
+    """The key and the number of a change. Raises ValueError where it is none."""
+    key, sign, text = (part.strip() for part in change.partition("="))
+    if not sign:
+        raise ValueError(f"--set is {change!r}; allowed: KEY=VALUE, for example grain.friction=0.4")
+    if key not in values:
+        known = f"{closest(key, values)}; it uses {', '.join(values)}"
+        raise ValueError(f"--set names {key!r}, which no landing of this study uses{known}")
+    if not _NUMBER.fullmatch(text):
+        raise ValueError(f"--set {key} is {text!r}; allowed: a number as in a study file, for example 0.4")
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"--set {key} is {value:g}; allowed: a finite number")
+    if key == "bed" and not (value == round(value) and 0.0 <= value <= LAST_BED):
+        raise ValueError(f"--set {key} is {value:g}; allowed: a whole number from 0 to {LAST_BED}")
+    return key, value
+
+
+Row = dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class OneJourney:
+    """A journey with the landing of each of its touchdowns, in their order."""
+
+    journey: Journey
+    landings: tuple[OneLanding, ...]
+
+    @property
+    def track(self) -> JourneyTrack:
+        """Where the lander went, and how it ended."""
+        model, facts = self.journey.model, map(_facts, self.journey.touchdowns, self.landings)
+        row = dict(zip(JOURNEY, journey_row(self.journey), strict=True))
+        return JourneyTrack(row, tuple(facts), model.site.aim, model.site.aim_radius, model.body.shape.vertices)
+
+    def motion(self) -> JourneyMotion:
+        """The hulls of each touchdown and how they moved."""
+        return JourneyMotion(self.track, [landing.bodies() for landing in self.landings])
+
+    def save(self, paths: list[Path]) -> None:
+        """Write hulls and frames of each touchdown to an HDF5 file, as a study keeps its landing."""
+        for one, path in zip(self.landings, paths, strict=True):
+            one.save(path)
+
+    def to_json(self) -> dict[str, Any]:
+        """The journey as a row of journeys.csv and its touchdowns, for a program; what is not known is null."""
+        row = {name: None if cell == "" else cell for name, cell in self.track.row.items()}
+        pairs = zip(self.journey.touchdowns, self.landings, strict=True)
+        return {**row, "touchdowns": [{**touchdown, **landing.to_json()} for touchdown, landing in pairs]}
+
+
+def follow_one(
+    study: Study, values: Row, tell: Callable[[str], None] = lambda line: None, progress: Progress = silent
+) -> OneJourney:
+    """Follow the lander whose first touchdown reads these values, see landing_inputs, to its end.
+
+    tell: called with a line for each touchdown as soon as it is known how it ended, heads before the first. The bits
+    are those of that journey in the study.
+    """
+    study = with_site_gravity(study, "the study")
+    journey = _begun(study, values)
+    bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
+    row: Row | None = values
+    while row is not None:
+        landings.append(landed(study, row, bed, progress))
+        row = journey.go_on(_record(study, landings[-1], context))
+        for line in [*(HEADS if len(landings) == 1 else ()), _line(journey, landings[-1])]:
+            tell(line)
+    return OneJourney(journey, tuple(landings))
+
+
+def _begun(study: Study, values: Row) -> Journey:
+    number, design = round(values["journey"]), DrawnDesign(study)
+    if not design.is_flown:
+        return begin(JourneyModel(design, Site(study)), [values], number)[0]
+    # Journeys of a longer study begin with those of this one.
+    design = design.with_run_count(max(study.design.run_count, number + 1))
+    assert design.descents is not None
+    return begun_aloft(JourneyModel(design, Site(study)), design.descents)[number]
+
+
+def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Record:
+    """A landing as the ledger of the study has it; context: what it depends on beside its values."""
+    # As in the ledger, where an output that is NaN is absent.
+    outputs = {name: value for name, value in landing.outcome.outputs.items() if not math.isnan(value)}
+    return Record(
+        # All that is random is among the inputs, so the seed of the run has no effect.
+        key=run_key(landing.values, study.seed, 0, context), status=RunStatus.DONE,
+        outcome=str(landing.outcome.status), inputs=landing.values, outputs=outputs, draws={}, seed=0, replicate=0,
+        attempts=1, reason=None, wall_s=None, cpu_s=None, host=None, version=touchdown_version(), started=None,
+        ended=None,
+    )  # fmt: skip
+
+
+def _line(journey: Journey, landing: OneLanding) -> str:
+    facts, there = _facts(journey.touchdowns[-1], landing), None
+    if journey.end is None:
+        latitude, longitude = journey.model.body.shape.latitude_longitude(journey.origin)
+        there = float(latitude), float(longitude)
+    return facts.line(facts.to_next(there, journey.model.site.aim_radius, journey.end))
+
+
+def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:
+    return TouchdownFacts.of({**landing.values, **landing.outcome.outputs, **touchdown})

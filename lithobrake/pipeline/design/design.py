@@ -1,0 +1,293 @@
+"""The design: every run has soil, place, azimuth, attitude and bed of its own, and no other run moves them."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.attitude import uniform_attitude
+from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
+from lithobrake.pipeline.design.dependencies import touchdown_keys
+from lithobrake.pipeline.design.descents import RELEASE, Descents
+from lithobrake.pipeline.site import Site
+from lithobrake.study import Study, StudyError
+from lithobrake.study.delivery_checks import correlated_keys, drawn_together
+from lithobrake.study.delivery_sections import PLACE_KEYS
+from lithobrake.study.ground_sections import FEWEST_BEDS, MOST_BEDS
+from lithobrake.study.quantity import uncertain
+from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
+from lithobrake.vocabulary.quantities import ORIENTATION
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+
+Row = dict[str, float]
+
+
+def arriving_together(study: Study, rows: list[Row], first: int) -> list[Row]:
+    """Rows of journeys from number `first` on with what [delivery] correlates; where it lands the site draws."""
+    keys = {key: f"impact.{key}" for key in correlated_keys(study) if key not in PLACE_KEYS}
+    if not keys:
+        return rows
+    place = {key: values[first:] for key, values in Site(study).sampled_apart(first + len(rows)).items()}
+    arrival = {key: np.array([row[dotted] for row in rows]) for key, dotted in keys.items()}
+    found = drawn_together(study, place | arrival)
+    return [
+        row | {dotted: float(found[key][number]) for key, dotted in keys.items()} for number, row in enumerate(rows)
+    ]
+
+
+AZIMUTH, GRAIN = "impact.azimuth_deg", "grain."
+# Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
+# an azimuth that is given leaves the others as they were.
+DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
+PAIR_COUNT, TWIN_COUNT = 20, 12
+# What the flight of a lander tells of its impact.
+FLOWN = ("impact.speed", "impact.incidence_deg")
+# Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
+SIDE_DESIGNS = ("soil_pairs", "twins")
+
+
+# Compared by identity: a study has dicts, which cannot be hashed, and cached properties belong to one object.
+@dataclass(frozen=True, eq=False)
+class DrawnDesign:
+    """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
+
+    A study of the paper method takes inputs, medians and region alone from it.
+    """
+
+    study: Study
+
+    @cached_property
+    def inputs(self) -> "dict[str, Distribution]":
+        """The uncertain inputs of the touchdown with their distributions, in the order of the file's sections."""
+        return {name: value.to_chaos() for name, value in uncertain(self.study.touchdown_values()).items()}
+
+    @cached_property
+    def medians(self) -> dict[str, float]:
+        """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units.
+
+        Of landers that are flown to the ground, also the medians of what their flights tell.
+        """
+        told = [key for key in FLOWN if self.is_flown]
+        return medians(self.study) | {key: float(np.median([row[key] for row in self.rows])) for key in told}
+
+    @property
+    def is_flown(self) -> bool:
+        return self.study.delivery is not None and self.study.delivery.is_flown
+
+    @cached_property
+    def descents(self) -> Descents | None:
+        """The flights to the first touchdowns of all journeys; None where the study says how landers arrive.
+
+        Raises StudyError where none reaches the ground, and as Descents.flown does.
+        """
+        if not self.is_flown:
+            return None
+        found = self._descents(0, self._points(len(self.beds)))
+        # A study without a touchdown has no run, and every later stage would fail for another reason.
+        if not found.touches_down.any():
+            raise StudyError(
+                [
+                    f"[delivery]: none of {len(self.beds)} landers reaches the ground within journey.duration; "
+                    "allowed: states of which at least one does; correct them, or raise the duration"
+                ]
+            )
+        return found
+
+    @cached_property
+    def region(self) -> tuple[Interval, Interval] | None:
+        return place_region(self.study)
+
+    @cached_property
+    def one_place(self) -> bool:
+        if self.inputs.keys() & set(PLACE):
+            return False
+        return not any(low < high for low, high in self.region or ())
+
+    @cached_property
+    def beds(self) -> list[int]:
+        return beds_of_runs(self.study, self.study.design.run_count)
+
+    @cached_property
+    def rows(self) -> list[dict[str, float]]:
+        """All inputs of the runs, by dotted key in the file's units, with what each drew.
+
+        Of journeys that are flown to the ground these are the first touchdowns of those that reach it.
+        """
+        points = self._points(len(self.beds))
+        return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
+
+    @cached_property
+    def delivered_rows(self) -> list[dict[str, float]]:
+        """The same as the study draws them: an impact against the facets of the body's shape, under no acceleration of
+        the place, on [grain] in whatever region.
+        """
+        return self._delivered(self.rows_at(self.beds, self._points(len(self.beds))), 0)
+
+    @cached_property
+    def keys(self) -> list[str]:
+        """The keys of the runs in the ledger, in their order."""
+        return touchdown_keys(self.study, self.rows, 0)
+
+    def row(self, run: int) -> dict[str, float]:
+        """All inputs of one run, counted from 0, of which there may be more than the study has.
+
+        Raises ValueError for a lander that is flown to the ground and does not reach it.
+        """
+        row = self._row(run)
+        if row is None:
+            raise ValueError(f"lander {run + 1} of the study never touches down; choose another")
+        return row
+
+    def own_soil(self, run: int) -> dict[str, float]:
+        """The numbers of [grain] that a run draws, by dotted key, whatever the region that it comes down in."""
+        (row,) = self.rows_at([0], self._points(1, skip=run))
+        return {name: value for name, value in row.items() if name.startswith(GRAIN)}
+
+    @property
+    def shown_row(self) -> dict[str, float]:
+        """All inputs of the first run; of landers that are flown to the ground, of the first that reaches it.
+
+        Raises StudyError where none does.
+        """
+        rows = (self._row(run) for run in range(len(self.beds)))
+        return next((row for row in rows if row is not None), None) or self.rows[0]
+
+    def _row(self, run: int) -> dict[str, float] | None:
+        """The same as `row`; None for a lander that never touches down."""
+        # A point of the sequence follows from its number, so the runs before need not be made.
+        points = self._points(1, skip=run)
+        rows = self.rows_at(beds_of_runs(self.study, run + 1)[-1:], points)
+        descents = self._descents(run, points) if self.is_flown else None
+        return next(iter(self._first_touchdowns(rows, run, descents)), None)
+
+    def rows_of(self, design: str) -> list[dict[str, float]]:
+        """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
+        return {"drawn": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()
+
+    @property
+    def coordinates(self) -> "dict[str, Distribution]":
+        """What a run takes from its point, but for its bed: the uncertain inputs, then what it draws."""
+        from lithobrake.chaos import Uniform
+
+        release = RELEASE if self.is_flown else ()
+        return self.inputs | dict.fromkeys((*DRAWN, *release), Uniform(0.0, 1.0))
+
+    @property
+    def soil_inputs(self) -> "dict[str, Distribution]":
+        """The uncertain inputs without place and azimuth, which each run draws by itself."""
+        return {name: law for name, law in self.inputs.items() if name not in (*PLACE, AZIMUTH)}
+
+    def with_run_count(self, count: int) -> "DrawnDesign":
+        """The design of the same study with so many runs, which has all runs of one with fewer."""
+        return DrawnDesign(self.study.with_run_count(count))
+
+    def _points(self, count: int, skip: int = 0) -> np.ndarray:
+        """Points of the sequence, [count, coordinate_count]."""
+        from lithobrake.chaos import sobol_sequence
+
+        return sobol_sequence(self.coordinates, count, hashed_seed(self.study.seed, "sequence"), skip=skip)
+
+    def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
+        """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
+        rows, known = [], medians(self.study)
+        # A point has the inputs first, then what a run draws, then what a release draws: each zip takes the part that
+        # it needs.
+        for bed, point in zip(beds, x.tolist(), strict=True):
+            soil = dict(zip(self.inputs, point, strict=False))
+            uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=False))
+            row = known | soil | {"bed": float(bed)} | _arrival(self.study, uniform)
+            for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.region or (), strict=False):
+                row[name] = low + uniform[coordinate] * (high - low)
+            rows.append(row)
+        return rows
+
+    def _first_touchdowns(
+        self, rows: list[dict[str, float]], first: int, descents: Descents | None
+    ) -> list[dict[str, float]]:
+        """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
+        delivered = self._delivered(rows, first)
+        if self.study.journey is None:
+            return delivered
+        if descents is not None:
+            return descents.first_touchdowns(delivered)
+        return on_local_ground(self.study, delivered, first)
+
+    def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+        """Rows of runs as journeys have them before it is known which ground they meet."""
+        journey = self.study.journey
+        if journey is None:
+            return rows
+        begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
+        numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
+        return arriving_together(self.study, numbered, first)
+
+    def _descents(self, first: int, points: np.ndarray) -> Descents:
+        return Descents.flown(self.study, first, points[:, -len(RELEASE) :])
+
+    def _soil_pairs(self) -> list[dict[str, float]]:
+        """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.
+
+        Their differences give the total effect of the soil. Source: [Jansen-1999].
+        """
+        from lithobrake.chaos import sobol_sequence
+
+        inputs, rows = self.soil_inputs, self.rows[:PAIR_COUNT]
+        if not inputs:
+            return rows
+        second = sobol_sequence(inputs, len(rows), hashed_seed(self.study.seed, "soil pairs")).tolist()
+        return [row | dict(zip(inputs, soil, strict=True)) for row, soil in zip(rows, second, strict=True)]
+
+    def _twins(self) -> list[dict[str, float]]:
+        """The first runs again at places design.twin_shift [m] beside their own: what differs then is chaos."""
+        rows, shift = self.rows[:TWIN_COUNT], self.study.design.twin_shift
+        turns = np.random.Generator(np.random.PCG64(hashed_seed(self.study.seed, "twins"))).random(len(rows))
+        return [row | _beside(row, shift, 2.0 * math.pi * turn) for row, turn in zip(rows, turns, strict=True)]
+
+
+def _arrival(study: Study, uniform: dict[str, float]) -> dict[str, float]:
+    """Azimuth and attitude of a run, as far as the study has them drawn or given, not uncertain by another law."""
+    first, second, third = (uniform[name] for name in DRAWN[3:])
+    drawn = study.impact.orientation == "random"
+    attitude = uniform_attitude(first, second, third) if drawn else given_attitude(study, first, second)
+    row = dict(zip(ORIENTATION, (attitude / np.linalg.norm(attitude)).tolist(), strict=True))
+    return row | ({AZIMUTH: 360.0 * uniform["azimuth"]} if study.impact.azimuth_deg == "random" else {})
+
+
+def beds_of_runs(study: Study, count: int) -> list[int]:
+    """Number of the bed of each of the first `count` runs; a larger count changes none."""
+    if study.bed.bed_count is not None:
+        return _in_blocks(study.seed, study.bed.bed_count, count)
+    few, many = FEWEST_BEDS * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
+    # Blocks leave every run on its bed however many follow, and at each full block all beds have equally many.
+    first = _in_blocks(study.seed, FEWEST_BEDS, min(count, few))
+    growing = [run // study.runs_a_bed for run in range(few, min(count, many))]
+    # A bed is as new as any other, so the order in which they were filled so far says nothing.
+    return first + growing + _in_blocks(study.seed, MOST_BEDS, count - many)
+
+
+def _in_blocks(seed: int, bed_count: int, count: int) -> list[int]:
+    """Beds in permuted blocks; the first block in order, so that few runs take the first beds."""
+    blocks = range(1, -(-count // bed_count))
+    orders = [
+        np.random.Generator(np.random.PCG64(hashed_seed(seed, "beds of runs", bed_count, block))).permutation(bed_count)
+        for block in blocks
+    ]
+    return [int(bed) for order in (range(bed_count), *orders) for bed in order][: max(count, 0)]
+
+
+def _beside(row: dict[str, float], shift: float, direction: float) -> dict[str, float]:
+    """A place beside that of a run, toward the middle of the bed: no twin may stand outside of it."""
+    step = shift * math.cos(direction), shift * math.sin(direction)
+    outward = math.fsum(row[name] * way for name, way in zip(PLACE, step, strict=True)) > 0.0
+    return {name: row[name] + (-way if outward else way) for name, way in zip(PLACE, step, strict=True)}
+
+
+def inputs_of(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> np.ndarray:
+    """These inputs of runs in columns, shape [run_count, len(names)]."""
+    return np.array([[row[name] for name in names] for row in rows])

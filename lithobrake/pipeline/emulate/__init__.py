@@ -1,1 +1,0 @@
-"""The emulator of a study, and its samples."""

@@ -1,0 +1,245 @@
+"""Models of a bounce for flights that go on: the emulator again, slow arrivals, and equivalent hard ground."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, DrawnLandings, refits
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, gyrations, height_of_beds
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, touchdown_values
+from lithobrake.study import Study
+from lithobrake.study.quantity import uncertain
+from lithobrake.study.touchdown_model import grain_sizes, lander
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import SPIN
+
+if TYPE_CHECKING:
+    from lithobrake.emulator import Emulator
+    from lithobrake.smallbody import Bounce, Impacts, Rebounds, RestitutionTable
+
+# Without these two among the uncertain inputs the expansion says nothing about an impact that differs from the first.
+NEEDED = ("impact.speed", "impact.incidence_deg")
+
+
+def why_no_soil(study: Study) -> str | None:
+    """Why the soil cannot be asked about the impacts after the first; None where it can."""
+    absent = [name for name in NEEDED if name not in uncertain(study.touchdown_values())]
+    if not absent:
+        return None
+    return (
+        f"{' and '.join(absent)} {'is' if len(absent) == 1 else 'are'} no uncertain input, so the runs do not "
+        "cover later impacts; give it a distribution that covers them"
+    )
+
+
+def inputs_at(
+    impacts: "Impacts", inputs: Mapping[str, np.ndarray], ranges: Mapping[str, tuple[float, float]]
+) -> tuple[np.ndarray, np.ndarray]:
+    """All inputs at the impacts, [count, input_count], and which of these are outside the ranges, [count].
+
+    inputs: of each lander. Those outside have the inputs of the first impact in place of theirs.
+    """
+    felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
+    felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
+    x = np.column_stack([values[impacts.lander] for values in inputs.values()])
+    outside = np.zeros(len(x), dtype=bool)
+    for index, name in enumerate(inputs):
+        if name in felt:
+            lower, upper = ranges[name]
+            known = (felt[name] >= lower) & (felt[name] <= upper)
+            x[known, index] = felt[name][known]
+            outside |= ~known
+    return x, outside
+
+
+@dataclass(frozen=True)
+class EmulatorBounce:
+    """The emulator as a bounce of smallbody.hop.
+
+    refits    fits to beds drawn with replacement, of which each lander keeps one through its journey
+    refit     place of that of each lander, [lander_count]
+    inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
+              has met at first is the soil that it meets again, on another bed and place and in another attitude
+    ranges    of the runs; an impact outside them is not answered
+    bound     what energy allows landers after impacts with inputs [count, input_count]
+    """
+
+    refits: "list[Emulator]"
+    refit: np.ndarray
+    inputs: dict[str, np.ndarray]
+    ranges: dict[str, tuple[float, float]]
+    bound: Callable[[np.ndarray], EnergyBound]
+
+    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
+        """Answer each impact with a draw; a lander that goes over the rim or stays in contact has no answer."""
+        from lithobrake.smallbody import Rebounds
+
+        x, outside = inputs_at(impacts, self.inputs, self.ranges)
+        velocity, spin = np.zeros((len(x), 3)), np.zeros((len(x), 3))
+        outcome, bound = np.full(len(x), CLEAR), self.bound(x)
+        # All refits take a seed, whether landers of theirs hit or not.
+        for number, seed in enumerate(random.integers(2**31, size=len(self.refits)).tolist()):
+            of_refit = np.flatnonzero(self.refit[impacts.lander] == number)
+            if len(of_refit):
+                drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound.at(of_refit), seed)
+                velocity[of_refit], spin[of_refit], outcome[of_refit] = drawn.velocity, drawn.spin, drawn.outcome
+        captured = outcome == CAPTURED
+        velocity[captured] = 0.0
+        return Rebounds(velocity, spin, captured, outside | ~(captured | (outcome == CLEAR)))
+
+
+def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
+    """The bounce of a study for samples whose place is known, in their order; each keeps the refit it was drawn of."""
+    known, names = np.flatnonzero(samples.known), list(samples.input_names)
+    inputs = dict(zip(names, samples.inputs[known].T, strict=True))
+    # Every bed is read for it, which no impact should wait for.
+    height = height_of_beds(job.study, job.folder)
+
+    def bound(x: np.ndarray) -> EnergyBound:
+        return energy_bound(job.design, height, dict(zip(names, x.T, strict=True)), len(x))
+
+    ranges = DesignRuns.load(job.folder, "drawn").ranges(names)
+    return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, ranges, bound)
+
+
+RESTITUTION_FILE = "restitution.csv"
+ARRIVAL = ("impact.speed", "impact.incidence_deg")
+CLEAR_RUN, CAPTURED_RUN, *_ = TouchdownOutcome
+# Cells along each side, and landers that leave which a cell has in the mean; fewer make fewer cells.
+MOST_CELLS, CELL_COUNT = 4, 50
+# A cell with fewer that leave has the quantiles of all.
+FEWEST = 10
+
+
+def restitution_table(study: Study, samples: Samples, runs: DesignRuns) -> "RestitutionTable":
+    """The table of draws of the emulator, and how many runs and samples each cell has.
+
+    Cells hold equal shares of speeds and of incidences. Raises ValueError where no sample leaves the surface.
+    """
+    from lithobrake.smallbody.bounce import LEVELS, RestitutionTable, cells
+
+    arrival = [touchdown_values(study, samples.input_names, samples.inputs, name) for name in ARRIVAL]
+    leaves, ended = samples.leaves, samples.leaves | (samples.outcome == CAPTURED)
+    if not leaves.any():
+        raise ValueError("no sample leaves the surface, so the soil implies no restitution; set rest.count to 0")
+    side = max(1, min(MOST_CELLS, math.isqrt(int(leaves.sum()) // CELL_COUNT)))
+    edges = [np.quantile(one, np.linspace(0.0, 1.0, side + 1)) for one in arrival]
+
+    def place(values: Sequence[np.ndarray]) -> np.ndarray:
+        row, column = (cells(*one) for one in zip(edges, values, strict=True))
+        return row * side + column
+
+    def counts(of: np.ndarray) -> np.ndarray:
+        return np.bincount(of, minlength=side**2).reshape(side, side)
+
+    velocity = np.column_stack([samples.output(name) for name in VELOCITY])[leaves]
+    values = implied(arrival[0][leaves], np.radians(arrival[1][leaves]), velocity)
+    own = [place(arrival)[leaves] == cell for cell in range(side**2)]
+    used = [one if one.sum() >= FEWEST else np.ones(len(one), dtype=bool) for one in own]
+    quantiles = {
+        name: np.reshape([np.quantile(one[cell], LEVELS) for cell in used], (side, side, len(LEVELS)))
+        for name, one in values.items()
+    }
+    pairs = [(values["normal_restitution"][cell], values["tangential_restitution"][cell]) for cell in used]
+    of_samples, of_runs = counts(place(arrival)[ended]), np.isin(runs.outcomes, (CLEAR_RUN, CAPTURED_RUN))
+    stay = counts(place(arrival)[ended & ~leaves]) / np.maximum(of_samples, 1)
+    correlation = np.reshape([_score_correlation(*pair) for pair in pairs], (side, side))
+    in_runs = counts(place([runs.inputs[name][of_runs] for name in ARRIVAL]))
+    found = (quantiles, correlation, stay, of_samples, in_runs, study.rest.rest_height)
+    return RestitutionTable(edges[0], edges[1], *found)
+
+
+def implied(speed: np.ndarray, incidence: np.ndarray, velocity: np.ndarray) -> dict[str, np.ndarray]:
+    """What hard ground would have had to be, [count] each, at speeds [m/s] and incidences [rad] with these rebounds.
+
+    velocity: in the frame of the touchdown [m/s], [count, 3]. Restitutions are ratios of the speeds along the normal
+    and along the ground; an impact without horizontal velocity has none along the ground, told as 0.
+    """
+    down, along = speed * np.cos(incidence), speed * np.sin(incidence)
+    level = np.hypot(velocity[:, 0], velocity[:, 1])
+    change = np.hypot(velocity[:, 0] - along, velocity[:, 1])
+    return {
+        "normal_restitution": velocity[:, 2] / down,
+        "tangential_restitution": np.divide(level, along, out=np.zeros_like(level), where=along > 0.0),
+        "azimuth_deg": np.degrees(np.arctan2(velocity[:, 1], velocity[:, 0])),
+        "friction": change / (velocity[:, 2] + down),
+    }
+
+
+def _score_correlation(one: np.ndarray, other: np.ndarray) -> float:
+    """Correlation of the normal scores, which no transformation of either changes; 0 where one does not vary."""
+    from scipy import special, stats
+
+    if min(np.ptp(one), np.ptp(other)) == 0.0:
+        return 0.0
+    scores = [special.ndtri((stats.rankdata(values) - 0.5) / len(values)) for values in (one, other)]
+    return float(np.corrcoef(*scores)[0, 1])
+
+
+# Effective friction over friction of the contacts: a line through pushes as slow as captured landers.
+INTERCEPT, SLOPE = 0.49, 0.32
+# Frictions, and smallest edges of the lander in grains, between which it was measured.
+FRICTIONS, EDGES = (0.2, 0.8), (0.55, 1.7)
+# Grains whose mean size stands for all.
+GRAINS = 1000
+
+
+def has_measured_size(design: DrawnDesign) -> bool:
+    """Whether the study's lander is one that the law was measured for: one hull, no ball, about as large as a grain."""
+    study = design.study
+    if not study.has_soil or study.lander.shape == "sphere" or study.lander.part:
+        return False
+    sizes = grain_sizes(study).draw((np.arange(GRAINS) + 0.5) / GRAINS)
+    least, largest = EDGES
+    return bool(least <= lander(study, design.medians).smallest_edge / sizes.mean() <= largest)
+
+
+def effective_friction(friction: np.ndarray) -> np.ndarray:
+    """Friction that stops a lander on hulls, by that of its contacts; beyond the measured ones that of the end."""
+    return INTERCEPT + SLOPE * np.clip(friction, *FRICTIONS)
+
+
+@dataclass(frozen=True)
+class SlowArrivals:
+    """A bounce that answers for another where that has no answer, and a lander comes too slowly to leave.
+
+    bounce     of the soil
+    edge       smallest edge of each lander [m], and gyration, its largest moment of inertia over its mass [m2],
+               [lander_count]
+
+    A run calls a lander captured whose energy could not lift it by half of that edge. Contacts only take energy away,
+    so what comes with less never leaves. It slides on with the horizontal velocity that it came with.
+    """
+
+    bounce: "Bounce"
+    edge: np.ndarray
+    gyration: np.ndarray
+
+    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
+        from lithobrake.smallbody import Rebounds
+        from lithobrake.touchdown.outcome_judge import CAPTURED_APEX
+
+        found, velocity = self.bounce(impacts, random), np.zeros((len(impacts.speed), 3))
+        squares = impacts.speed**2 + self.gyration[impacts.lander] * (impacts.spin**2).sum(axis=1)
+        lift = -2.0 * impacts.effective_acceleration * CAPTURED_APEX * self.edge[impacts.lander]
+        slow = found.outside & (squares < lift)
+        velocity[:, 0] = impacts.speed * np.sin(impacts.incidence)
+        velocity = np.where(slow[:, None], velocity, found.velocity)
+        return Rebounds(velocity, found.spin, found.captured | slow, found.outside & ~slow)
+
+
+def slow_arrivals(design: DrawnDesign, samples: Samples, bounce: "Bounce") -> SlowArrivals:
+    """The bounce of a study for the samples whose place is known, in their order, answering for `bounce`."""
+    study, known = design.study, design.medians
+    drawn = {name: touchdown_values(study, samples.input_names, samples.inputs, name)[samples.known] for name in known}
+    if "lander.diameter" in known:
+        edge = drawn["lander.diameter"]
+    else:
+        edge = np.full(len(drawn["lander.mass"]), lander(study, known).smallest_edge)
+    return SlowArrivals(bounce, edge, gyrations(design, drawn)[1])

@@ -1,0 +1,252 @@
+"""The emulator of drawn runs, its draws, and its tables for the explorer of the page."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lithobrake.analysis import sample_inputs
+from lithobrake.files.atomic import atomic_path
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, bound_numbers, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
+from lithobrake.results.explorer_tables import FORMAT_VERSION, NAMES, ExplorerTables
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
+
+if TYPE_CHECKING:
+    from lithobrake.chaos import Distribution
+    from lithobrake.emulator import Emulator
+
+EMULATOR_FILE = "emulator.json"
+SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
+STEEPEST = 0.5 * math.pi
+# What is drawn with its run: directions, and numbers beside the motion.
+RIDERS = (AZIMUTH, *SPIN_OUT, "contact_duration", "penetration", "peak_acceleration", "energy_lost")
+# Fits to beds drawn with replacement: each sample is of one of them and keeps it from bounce to bounce.
+REFIT_COUNT = 50
+# A lander that leaves straight up, or does not turn, is put this far inside the bounds of what is drawn.
+MARGIN = 1e-6
+
+
+def fit_emulator(job: Job) -> None:
+    from lithobrake.emulator.training import FEWEST
+
+    runs = DesignRuns.load(job.folder, "drawn")
+    left = int(runs.has_outputs.sum())
+    if left < FEWEST:
+        raise ValueError(
+            f"{left} of {runs.run_count} runs left the surface, but an emulator needs {FEWEST}; raise design.run_count"
+        )
+    values = {name: runs.inputs[name] for name in job.design.inputs}
+    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
+    outputs = outputs_of_runs(runs, RIDERS)
+    fitted(job, job.design.inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+
+
+def fitted(
+    job: Job,
+    inputs: "Mapping[str, Distribution]",
+    runs: DesignRuns,
+    outputs: dict[str, np.ndarray],
+    bound: EnergyBound,
+    outcomes: Sequence[str],
+) -> "Emulator":
+    """The emulator of runs that ended in one of some outcomes; runs of a bed are left out together.
+
+    outputs: by name [run_count], as `outputs_of_runs` gives them. bound: what energy allows each run; it does not count
+    where some run left with more.
+    """
+    from lithobrake import emulator
+
+    ended = np.isin(runs.outcomes, outcomes)
+    bed = runs.inputs["bed"].astype(int)[ended]
+    upper = np.full((runs.run_count, len(outputs)), np.inf)
+    upper[:, list(outputs).index(ELEVATION)] = STEEPEST
+    # Between 0 and the bound the emulator works in the logit, so that no draw exceeds the energy of the impact.
+    if _is_kept(job, runs, bound):
+        upper[:, list(outputs).index(SPEED)], upper[:, list(outputs).index(SPIN)] = bound.speed, bound.spin()
+    modelled = (SPEED, ELEVATION, SPIN)
+    return emulator.fit(
+        inputs,
+        runs.columns(list(inputs))[ended],
+        np.column_stack(list(outputs.values()))[ended],
+        # One bed cannot be left out of itself, so its runs are then left out singly.
+        groups=bed if len(np.unique(bed[runs.has_outputs[ended]])) > 1 else None,
+        outcome=np.array(runs.outcomes)[ended],
+        outcomes=outcomes,
+        lower=[0.0 if name in modelled else -np.inf for name in outputs],
+        upper=upper[ended],
+        riders=[name for name in outputs if name not in modelled],
+        output_names=list(outputs),
+    )
+
+
+def _is_kept(job: Job, runs: DesignRuns, bound: EnergyBound) -> bool:
+    """Whether every run left within what energy allows; said aloud where some did not."""
+    # At the bound of the speed nothing is left for a spin.
+    beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
+    if beyond:
+        job.say(
+            f"{beyond} of {runs.run_count} runs left with more speed and spin than the impact energy allows, so the "
+            "emulator bounds neither; find the source of energy in the program that simulates the touchdowns, or give "
+            "lander.inertia"
+        )
+    return not beyond
+
+
+def outputs_of_runs(runs: DesignRuns, riders: Sequence[str]) -> dict[str, np.ndarray]:
+    """What the emulator draws, by name [run_count]: NaN in the runs that did not leave, and in no other."""
+    left = runs.has_outputs
+    found = {name: runs.output(name) for name in (SPEED, ELEVATION, SPIN, *riders)}
+    _, across, _ = VELOCITY
+    found[AZIMUTH] = np.arctan2(runs.output(across), runs.output(VELOCITY[0]))
+    found[ELEVATION] = np.clip(found[ELEVATION], MARGIN * STEEPEST, (1.0 - MARGIN) * STEEPEST)
+    found[SPIN] = np.maximum(found[SPIN], MARGIN * max(float(np.max(found[SPIN][left], initial=0.0)), MARGIN))
+    # A program of the user's own may leave out what no flight needs.
+    return {name: np.where(left, y, np.nan) for name, y in found.items() if np.isfinite(y[left]).all()}
+
+
+def refits(job: Job) -> "list[Emulator]":
+    """The emulator fitted anew to beds drawn with replacement, the same ones at every call."""
+    from lithobrake import emulator
+
+    return emulator.load(job.folder / EMULATOR_FILE).refits(REFIT_COUNT, hashed_seed(job.study.seed, "refits"))
+
+
+@dataclass(frozen=True)
+class DrawnLandings:
+    """Landings drawn from an emulator.
+
+    outcome [count], places among the touchdown outcomes; outputs by name [count], SI, NaN where the lander did not
+    leave; velocity and spin [count, 3].
+    """
+
+    outcome: np.ndarray
+    outputs: Mapping[str, np.ndarray]
+
+    @classmethod
+    def of(cls, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int) -> "DrawnLandings":
+        """Draw one at each x [count, input_count]; bound: what energy allows each."""
+        upper = np.tile(model.runs.upper[0], (len(x), 1))
+        speed, spin = (model.output_names.index(name) for name in (SPEED, SPIN))
+        bounded = bool(np.isfinite(model.runs.upper[0, speed]))
+        if bounded:
+            upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
+        drawn = model.draw(x, 1, seed, lower=model.runs.lower[0], upper=upper)
+        y = drawn.y[:, 0]
+        if bounded:
+            # Each is within its own bound; what the speed has taken is not there for the spin.
+            y[:, spin] = np.minimum(y[:, spin], bound.spin(y[:, speed]))
+        return cls(drawn.outcome[:, 0], dict(zip(model.output_names, y.T, strict=True)))
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """Velocity [m/s] in the frame of the touchdown, of the drawn speed, elevation and azimuth, [count, 3]."""
+        return outgoing_velocity(*(self.outputs[name] for name in (SPEED, ELEVATION, AZIMUTH)))
+
+    @cached_property
+    def spin(self) -> np.ndarray:
+        """Angular velocity [rad/s], of the drawn size about the axis of the run that was drawn, [count, 3].
+
+        Where runs do not tell the axis it is that of rolling along the velocity.
+        """
+        if SPIN_OUT[0] not in self.outputs:
+            return rolling_spin(self.velocity, self.outputs[SPIN])
+        axis = np.column_stack([self.outputs[name] for name in SPIN_OUT])
+        length = np.linalg.norm(axis, axis=1, keepdims=True)
+        spin: np.ndarray = axis / np.where(length > 0.0, length, 1.0) * self.outputs[SPIN][:, None]
+        return spin
+
+    def table(self) -> dict[str, np.ndarray]:
+        """All outputs by name [count], those that are fitted to in a study of the other method first."""
+        of_vectors = dict(zip((*VELOCITY, *SPIN_OUT), np.hstack([self.velocity, self.spin]).T, strict=True))
+        found = {**self.outputs, **of_vectors}
+        return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
+
+
+EXPLORER_FILE = "explorer.h5"
+
+
+def write_explorer(job: Job) -> None:
+    bound = bound_numbers(job.design, height_of_beds(job.study, job.folder))
+    save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(refits(job), bound))
+
+
+def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -> ExplorerTables:
+    """Tables of `lithobrake.emulator.law_tables` of refits of one emulator, and azimuth [row_count], the direction
+    [rad] that each row was left in.
+    """
+    from lithobrake.analysis.confidence import t_quantile
+    from lithobrake.emulator import law_tables
+
+    runs = models[0].runs
+    groups = len(np.unique(runs.group))
+    return ExplorerTables(
+        {**law_tables(models), "azimuth": runs.y[:, runs.output_names.index(AZIMUTH)]},
+        input_names=tuple(runs.inputs),
+        output_names=tuple(runs.output_names[column] for column in runs.modelled),
+        outcome_names=tuple(runs.outcome_names),
+        output_outcome=runs.outcome_names[runs.output_outcome],
+        group_count=groups,
+        interval_reach=t_quantile(groups - 1),
+        bound=dict(bound),
+    )
+
+
+def save_explorer(path: Path, explorer: ExplorerTables) -> None:
+    import h5py
+
+    with atomic_path(path) as draft, h5py.File(draft, "w") as file:
+        for name, table in explorer.tables.items():
+            file.create_dataset(name, data=table)
+        file.attrs["format_version"] = FORMAT_VERSION
+        for name in (*NAMES, "output_outcome", "group_count", "interval_reach"):
+            file.attrs[name] = getattr(explorer, name)
+        file.attrs["attitude"] = json.dumps(None if explorer.attitude is None else asdict(explorer.attitude))
+        for name, value in explorer.bound.items():
+            file.attrs[f"bound.{name}"] = value
+
+
+def draw_emulator_samples(job: Job) -> None:
+    """Sample all inputs and draw a landing for each; sample i comes from refit i modulo REFIT_COUNT.
+
+    So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
+    """
+    study = job.study
+    x = sample_inputs(job.design.inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
+    drawn_samples(job, x, "draws").save(job.folder)
+
+
+def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
+    """Draw a landing at each x [sample_count, input_count]; sample i by refit i modulo that.
+
+    purpose: of the random numbers.
+    """
+    study, inputs = job.study, job.design.inputs
+    bound = energy_bound(job.design, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
+    models = refits(job)
+    names: list[str] = []
+    outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
+    for number, model in enumerate(models):
+        job.progress(number, len(models), "samples")
+        # Interleaved, so that the first samples, which are flown, are of all refits.
+        part = slice(number, None, REFIT_COUNT)
+        drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, purpose, number))
+        table = drawn.table()
+        if not names:
+            names, outputs = list(table), np.empty((len(x), len(table)))
+        outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
+    return Samples(list(inputs), names, x, outputs, outcome)
+
+
+def make_emulator(job: Job) -> None:
+    fit_emulator(job)
+    write_explorer(job)

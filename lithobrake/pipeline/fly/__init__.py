@@ -1,1 +1,0 @@
-"""Flights of landings and samples to the next impact."""

@@ -1,1 +1,0 @@
-"""The folder of a study: its files, which of them are current, whose it is."""

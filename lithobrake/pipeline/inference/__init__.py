@@ -1,1 +1,0 @@
-"""The soil inferred from observed bounces, by the emulator of a study."""

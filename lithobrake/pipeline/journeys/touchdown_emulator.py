@@ -1,0 +1,302 @@
+"""The emulator of all touchdowns of a study's journeys, and landers at their first touchdowns."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.attitude import AttitudeTerms
+from lithobrake.pipeline.design.arrivals import first_axes
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, RIDERS, DrawnLandings, fitted, outputs_of_runs
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.study import Study
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, SPIN, TO_REST, UNKNOWN_END
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+    from lithobrake.chaos import Distribution
+    from lithobrake.emulator import Emulator
+
+
+@dataclass(frozen=True)
+class Answers:
+    """How touchdowns end, [count] and [count, 3], in the frames of the touchdowns.
+
+    outcome: a word of TouchdownOutcome, "failed", or UNKNOWN_END. velocity [m/s] and spin against the ground [rad/s] of
+    those that left; way: from the impact to where a touchdown ended [m]; duration [s].
+    """
+
+    outcome: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray
+    way: np.ndarray
+    duration: np.ndarray
+
+    @classmethod
+    def unknown(cls, count: int) -> "Answers":
+        velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
+        return cls(np.full(count, UNKNOWN_END, dtype="<U16"), velocity, spin, way, np.zeros(count))
+
+    @property
+    def is_known(self) -> np.ndarray:
+        """Which touchdowns have an answer, [count]."""
+        known: np.ndarray = self.outcome != UNKNOWN_END
+        return known
+
+    def fill(self, which: np.ndarray, others: "Answers") -> None:
+        for one in fields(self):
+            getattr(self, one.name)[which] = getattr(others, one.name)
+
+
+# Another file than that of single landings, whose inputs are those of the study alone.
+TOUCHDOWN_EMULATOR_FILE = "touchdown_emulator.json"
+SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
+GRAVITY, SLOPE, _ = GROUND
+ALONG, ASIDE, DURATION, _ = TO_REST
+# What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
+OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
+# Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
+ARRIVAL = ("impact.", "surface.")
+ONE_SOIL = (
+    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
+    "their own."
+)
+# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
+FACTOR, DEGREES = 1.1, 5.0
+LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
+
+
+@dataclass(frozen=True)
+class TouchdownEmulator:
+    """The emulator of a study's touchdowns.
+
+    refits: of the emulator to beds drawn with replacement. terms: of the lander's attitude that it reads, None for a
+    ball. bed: of each touchdown that it was fitted to. ranges: of the
+    inputs of OF_TOUCHDOWN, beyond which it has no answer. rest: duration [s] and way along and aside [m] of the
+    touchdowns in which a lander came to rest, [count, 3]. across [m]: the longest way of a touchdown. bed_height [m]:
+    of the highest bed.
+    """
+
+    design: DrawnDesign
+    refits: "list[Emulator]"
+    terms: AttitudeTerms | None
+    bed: np.ndarray
+    ranges: Mapping[str, tuple[float, float]]
+    rest: np.ndarray
+    across: float
+    bed_height: float
+
+    @classmethod
+    def read(cls, design: DrawnDesign, folder: StudyFolder) -> "TouchdownEmulator":
+        """The one that was fitted. Raises ValueError for a file that is damaged."""
+        from lithobrake import emulator
+
+        study, model = design.study, emulator.load(folder / TOUCHDOWN_EMULATOR_FILE)
+        runs = DesignRuns.load(folder, JOURNEY_DESIGN)
+        rests = np.array(runs.outcomes) == TouchdownOutcome.CAPTURED
+        rest = np.column_stack([np.nan_to_num(runs.output(name)) for name in (DURATION, ALONG, ASIDE)])[rests]
+        bed = runs.inputs["bed"][np.isin(runs.outcomes, model.outcome_names)].astype(int)
+        refits = model.refits(REFIT_COUNT, hashed_seed(study.seed, "refits"))
+        height = height_of_beds(study, folder)
+        terms = attitude_terms(study)
+        return cls(design, refits, terms, bed, trained_ranges(runs), rest, _across(runs), height)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What it reads of a touchdown, by dotted key."""
+        return tuple(self.refits[0].runs.inputs)
+
+    @property
+    def plain_inputs(self) -> tuple[str, ...]:
+        return tuple(name for name in self.inputs if not name.startswith(PREFIX))
+
+    def attitude_of(self, attitude: "Rotation") -> dict[str, np.ndarray]:
+        """The terms of attitudes in the frames of their touchdowns [count] as inputs; none for a ball."""
+        into_frame = attitude.as_matrix()
+        return {} if self.terms is None else named_terms(self.terms, into_frame[:, 2], into_frame[:, 0])
+
+    def unseen(self, bed: int) -> np.ndarray:
+        """Places of the refits that have not seen a bed."""
+        there = self.bed == bed
+        return np.flatnonzero([not model.weights[there].any() for model in self.refits])
+
+    def beyond(self, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Which input of each touchdown lies beyond the ranges, the first of them, [count]; "" where none does."""
+        found = np.full(len(inputs[SPEED]), "", dtype="<U24")
+        for name, (lower, upper) in self.ranges.items():
+            # No speed is too low: such a touchdown is as the slowest of them.
+            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (name != SPEED))
+            found[outside & (found == "")] = name
+        return found
+
+    def answers(self, inputs: Mapping[str, np.ndarray], spin: np.ndarray, refit: np.ndarray, seed: int) -> Answers:
+        """Draw how touchdowns end, each by its refit [count]; nothing is known of those beyond the ranges.
+
+        inputs: by dotted key in the file's units, [count] each. spin: of the arrival [rad/s], [count, 3].
+        """
+        found = Answers.unknown(len(refit))
+        inside = self.beyond(inputs) == ""
+        # Slower than any touchdown is as the slowest of them, which has more energy to leave with.
+        inputs = {**inputs, SPEED: np.maximum(inputs[SPEED], self.ranges[SPEED][0])}
+        values = {name: inputs[name] for name in self.inputs} | dict(zip(SPIN, spin.T, strict=True))
+        bound = energy_bound(self.design, self.bed_height, values, len(refit), self.across)
+        x = np.column_stack([inputs[name] for name in self.inputs])
+        random = np.random.default_rng(seed)
+        # All refits take a seed, whether landers of theirs touch down or not.
+        for number, own in enumerate(random.integers(2**31, size=len(self.refits)).tolist()):
+            of_refit = np.flatnonzero(inside & (refit == number))
+            if len(of_refit):
+                self._draw(found, of_refit, self.refits[number], x[of_refit], bound.at(of_refit), own)
+        return found
+
+    def _draw(
+        self, found: Answers, which: np.ndarray, model: "Emulator", x: np.ndarray, bound: EnergyBound, seed: int
+    ) -> None:
+        drawn = DrawnLandings.of(model, x, bound, seed)
+        names = np.array(model.outcome_names)
+        found.outcome[which] = names[drawn.outcome]
+        left = names[drawn.outcome] == TouchdownOutcome.CLEAR
+        found.velocity[which[left]], found.spin[which[left]] = drawn.velocity[left], drawn.spin[left]
+        if DURATION in drawn.outputs:
+            found.duration[which[left]] = drawn.outputs[DURATION][left]
+        rests = which[found.outcome[which] == TouchdownOutcome.CAPTURED]
+        # Nothing is fitted to touchdowns that end at rest: how long and far they go is that of one of them.
+        taken = self.rest[np.random.default_rng(seed).integers(len(self.rest), size=len(rests))]
+        found.duration[rests], found.way[rests, :2] = taken[:, 0], taken[:, 1:]
+
+
+def fit_touchdowns(job: Job) -> str | None:
+    """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
+    runs = with_attitude(job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN))
+    why = ONE_SOIL if job.study.soil else _why_none(runs)
+    if why is not None:
+        job.folder.write_json(TOUCHDOWN_EMULATOR_FILE, {"why": why})
+        return why
+    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
+    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count, _across(runs))
+    outputs = outputs_of_runs(runs, (*RIDERS, DURATION))
+    met = [outcome for outcome in TouchdownOutcome if outcome in runs.outcomes]
+    fitted(job, _inputs(job, runs), runs, outputs, bound, met).save(job.folder / TOUCHDOWN_EMULATOR_FILE)
+    return None
+
+
+def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
+    """The ranges of OF_TOUCHDOWN, in the file's units, in which the emulator of touchdowns has an answer."""
+    found = {}
+    for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items():
+        if name in LARGEST:
+            found[name] = max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
+        else:
+            # Gravity below 0 points outward.
+            margin = (FACTOR - 1.0) * max(abs(lower), abs(upper))
+            found[name] = (lower if name == SPEED else lower - margin), upper + margin
+    return found
+
+
+def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
+    """Soil and lander as the study draws them, and what differs between touchdowns, over its range."""
+    from lithobrake.chaos import LogUniform, Uniform
+
+    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL)}
+    ranges = trained_ranges(runs)
+    found = kept | {name: (LogUniform if name == SPEED else Uniform)(*ends) for name, ends in ranges.items()}
+    terms = attitude_terms(job.study)
+    of_attitude = {} if terms is None else terms.ranges
+    return found | {f"{PREFIX}{name}": Uniform(*ends) for name, ends in of_attitude.items()}
+
+
+def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
+    terms = attitude_terms(study)
+    return runs if terms is None else replace(runs, inputs={**runs.inputs, **attitude_inputs_of(terms, runs.inputs)})
+
+
+def _why_none(runs: DesignRuns) -> str | None:
+    """Why there is nothing to fit an emulator to; None where there is enough."""
+    from lithobrake.emulator.training import FEWEST
+
+    left, outcomes = runs.has_outputs, np.array(runs.outcomes)
+    begin = "The study has no emulator of its touchdowns: "
+    if left.sum() < FEWEST:
+        return f"{begin}{int(left.sum())} of {runs.run_count} left the ground, and it needs {FEWEST}."
+    if not (outcomes == TouchdownOutcome.CAPTURED).any():
+        return f"{begin}no lander came to rest."
+    return None
+
+
+def _across(runs: DesignRuns) -> float:
+    """Longest way along the ground in a touchdown [m]; 0 where the runs do not say."""
+    return float(np.nanmax(np.nan_to_num(np.hypot(runs.output(ALONG), runs.output(ASIDE)))))
+
+
+def why_no_emulator(content: Mapping[str, Any]) -> str | None:
+    """The reason that a file of an emulator holds in its place; None where there is an emulator."""
+    why = content.get("why")
+    return None if why is None else str(why)
+
+
+Row = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Arrivals:
+    """Landers at their first touchdowns.
+
+    number: of the journey of each; rows: inputs of its first touchdown; site: columns of SITE_KEYS [count]; origin [m],
+    [count, 3], and axes, in rows, [count, 3, 3], of the frames of the touchdowns, body-fixed; clock [s]: as of the
+    partner; refit: of the emulator, which a lander keeps.
+    """
+
+    number: np.ndarray
+    rows: list[Row]
+    site: Mapping[str, np.ndarray]
+    origin: np.ndarray
+    axes: np.ndarray
+    clock: np.ndarray
+    refit: np.ndarray
+
+    @classmethod
+    def of(
+        cls, place: Site, number: np.ndarray, rows: list[Row], site: Mapping[str, np.ndarray], refit: np.ndarray
+    ) -> "Arrivals":
+        """Those of these rows at these places, by columns of SITE_KEYS [count]."""
+        origin, mean_axes = place.frames(site)
+        axes = first_axes(place.study, mean_axes, rows)
+        return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
+
+    @classmethod
+    def drawn(cls, design: DrawnDesign, place: Site, first: int, count: int) -> "Arrivals":
+        """Journeys of a study from the number `first` on, each with one refit after the other."""
+        number = np.arange(first, first + count)
+        rows = design.with_run_count(first + count).rows[first:]
+        site = {key: values[first:] for key, values in place.sampled(first + count).items()}
+        return cls.of(place, number, rows, site, number % REFIT_COUNT)
+
+    def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
+        """Some of the landers, or some of them several times, with these refits."""
+        site = {key: values[which] for key, values in self.site.items()}
+        rows = [self.rows[one] for one in which.tolist()]
+        states = (self.origin[which], self.axes[which], self.clock[which])
+        return Arrivals(self.number[which], rows, site, *states, refit)
+
+    def column(self, name: str) -> np.ndarray:
+        """One input of the first touchdowns [count], in the file's unit."""
+        return np.array([row[name] for row in self.rows])
+
+    @property
+    def spin(self) -> np.ndarray:
+        """Angular velocity against the ground [rad/s], [count, 3], in the frames of the touchdowns."""
+        from lithobrake.geometry.frames import about_z
+
+        of_bed = np.column_stack([self.column(name) for name in SPIN])
+        turns = [about_z(-angle) for angle in np.radians(self.column("impact.azimuth_deg")).tolist()]
+        return np.array([turn.apply(one) for turn, one in zip(turns, of_bed, strict=True)]).reshape(-1, 3)

@@ -1,1 +1,0 @@
-"""Journeys from bounce to bounce until the lander rests."""

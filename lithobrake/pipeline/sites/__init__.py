@@ -1,1 +1,0 @@
-"""A grid of sites over the body, each with what becomes of landers that are delivered there."""

@@ -1,1 +1,0 @@
-"""What landers at rest see of the sky."""

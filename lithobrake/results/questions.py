@@ -1,0 +1,256 @@
+"""What a study says of its limit states and delivery options, and of its difference to another study."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.study.question_sections import SIDE
+from lithobrake.vocabulary.plain_text import short_repr
+
+
+@dataclass(frozen=True)
+class LimitStateRuns:
+    """A limit state estimated from the runs, whichever source is used."""
+
+    share: float
+    """of the landings that meet it"""
+    lower: float | None
+    """lower bound, over beds and impact points not in the study; null where there is none"""
+    upper: float | None
+    """upper bound"""
+    from_: str
+    """of how many landings and beds"""
+    next_bed: tuple[float, float] | None
+    """prediction interval for a new bed: lower, upper; null where that is not known"""
+    if_missing: tuple[float, float]
+    """the fraction if none, and if all, of the landings without an outcome meet it, without sampling error"""
+    missing: float
+    """fraction of the landings for which it is unknown"""
+
+
+@dataclass(frozen=True)
+class LimitStateInput:
+    """An input among the runs that meet a limit state."""
+
+    distance: float
+    """largest difference between the distribution function of the input among the runs that meet it and its input
+    distribution"""
+    lower: float
+    """lower bound, from resampled beds"""
+    upper: float
+    """upper bound"""
+    luck: float
+    """distance that, without any effect, any of the inputs exceeds in one of ten studies"""
+    median: float
+    """of the input among the runs that meet it, in its unit"""
+    median_of_all: float
+    """of its input distribution"""
+    found: bool
+    """whether the input is significant: the distance exceeds luck"""
+
+
+@dataclass(frozen=True)
+class LimitStateResult:
+    """A limit state of the study file (docs/reliability.md)."""
+
+    condition: str
+    """as in the study file"""
+    probability: float
+    """share of the landings that meet it, over the input distributions of the study file"""
+    lower: float | None
+    """lower bound, over beds and impact points not in the study; null where why says that there is none"""
+    upper: float | None
+    """upper bound"""
+    level: float
+    """probability that the bounds of this table stand for"""
+    source: str
+    """runs, or emulator if the probability is too close to 0 or 1 for the runs"""
+    runs: LimitStateRuns
+    emulator: ShareInterval | None
+    """estimate from the emulator; null if there is none"""
+    tail_limit: float
+    """upper limit of the probability of an event that occurred in no run on this number of beds"""
+    why: str | None
+    """why there is no interval, in a sentence; null where there is one"""
+    failing_runs: float
+    """runs that meet it; a run whose flights meet it in part counts with that fraction"""
+    inputs: Mapping[str, LimitStateInput]
+    """by input; empty if no run meets it, or if there is only one bed"""
+    statement: str
+    """the result in a sentence"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class RareLimitState:
+    """A rare limit state, by subset simulation with landings of its own (rare_*.json, docs/reliability.md)."""
+
+    condition: str
+    """as in the study file"""
+    probability: float
+    """of a landing that meets it; 0 where it was not reached"""
+    lower: float | None
+    """lower bound; null where there is none"""
+    upper: float | None
+    """upper bound"""
+    level: float
+    """probability that the bounds stand for"""
+    origins: float
+    """how many beds of one size the landings that meet it come from"""
+    warning: str | None
+    """that so few origins give no stable probability, in a sentence; null where they are enough"""
+    reached: bool
+    """whether a landing met it"""
+    rarest: float
+    """probability of the last level"""
+    thresholds: tuple[float, ...]
+    """of each level: distance from the limit, in standard deviations of the outputs of the first level"""
+    shares: tuple[float, ...]
+    """of each level: landings that lie within the next threshold"""
+    landings: int
+    """landings that were made"""
+    beds: int
+    """beds of these runs"""
+    statement: str
+    """the result in a sentence"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class AimOnGround:
+    """A delivery option on one ground: bounds over refits on soil, by the number of landers on hard ground."""
+
+    settled: ShareInterval
+    """landers at rest where the ground holds them, after all bounces"""
+    missing: float
+    """share of the landers with an unknown outcome"""
+    distance_p95: Estimate | None
+    """95 % of those at rest lie within this distance over the ground [m]; null if none is at rest, and a bound is null
+    if there are too few landers for it"""
+    time_p95: Estimate | None
+    """95 % of those at rest are at rest within this time [s]; null and bounds as for distance_p95"""
+    allowed: bool
+    """whether the option satisfies the conditions on this ground"""
+    share_of_refits: float | None = None
+    """fraction of the refits in which this option has most landers at rest, on soil"""
+
+
+@dataclass(frozen=True)
+class AimResult:
+    """A delivery option."""
+
+    values: tuple[float, ...]
+    """of the names, in the units of the study file"""
+    soil: AimOnGround
+    hard: AimOnGround | None
+    """null with [journey]: landers are followed on the soil alone"""
+
+
+@dataclass(frozen=True)
+class BestAim:
+    """The allowed option at which most landers are at rest; null where none is allowed, or no lander is at rest."""
+
+    aim: int
+    """its index among the options, from 0"""
+    share_of_refits: float | None
+    """fraction of the refits in which it is the best, which is not the probability that it is the best; null on hard
+    ground"""
+    own: ShareInterval | None
+    """its fraction of landers at rest without the selection bias, with the error over refits of all options that cannot
+    be distinguished from it; null on hard ground, and if refits give none"""
+    not_worse: tuple[int, ...] | None
+    """indices of the other allowed options that cannot be distinguished from the best at the level, all of them
+    together; null in the same cases"""
+    next: int | None
+    """place of the second best; null in the same cases"""
+    difference: Estimate | None
+    """its fraction minus that of the second, with bounds over refits; null if there is no second, and in the same
+    cases"""
+
+
+@dataclass(frozen=True)
+class AimResults:
+    """The delivery options of the study file (docs/aiming.md); the last name varies fastest."""
+
+    names: tuple[str, ...]
+    """keys of the options, dotted, in the order of aims.values"""
+    units: tuple[str, ...]
+    """of the names"""
+    within: tuple[str, ...]
+    """conditions that the best option must satisfy"""
+    lander_count: int
+    """landers at each option"""
+    refit_count: int
+    """refits of the emulator to resampled beds, which all options share"""
+    level: float
+    """probability that the bounds of this table stand for"""
+    why: str | None
+    """why there is no interval on soil, in a sentence; null if there is one"""
+    aims: tuple[AimResult, ...]
+    best_on_soil: BestAim | None
+    best_on_hard: BestAim | None
+    statement: str
+    """the best option and its uncertainty, in sentences"""
+    sides: tuple[str, ...] = ()
+    """with aim.sides: the sides in words; the values of that name are indices in this list"""
+    __repr__ = short_repr
+
+    def value_words(self, name: str, value: float) -> str:
+        """A value of a name in words; a side by its name."""
+        return self.sides[int(value)].partition(",")[0] if name == SIDE else f"{value:g}"
+
+
+@dataclass(frozen=True)
+class ComparedNumber:
+    """A number of one of the studies, from the pairs alone."""
+
+    value: float | None
+    """in the unit of the answer; null where no run has it"""
+    lower: float | None
+    """lower bound, over beds and impact points not in the study; null where there is none"""
+    upper: float | None
+    """upper bound"""
+
+
+@dataclass(frozen=True)
+class ComparedAnswer:
+    """An answer of both studies, and the second less the first."""
+
+    words: str
+    """what it is"""
+    unit: str
+    """of all its numbers; empty for a fraction of 1 and for a count"""
+    is_fraction: bool
+    """whether it is a fraction of all landers"""
+    first: ComparedNumber
+    second: ComparedNumber
+    difference: ComparedNumber
+    """second less first; null where one of them is"""
+    pairs: int
+    """pairs of which both runs have an answer"""
+    correlation: float | None
+    """of the two runs of a pair; null where an answer does not vary"""
+    landings_saved: float | None
+    """how many times the landings an unpaired comparison takes for an interval as narrow; null without an interval"""
+
+
+@dataclass(frozen=True)
+class StudyComparison:
+    """Two studies on the same beds, places, attitudes and headings, paired by number."""
+
+    names: tuple[str, str]
+    """folders of the first and the second study, as they were given"""
+    titles: tuple[str, str]
+    """their titles"""
+    of: str
+    """which pairs it describes, in words"""
+    level: float
+    """probability that each interval stands for"""
+    settings: Mapping[str, tuple[str, str]]
+    """keys of the study files, by their dotted names, that differ: first, second"""
+    answers: Mapping[str, ComparedAnswer]
+    note: str | None
+    """what makes the pairs less alike than they could be, in a sentence; null where nothing does"""
+    why: str | None
+    """why there are no intervals, in a sentence; null where there are"""
+    __repr__ = short_repr

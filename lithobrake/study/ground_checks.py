@@ -1,0 +1,242 @@
+"""What is wrong with beds, boulders, soils and contacts, found before anything runs."""
+
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from lithobrake.geometry.grain_limits import BOULDER_REACH, longest_reach
+from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
+from lithobrake.study.lander_checks import NAME
+from lithobrake.study.quantity import usual_reach
+from lithobrake.study.study import Study
+from lithobrake.vocabulary.quantities import ELSEWHERE
+
+# A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
+# same part of the smallest grain bounces off as from a rock. Neither says anything about a soil.
+GRAINS_PER_LANDER = 1e6
+# Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of
+# motion can be solved for it. Booms and panels that the shape leaves out may reach far.
+INERTIAS = (1e-6, 1e2)
+# A lander that is smaller than so much of a grain is a slip, too.
+SMALLEST_LANDER = 1e-4
+
+
+def size_problems(study: Study, radius: float) -> Iterator[str]:
+    """A lander too small, or with inertia that its mass cannot have; radius [m]: of its farthest point."""
+    lander = study.lander
+    smallest = _grain_sizes(study)[0]
+    if study.has_soil and radius < SMALLEST_LANDER * smallest:
+        yield (
+            f"the lander reaches {radius:.3g} m from its centre; allowed: at least {SMALLEST_LANDER * smallest:.3g} m, "
+            f"{SMALLEST_LANDER:g} of the smallest grain; mend lander.edges, lander.diameter or lander.unit"
+        )
+    if lander.inertia is not None:
+        low, high = (factor * mass * radius**2 for factor, mass in zip(INERTIAS, usual_reach(lander.mass), strict=True))
+        if min(lander.inertia[:3]) < low or max(lander.inertia[:3]) > high:
+            shown = ", ".join(f"{moment:g}" for moment in lander.inertia)
+            yield (
+                f"lander.inertia is [{shown}] kg m2; allowed: {low:.3g} to {high:.3g} kg m2, a millionth to a hundred "
+                "times mass x radius^2; mend it, or leave it out for a homogeneous lander"
+            )
+
+
+def contact_problems(study: Study) -> Iterator[str]:
+    """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
+    if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
+        yield (
+            f'contact.held_speed is {study.contact.held_speed:g} with contact.stepping = "{study.contact.stepping}"; '
+            'allowed above 0: "local" only; change either'
+        )
+    smallest, largest = _grain_sizes(study)
+    thin, dense = usual_reach(study.grain.density)
+    grain = _ball_mass(dense, largest)
+    least, most = _ball_mass(thin, smallest) / GRAINS_PER_LANDER, grain * GRAINS_PER_LANDER
+    low, high = usual_reach(study.lander.mass)
+    # Masses first: the overlap below is meaningless for one out of range.
+    if low < least or high > most:
+        masses = f"is {low:.4g} kg" if low == high else f"reaches from {low:.4g} to {high:.4g} kg"
+        yield (
+            f"lander.mass {masses}; allowed: {least:.3g} to {most:.3g} kg, a millionth of the lightest grain to a "
+            "million of the heaviest, as no soil answers to another lander; change it or the grains"
+        )
+        return
+    radius = 0.5 * largest
+    # That of a lander that is flown to the ground is not known before its flight.
+    speed = 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
+    depth = _first_overlap(study, min(high, grain), radius, speed)
+    if depth > radius:
+        modulus = usual_reach(study.grain.young_modulus)[0]
+        yield (
+            f"impact.speed reaches {speed:.4g} m/s with grain.young_modulus down to {modulus:.3g} Pa, so the first "
+            f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
+            "lower the speed or raise Young's modulus"
+        )
+
+
+def _grain_sizes(study: Study) -> tuple[float, float]:
+    """Diameters of the smallest and the largest grain [m]."""
+    sizes = study.bed.diameter
+    return (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
+
+
+def _first_overlap(study: Study, mass: float, radius: float, speed: float) -> float:
+    """Largest overlap [m] of a flat lander and a grain of a radius [m] at a speed [m/s].
+
+    mass [kg]: of the lighter of the two, which for unlike bodies is that of the collision. Source: [Johnson-1985],
+    Eq 11.23: (15 m v^2 / (16 E sqrt(R)))^(2/5) of a Hertz collision.
+    """
+    grain, lander, give = study.grain, study.lander, 0.0
+    own = grain.young_modulus if lander.young_modulus is None else lander.young_modulus
+    of_parts = [part.young_modulus for part in lander.part.values() if part.young_modulus is not None]
+    ratio_of_lander = grain.poisson_ratio if lander.poisson_ratio is None else lander.poisson_ratio
+    for softest, ratio in (
+        (usual_reach(grain.young_modulus)[0], grain.poisson_ratio),
+        (min([usual_reach(own)[0], *of_parts]), ratio_of_lander),
+    ):
+        give += (1.0 - usual_reach(ratio)[0] ** 2) / softest
+    return float((15.0 * mass * speed**2 * give / (16.0 * math.sqrt(radius))) ** 0.4)
+
+
+def _ball_mass(density: float, diameter: float) -> float:
+    """Mass [kg] of a ball of a density [kg/m3] and a diameter [m]; infinite for absurd ones."""
+    return density * math.pi / 6.0 * diameter * diameter * diameter
+
+
+TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
+# What the skins of lists of neighbours add to that (dem/bodies/vectors.py): of two grains, and of one and the lander.
+SKINS, SKINS_AT_LANDER = 0.5, 0.7
+# Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
+LEAST_FRICTION = 0.4
+
+
+def widths_in_grains(study: Study) -> tuple[float, float]:
+    """Least width of ground that repeats over the largest diameter of a grain, and how much wider than the lander.
+
+    The fewer its points, the longer a grain may be.
+    """
+    # Two bodies meet through two images where the period is no longer than twice the sum of their reaches and a skin.
+    longest = longest_reach(study.bed.cloud_point_count)
+    return 4.0 * longest + SKINS, 2.0 * longest + SKINS_AT_LANDER
+
+
+def slope_problems(study: Study) -> Iterator[str]:
+    """Grains that run down a slope one over the other, where no wall holds them."""
+    steepest, friction = usual_reach(study.surface.slope_deg)[1], usual_reach(study.grain.friction)[0]
+    least = LEAST_FRICTION * math.tan(math.radians(steepest))
+    if study.bed.sides == "periodic" and friction < least:
+        yield (
+            f"surface.slope_deg reaches to {steepest:g} and grain.friction down to {friction:g}; allowed with "
+            f'bed.sides = "periodic" is friction of at least {least:.3g}, {LEAST_FRICTION:g} of the tangent of the '
+            "slope, as such grains run down the slope otherwise; raise grain.friction, lower the slope, or set "
+            'bed.sides = "walls"'
+        )
+
+
+def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iterator[str]:
+    """Sizes and cover of boulders, and the least width of their bed; largest: diameter of a grain, all [m]."""
+    if study.bed.boulders is None:
+        return
+    lower, upper = boulder_diameters(study.bed.boulders)
+    if lower < largest:
+        yield (
+            f"bed.boulders.diameter reaches from {lower:g} m, and grains to {largest:g} m (bed.diameter); allowed: "
+            f"boulders of at least {largest:g} m; raise it, or lower bed.diameter"
+        )
+    low, high = study.bed.boulders.cover
+    if low > high:
+        yield f"bed.boulders.cover is [{low:g}, {high:g}] m; allowed: the smaller first; swap them"
+    width, least = min(study.bed.width), boulder_width(study, largest, lander_radius)
+    if width < least:
+        why = "as they lie between the walls" if study.bed.sides == "walls" else TWO_IMAGES
+        yield (
+            f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m for boulders of {upper:g} m, "
+            f"{why}; widen the bed and add grains, or lower bed.boulders.diameter"
+        )
+
+
+def boulder_diameters(section: BoulderSection) -> tuple[float, float]:
+    """Diameters of the smallest and the largest boulder [m]."""
+    sizes = section.diameter
+    return (sizes.value,) * 2 if isinstance(sizes, Constant) else (sizes.lower, sizes.upper)
+
+
+def boulder_width(study: Study, largest: float, lander_radius: float) -> float:
+    """The least width of a bed with boulders [m]; 0 without any."""
+    section = study.bed.boulders
+    if section is None:
+        return 0.0
+    lower, upper = boulder_diameters(section)
+    reach = BOULDER_REACH * upper
+    if study.bed.sides != "periodic":
+        return 2.0 * reach
+    # Of the smallest a bed has most.
+    count = section.coverage * study.bed.width[0] * study.bed.width[1] / (0.25 * math.pi * lower**2)
+    # A second boulder may lie next to the first; a single one has grains or the lander next to it.
+    beside = reach if count > 1.0 else max(longest_reach(study.bed.cloud_point_count) * largest, lander_radius)
+    return 2.0 * (reach + beside) + SKINS * largest
+
+
+def soil_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing that is wrong; none where the study has no [soil]."""
+    if not study.soil:
+        return
+    if study.journey is None:
+        yield (
+            f"soil.{next(iter(study.soil))} is the soil of a region for the touchdowns of journeys, and the study has "
+            "no [journey]: all its landings are on [grain]; add [journey], or leave [soil] out"
+        )
+        return
+    if study.design.side_runs:
+        yield (
+            "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions "
+            "their own; leave one of the two out"
+        )
+    yield from _emulator_problems(study)
+    for name, soil in study.soil.items():
+        yield from _region_problems(name, soil)
+        if study.has_soil:
+            # Problems of [grain] itself are reported already, and would be repeated for each region.
+            known = list(contact_problems(study))
+            yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
+
+
+def _emulator_problems(study: Study) -> Iterator[str]:
+    """Questions to the emulator of all touchdowns, which knows one soil for the whole body."""
+    asked = ["aim.grid"] if study.aim.names else []
+    journey = study.journey
+    # The default asks for nothing: where there is no emulator such a study goes without, and reports that.
+    if journey is not None and "emulated_count" in journey.model_fields_set and journey.emulated_count:
+        asked.append(f"journey.emulated_count = {journey.emulated_count}")
+    for key in asked:
+        yield (
+            f"{key} asks the emulator of the touchdowns, which has one soil for all of the body, and [soil] gives "
+            "regions their own; leave one of the two out"
+        )
+
+
+def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:
+    """A region without a name, bounds or a soil of its own, or that no ground can lie in."""
+    key = f"soil.{name}"
+    if not re.fullmatch(NAME, name, re.ASCII) or name == ELSEWHERE:
+        yield (
+            f'{key} is no name; allowed: letters, digits, _ and -, and not "{ELSEWHERE}", the ground of [grain]; '
+            "rename it"
+        )
+    if not soil.has_bounds:
+        yield f"{key} has no bounds; allowed: one at least of latitude_deg, longitude_deg, slope_deg, facets; add it"
+    if not soil.grain.values():
+        yield f"{key}.grain is empty, so its soil is that of [grain]; write what differs there, or leave {key} out"
+    if soil.longitude_deg is not None:
+        west, east = soil.longitude_deg
+        if east - west > 360.0 or (east - west) % 360.0 == 0.0:
+            yield (
+                f"{key}.longitude_deg is [{west:g}, {east:g}]; allowed: from one longitude eastward to another, less "
+                "than once round; write [170, -170] for 20 degrees across 180, and leave it out for all longitudes"
+            )
+    if soil.facets is not None:
+        try:
+            facet_numbers(Path(soil.facets))
+        except (ValueError, OSError) as error:
+            said = (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
+            yield f"{key}.facets: {soil.facets}: {said}"

@@ -1,0 +1,232 @@
+"""The tables of the study file that say what the lander touches: bed, grains, and soils by region."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from lithobrake.geometry.grain_limits import LARGEST_COVERAGE
+from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
+from lithobrake.vocabulary.plain_text import show
+
+Metres = Annotated[float, Number("m", above=0)]
+# Runs on each bed with which an interval is narrowest for the time, by what a bed costs and how alike runs on it are
+# (docs/estimates.md). An interval needs a dozen beds.
+LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
+FEWEST_BEDS, MOST_BEDS = 12, 1000
+
+
+class Constant(Section):
+    """All grains have one size."""
+
+    distribution: Literal["constant"]
+    value: Metres
+
+
+class Between(Section):
+    """Grain sizes spread evenly between two limits."""
+
+    distribution: Literal["uniform"]
+    lower: Metres
+    upper: Metres
+
+
+class Bell(Section):
+    """Grain sizes with a normal distribution, cut at two limits."""
+
+    distribution: Literal["normal"]
+    mean: Metres
+    std: Metres
+    lower: Metres
+    upper: Metres
+
+
+class PowerLaw(Section):
+    """Number of grains that falls with the diameter D to a power, between two limits, by one of two exponents.
+
+    exponent: differential, the number per diameter goes with D**-exponent. cumulative_exponent: the number of grains
+    larger than D goes with D**-cumulative_exponent, before it is cut at the limits; it is 1 less than the other.
+    """
+
+    distribution: Literal["power_law"]
+    exponent: Annotated[float, Number("")] | None = None
+    cumulative_exponent: Annotated[float, Number("")] | None = None
+    lower: Metres
+    upper: Metres
+
+    @property
+    def differential_exponent(self) -> float:
+        """The exponent of the number per diameter, whichever of the two is given."""
+        return self.exponent if self.exponent is not None else 1.0 + (self.cumulative_exponent or 0.0)
+
+
+class BoulderSection(Section):
+    """Boulders among the grains, of the same material. They lie on a broad face, and grains are poured on and around
+    them. Parts that would reach below the floor are cut off."""
+
+    diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
+        examples=['{ distribution = "power_law", cumulative_exponent = 2.65, lower = 0.3, upper = 0.6 }']
+    )
+    """Diameter of the sphere of equal volume, as bed.diameter. No boulder reaches farther than 0.75 diameters from its
+    centroid."""
+    coverage: Annotated[float, Number("", above=0, at_most=LARGEST_COVERAGE)] = Field(examples=["0.1"])
+    """Fraction of the ground that the boulders cover, seen from above as discs of their diameters, in the mean over
+    beds. A bed has a whole number of boulders; whether it is rounded up or down is random."""
+    cover: Annotated[tuple[float, float], Numbers("m", count=2)] = Field((0.0, 0.0), examples=["[-0.1, 0.1]"])
+    """Depth of a boulder's top below the mean surface of the grains, smallest and largest; it is sampled for each
+    boulder. If negative, the boulder protrudes. A boulder that is too small for its depth lies on the floor."""
+
+
+class BedSection(Section):
+    """The surface: grains are convex hulls of random clouds of points, poured on a floor and settled."""
+
+    grain_count: Annotated[int, Whole("", at_least=10, at_most=1_000_000)] = Field(examples=["150"])
+    """Number of grains."""
+    width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
+    """Width along x and y, between the walls or until the ground repeats. It must be at least twice the largest
+    diameter of the lander's main shape, and wider than its parts reach."""
+    sides: Literal["walls", "periodic"] = "walls"
+    """What is beyond the width. "walls": an open box, which a lander may leave across its edge. "periodic": the same
+    ground again; no lander leaves it laterally, and one that travels farther meets ground that it has disturbed.
+    "periodic" is the default of design.method = "drawn"."""
+    diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
+        examples=['{ distribution = "constant", value = 0.08 }']
+    )
+    """Diameter of the sphere of equal volume: constant (value), uniform (lower, upper), normal (mean, std, lower,
+    upper) or power_law (exponent or cumulative_exponent, lower, upper). With power_law the number of grains per
+    diameter D is proportional to D**-exponent, and that of grains larger than D to D**-cumulative_exponent, whose
+    exponent is smaller by 1. Both are written positive."""
+    bed_count: Annotated[int, Whole("", at_least=1, at_most=MOST_BEDS)] | None = None
+    """Number of beds; with more than one, the bed of each run is sampled. Absent: one; with design.method = "drawn",
+    one bed for every 20 landings, or for every 4 journeys (rounded up), at least 12."""
+    cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
+    """Points in the random cloud whose hull is a grain."""
+    pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
+    """Acceleration under which the grains fall. It is then lowered slowly to that under which they settle."""
+    boulders: BoulderSection | None = None
+    """Boulders among the grains."""
+    settle_gravity: Annotated[float, Number("m/s2", above=0)] | None = None
+    """Acceleration under which the bed comes to rest; absent: surface.gravity, which must then point inward."""
+
+
+def default_bed_count(run_count: int, runs_a_bed: int) -> int:
+    """How many beds a drawn study has of which nothing else is said: by so many runs on each, within limits.
+
+    Source: [Cochran-1977], section 10.6.
+    """
+    # Rounded up: to the nearest, the newest bed would be half full at each further 20 landings or 4 journeys.
+    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // runs_a_bed)))
+
+
+Density = Annotated[Scalar, MaybeUncertain("kg/m3", above=0)]
+YoungModulus = Annotated[Scalar, MaybeUncertain("Pa", above=0)]
+PoissonRatio = Annotated[Scalar, MaybeUncertain("", at_least=0, below=0.5)]
+Restitution = Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)]
+Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
+Cohesion = Annotated[Scalar, MaybeUncertain("N", at_least=0)]
+SurfaceEnergy = Annotated[Scalar, MaybeUncertain("J/m2", at_least=0)]
+
+
+class GrainSection(Section):
+    """The rock of the grains."""
+
+    density: Density = Field(examples=["2500.0"])
+    """Density of the rock."""
+    young_modulus: YoungModulus = Field(examples=['{ distribution = "log_uniform", lower = 1e6, upper = 1e8 }'])
+    """Young's modulus; over decades use log_uniform."""
+    poisson_ratio: PoissonRatio = Field(examples=['{ distribution = "uniform", lower = 0.15, upper = 0.35 }'])
+    """Poisson's ratio."""
+    restitution: Restitution = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.8 }'])
+    """Coefficient of restitution between grains."""
+    friction: Friction = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.9 }'])
+    """Coefficient of friction."""
+    rolling_friction: Friction = 0.0
+    """Resistance to rolling: the largest couple of a contact divided by normal force and contact radius."""
+    spinning_friction: Friction = 0.0
+    """Resistance to spinning about the contact normal, defined in the same way."""
+    cohesion_force: Cohesion = 0.0
+    """Pull of every contact, whatever its size."""
+    surface_energy: SurfaceEnergy = 0.0
+    """Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*. For clean grains of lunar soil it is
+    0.0029."""
+
+
+Ends = tuple[float, float]
+
+
+class SoilGrainSection(Section):
+    """Material of the grains of a region where it differs from [grain]; the sizes are those of [bed] everywhere."""
+
+    density: Density | None = None
+    """Density of the rock. If this or a property below is absent, it is that of [grain]."""
+    young_modulus: YoungModulus | None = None
+    """Young's modulus."""
+    poisson_ratio: PoissonRatio | None = None
+    """Poisson's ratio."""
+    restitution: Restitution | None = None
+    """Coefficient of restitution between grains."""
+    friction: Friction | None = Field(default=None, examples=['{ distribution = "uniform", lower = 0.2, upper = 0.4 }'])
+    """Coefficient of friction."""
+    rolling_friction: Friction | None = None
+    """Resistance to rolling."""
+    spinning_friction: Friction | None = None
+    """Resistance to spinning about the contact normal."""
+    cohesion_force: Cohesion | None = None
+    """Pull of every contact, whatever its size."""
+    surface_energy: SurfaceEnergy | None = None
+    """Pull of a contact in proportion to its radius."""
+
+    def values(self) -> dict[str, Scalar]:
+        """The numbers that differ, by their names in [grain]."""
+        given = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in given.items() if isinstance(value, float | Uncertain)}
+
+
+class SoilSection(Section):
+    """The soil of a region of the body; with [journey] only. There may be any number of regions, each in a table
+    [soil.NAME] of its own. A region is the ground within all of its bounds. Where regions overlap, the first in the
+    file applies; where there is none, [grain] applies. All beds are those of [bed] and [grain]: a touchdown in the
+    region uses one of them with the region's materials. The soil of each region is sampled once for each lander."""
+
+    latitude_deg: Annotated[Ends, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
+    """Smallest and largest planetocentric latitude. If this or a bound below is absent, it does not limit the
+    region."""
+    longitude_deg: Annotated[Ends, Numbers("deg", at_least=-360, at_most=360, count=2)] | None = None
+    """First longitude and, eastward of it, the last one; [170, -170] crosses 180."""
+    slope_deg: Annotated[Ends, Numbers("deg", at_least=0, at_most=180, count=2, ascending=True)] | None = None
+    """Smallest and largest slope of its facets, at their centres, against gravity, rotation and the partner's tide at
+    the medians of [site]. Above 90 an object at rest leaves the ground."""
+    facets: str | None = Field(default=None, examples=['"ponds.csv"'])
+    """Text file, relative to the study file, with the numbers of its facets in the shape of the body, from 0, one per
+    line."""
+    grain: SoilGrainSection
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_sizes(cls, table: Any) -> Any:
+        """Say of sizes why a region has none; all else that is wrong is left for the fields to refuse."""
+        grain = table.get("grain") if isinstance(table, Mapping) else None
+        if isinstance(table, Mapping) and ("bed" in table or (isinstance(grain, Mapping) and "diameter" in grain)):
+            words = "gives sizes of grains; allowed: materials alone, as beds are poured once for all of the body"
+            raise PydanticCustomError("quantity", "{text}", {"text": f"{words}; make a study for each of the sizes"})
+        return table
+
+    @property
+    def has_bounds(self) -> bool:
+        return any(one is not None for one in (self.latitude_deg, self.longitude_deg, self.slope_deg, self.facets))
+
+
+def facet_numbers(path: Path) -> tuple[int, ...]:
+    """The numbers in a file of facets. Raises ValueError for a line that is none, or no number at all; OSError."""
+    found = []
+    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
+        text = line.strip()
+        if text and not re.fullmatch(r"\d{1,9}", text, re.ASCII):
+            raise ValueError(f"line {number} is {show(text)}; allowed: a whole number from 0; mend that line")
+        found += [int(text)] if text else []
+    if not found:
+        raise ValueError("it has no facet; write their numbers, from 0, one a line")
+    return tuple(found)

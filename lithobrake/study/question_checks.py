@@ -1,0 +1,211 @@
+"""What is wrong with the aims and the sky that a study asks about, found before anything runs."""
+
+import importlib.util
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
+from itertools import pairwise
+
+from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.lander_section import directions_of_sides
+from lithobrake.study.quantity import Uncertain, reach, uncertain
+from lithobrake.study.question_sections import AimLimit, aim_results
+from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest, show
+
+# A figure has two axes and a row of pictures; more aims than this nobody looks at.
+MOST_AXES, MOST_AIMS = 3, 500
+PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
+# Landers go on from bounce to bounce, so the emulator has to know other impacts than the first.
+NEEDED = ("impact.speed", "impact.incidence_deg")
+
+
+def aim_problems(study: Study) -> Iterator[str]:
+    """One sentence for each thing wrong with the table [aim]; none where the study has no grid."""
+    grid = study.aim.grid
+    yield from _side_problems(study)
+    if not study.aim.names:
+        if study.aim.within:
+            yield "aim.within is given without aim.grid; say there between which values there is to choose"
+        return
+    inputs = uncertain(study.touchdown_values())
+    if study.design.method == "paper":
+        yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
+    absent = [name for name in NEEDED if name not in inputs and study.journey is None]
+    if absent:
+        yield (
+            f"aim.grid follows landers from bounce to bounce, and {' and '.join(absent)} "
+            f"{'is' if len(absent) == 1 else 'are'} no uncertain input; give a distribution that reaches over the "
+            "impacts to come"
+        )
+    if study.delivery is not None and study.delivery.is_flown:
+        yield (
+            "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
+            "of the two out"
+        )
+    if study.site.roughness_deg and "delivery.incidence_deg" in grid:
+        yield (
+            'aim.grid has "delivery.incidence_deg", and site.roughness_deg draws the ground under each lander by its '
+            "own incidence; leave one of the two out"
+        )
+    axes, count = len(study.aim.names), len(study.aim.aims())
+    if axes > MOST_AXES or count > MOST_AIMS:
+        yield (
+            f"aim.grid has {axes} names, with aim.sides, and {count} aims; allowed: at most {MOST_AXES} and "
+            f"{MOST_AIMS}; leave some values out"
+        )
+    yield from _value_problems(study, grid, inputs)
+    yield from _limit_problems(study)
+
+
+def _value_problems(
+    study: Study, grid: Mapping[str, Sequence[float]], inputs: Mapping[str, Uncertain]
+) -> Iterator[str]:
+    """Names of a grid that nothing has, and values that its runs do not reach over."""
+    known = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
+    if study.journey is not None:
+        known = tuple(f"delivery.{name.partition('.')[2]}" for name in known)
+    for option, values in grid.items():
+        name = arrival_key(option)
+        if option not in known:
+            yield f'aim.grid."{option}" is no aim; allowed: {", ".join(known)}{closest(option, known)}'
+            continue
+        lower, upper = reach(inputs[name]) if name in inputs else (-PLACES[name], PLACES[name])
+        inside = all(lower <= value <= upper for value in values)
+        if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
+            yield (
+                f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
+                "runs reach over; leave others out, or widen its distribution"
+            )
+
+
+def _side_problems(study: Study) -> Iterator[str]:
+    """Sides that the lander does not have, or cannot be aimed with."""
+    sides, known = study.aim.sides, tuple(directions_of_sides(study.lander))
+    if not sides:
+        return
+    if study.journey is None:
+        yield "aim.sides goes with [journey], which the study does not have; add it, or leave the sides out"
+    if len(known) < 2:
+        yield f"aim.sides is {show(sides)}, and all sides of the lander are alike; leave it out"
+    elif not set(sides) <= set(known) or len(set(sides)) < len(sides):
+        named = ", ".join(f'"{name}"' for name in known)
+        yield f"aim.sides is {show(sides)}; allowed: some of {named}, each once; write them so"
+
+
+def _limit_problems(study: Study) -> Iterator[str]:
+    """Limits of the best aim that cannot be read, or name nothing."""
+    of_grid = (name.partition(".")[2] for name in study.aim.grid)
+    names = [*of_grid, *aim_results(is_journey=study.journey is not None)]
+    for text in study.aim.within:
+        limit = AimLimit.of(text)
+        if limit is None or limit.name not in names:
+            yield (
+                f'aim.within has "{text}"; allowed: one of {", ".join(names)}, compared by <, <=, > or >= with a '
+                'number, as in "incidence_deg < 45"; write it so'
+            )
+
+
+POLE = ("pole_right_ascension_deg", "pole_declination_deg")
+EXAMPLE = "2027-04-20T12:00:00"
+# What tells where Sun and Earth are, by the module that each is imported by.
+SKY_KEYS = {"spiceypy": "spiceypy", "erfa": "pyerfa"}
+
+
+def sky_problems(study: Study) -> Iterator[str]:
+    sky = study.sky
+    if study.journey is None and sky.bodies:
+        yield "[sky] asks what landers at rest see, and there is no [journey]; leave one out or add the other"
+        return
+    far = [name for name in sky.bodies if name != "sun"]
+    for key, default in (("mask_deg", 0.0), ("beam_deg", 90.0)):
+        if getattr(sky, key) != default and not far:
+            yield f"sky.{key} is of Earth and the orbiter, and neither is asked for; leave it out, or ask for one"
+    yield from _date_problems(study)
+    yield from _orbiter_problems(study)
+
+
+def _date_problems(study: Study) -> Iterator[str]:
+    """Dates that are none, and a date without what it needs."""
+    sky, site = study.sky, study.site
+    times: dict[str, datetime] = {}
+    epoch = None if sky.orbit is None else sky.orbit.epoch
+    for name, text in (("date", sky.date), ("until", sky.until), ("orbit.epoch", epoch)):
+        try:
+            times |= {} if text is None else {name: utc(text)}
+        except ValueError:
+            yield f"sky.{name} is {show(text)}; allowed: a UTC date and time such as {EXAMPLE}"
+            return
+    if sky.date is None:
+        for key in ("until", "orbit"):
+            if getattr(sky, key) is not None:
+                yield f"sky.{key} goes with sky.date, which is absent; write it, or leave {key} out"
+        return
+    if sky.latitudes:
+        name = next(iter(sky.latitudes))
+        yield f"sky.{name}_latitude_deg is given, and sky.date tells it; leave one of the two out"
+    if "until" in times and not times["date"] < times["until"]:
+        yield f"sky.until is {sky.until}; allowed: later than sky.date, {sky.date}; change one of them"
+    if site.kernels:
+        if sky.orbit is not None:
+            yield "sky.orbit is given, and site.kernels tell where the body is; leave one of the two out"
+        yield from _kernel_problems(study, [name for name in ("date", "until") if name in times])
+        return
+    lacking = [key for key in POLE if getattr(site, key) is None]
+    if lacking:
+        yield f"site.{lacking[0]} is missing; sky.date tells latitudes through the pole of the body; write it"
+    if sky.orbit is None:
+        yield "sky.orbit is missing; sky.date tells latitudes through the orbit of the body; write it, or site.kernels"
+    absent = [package for module, package in SKY_KEYS.items() if importlib.util.find_spec(module) is None]
+    if absent:
+        yield f'sky.date needs {absent[0]}, which is not installed: pip install "lithobrake[spice]"'
+
+
+def _kernel_problems(study: Study, dates: Sequence[str]) -> Iterator[str]:
+    """Kernels that do not tell where Sun, Earth and orbiter are at both ends of the span; absent files are told of."""
+    site, sky = study.site, study.sky
+    if not all(os.path.isfile(path) for path in site.kernels):
+        return
+    from lithobrake.smallbody import read_places
+
+    name = None if sky.orbiter is None else sky.orbiter.kernel_name
+    for target in ("sun", "earth", *([] if name is None else [name])):
+        try:
+            times = [utc(str(getattr(sky, date))).isoformat() for date in dates]
+            read_places(site.kernels, site.kernel_body or site.body, target, times)
+        except (ValueError, ImportError) as error:
+            yield f"sky.date: {error}"
+            return
+
+
+def _orbiter_problems(study: Study) -> Iterator[str]:
+    """An orbiter that is given in no way, or in two, or whose file cannot be read."""
+    sky, orbiter = study.sky, study.sky.orbiter
+    if orbiter is None:
+        return
+    ways = orbiter.ways
+    if len(ways) != 1:
+        given = " and ".join(f"sky.orbiter.{way}" for way in ways) or "nothing"
+        yield f"[sky.orbiter] has {given}; allowed: one of altitude, states, kernel_name; keep one"
+        return
+    if orbiter.inclination_deg is not None and ways != ["altitude"]:
+        yield f"sky.orbiter.inclination_deg is that of a circle, and sky.orbiter has {ways[0]}; leave one of them out"
+    if ways == ["kernel_name"]:
+        needed = {"site.kernels": study.site.kernels, "sky.until": sky.until}
+        lacking = [name for name, value in needed.items() if not value]
+        if lacking:
+            yield f"{lacking[0]} is missing; sky.orbiter.kernel_name is read from kernels, from sky.date to sky.until"
+    if ways == ["states"]:
+        from lithobrake.study.delivered_states import orbiter_states
+
+        try:
+            if len(orbiter_states(study).time) < 2:
+                yield "sky.orbiter.states has one state; allowed: two or more, over the time that counts; add some"
+        except ValueError as error:
+            yield f"sky.orbiter.states: {error}"
+
+
+def utc(text: str) -> datetime:
+    """A date and time [UTC]. Raises ValueError for another text."""
+    found = datetime.fromisoformat(text)
+    return found if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
