@@ -105,7 +105,7 @@ def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> Non
         )
     assert [entry[1] for entry in ran] == ["done"] * 39 + ["failed"]
     assert ran[39][7] == "it ran longer than its limit of 1 s"
-    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "runs.sqlite"))
+    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "a.sqlite"))
 
 
 def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(tmp_path: Path) -> None:
