@@ -100,12 +100,12 @@ def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> Non
     with cluster(tmp_path) as made:
         # A worker under a nanny is a daemon, which may not start processes as it is.
         made.add_worker("only", nanny=True)
-        ran = campaign(
-            tmp_path / "a.sqlite", DaskExecutor(made.address), models.sleeps_at_ten, limits=Limits(wall_s=1.0)
+        runs = campaign(
+            tmp_path / "runs.sqlite", DaskExecutor(made.address), models.sleeps_at_ten, limits=Limits(wall_s=1.0)
         )
-    assert [entry[1] for entry in ran] == ["done"] * 39 + ["failed"]
-    assert ran[39][7] == "it ran longer than its limit of 1 s"
-    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "a.sqlite"))
+    assert [entry[1] for entry in runs] == ["done"] * 39 + ["failed"]
+    assert runs[39][7] == "it ran longer than its limit of 1 s"
+    assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "runs.sqlite"))
 
 
 def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(tmp_path: Path) -> None:
