@@ -181,7 +181,7 @@ def test_a_message_along_icrf_delivers_the_next_study(delivered: StudyResults, t
 
 @pytest.fixture
 def furnished(delivered: StudyResults, tmp_path: Path):  # type: ignore[no-untyped-def]
-    """NAIF's routines with what was written, and leap since_epoch."""
+    """NAIF's routines with what was written, and leap seconds."""
     spice = pytest.importorskip("spiceypy")
     pytest.importorskip("erfa")
     written = write_spk(delivered, tmp_path, [3], step=20.0)
@@ -357,7 +357,7 @@ def test_each_lander_is_where_and_as_the_tables_have_it(delivered: StudyResults,
     assert [one["id"] for one in packets[2:]] == [f"SAMPLE_{number}" for number in range(8)]
     for number, packet in enumerate(packets[2:]):
         own = arcs.where(arcs["sample"] == number)
-        # Each lander is delivered a hundred since_epoch after the one before.
+        # Each lander is delivered a hundred seconds after the one before.
         shift = 100.0 * number - own["begin_s"][0]
         for row in range(own.row_count):
             place = [own[f"position_{axis}"][row] for axis in "xyz"]

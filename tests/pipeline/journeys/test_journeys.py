@@ -265,7 +265,7 @@ def test_hard_ground_of_a_study_is_as_rough_as_its_site() -> None:
 def test_what_no_impact_reads_is_refused() -> None:
     lonely = {key: table for key, table in rough_tables(12.0).items() if key not in ("journey", "delivery")}
     lonely |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}, "rest": {"count": 0}}
-    with pytest.raises(StudyError, match=r"site.roughness_deg is 12, and no impact of the rough_study reads it"):
+    with pytest.raises(StudyError, match=r"site.roughness_deg is 12, and no impact of the study reads it"):
         StudySource.of_tables(lonely)
     aimed = rough_tables(12.0) | {"aim": {"grid": {"delivery.incidence_deg": [10.0, 20.0]}}}
     with pytest.raises(StudyError, match=r'aim.grid has "delivery.incidence_deg", and site.roughness_deg'):
