@@ -240,9 +240,9 @@ def attitudes(path: Path) -> list[tuple[str, np.ndarray, list[str], np.ndarray]]
         segment.validate()
         assert segment.metadata.ref_frame_b == "SC_BODY_1"
         times = np.array([np.datetime64(one, "us") for one in segment.data.attitude_states_epochs])
-        since_epoch = (times - np.datetime64(EPOCH, "us")) / np.timedelta64(1, "s")
+        seconds = (times - np.datetime64(EPOCH, "us")) / np.timedelta64(1, "s")
         meta = segment.metadata
-        found.append((meta.ref_frame_a, np.array(segment.data.attitude_states_numpy), list(meta.comment), since_epoch))
+        found.append((meta.ref_frame_a, np.array(segment.data.attitude_states_numpy), list(meta.comment), seconds))
     return found
 
 
