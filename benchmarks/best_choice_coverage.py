@@ -81,12 +81,10 @@ def of_halves(beds: np.ndarray, random: np.random.Generator) -> IntervalEstimate
 
 
 def width(one: IntervalEstimate) -> float:
-    """Half the width of an interval."""
     return 0.5 * (one.upper - one.lower)
 
 
 def row(setting: Setting, studies: int) -> Row:
-    """What studies of a setting give."""
     kind, options, beds, spread = setting
     random = np.random.default_rng([KINDS.index(kind), options, beds, round(10 * spread)])
     found: dict[str, list[float]] = {}
@@ -111,13 +109,11 @@ def row(setting: Setting, studies: int) -> Row:
 
 
 def rows(studies: int) -> Iterator[Row]:
-    """Of all settings."""
     for given in product(KINDS, OPTIONS, BEDS, BED_SPREADS):
         yield rounded(row(Setting(*given), studies))
 
 
 def main() -> None:
-    """Measure and write."""
     studies = command_line(__doc__, studies=200).parse_args().studies
     write_rows(TABLE, COLUMNS, rows(studies))
     write_made(TABLE, f"benchmarks/best_choice_coverage.py --studies {studies}", studies=studies, level=LEVEL)

@@ -9,16 +9,14 @@ landings at each option.
 Writes benchmarks/results/best_choice_emulators.csv, and .json beside it.
 """
 
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from best_choice_coverage import LANDERS, REFITS, plain, width
-from harness import RESULTS, ROOT, Row, command_line, rounded, write_made, write_rows
-
-sys.path.insert(0, str(ROOT / "tests"))
-from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG, random_soils, returns
+from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
+from inference_calibration import STRONG, fitted, random_soils
+from synthetic_landings import returns
 
 from lithobrake import emulator
 from lithobrake.analysis import LEVEL, best_choice
@@ -38,7 +36,6 @@ def soils(option: float, count: int, random: np.random.Generator) -> np.ndarray:
 
 
 def truth() -> np.ndarray:
-    """Fraction at each option."""
     random, found = np.random.default_rng(1), []
     for option in OPTIONS.tolist():
         x = soils(option, 40_000, random)
@@ -60,16 +57,9 @@ def landers(model: emulator.Emulator, seed: int) -> np.ndarray:
 
 
 def row(beds: int, runs: int, studies: int, fractions: np.ndarray) -> Row:
-    """What studies of one size give."""
     found: dict[str, list[float]] = {}
     for number in range(studies):
-        x, y, outcome, bed = TRUTH.study(runs, beds, 500 + number)
-        model = emulator.fit(
-            INPUTS, x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0],
-            upper=[SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf], riders=["azimuth_out"],
-            output_names=list(OUTPUT_NAMES),
-        )  # fmt: skip
-        met = landers(model, number)
+        met = landers(fitted(TRUTH, 500 + number, runs, beds), number)
         best = best_choice(met, beds, [True] * len(OPTIONS))
         fraction = fractions[best.best]
         numbers = {"set_held": int(fractions.argmax()) in best.not_worse, "set_size": len(best.not_worse)}
@@ -83,14 +73,12 @@ def row(beds: int, runs: int, studies: int, fractions: np.ndarray) -> Row:
 
 
 def rows(studies: int) -> Iterator[Row]:
-    """Of both sizes."""
     fractions = truth()
     for beds, runs in ((12, 96), (24, 240)):
         yield row(beds, runs, studies, fractions)
 
 
 def main() -> None:
-    """Measure and write."""
     studies = command_line(__doc__, studies=60).parse_args().studies
     write_rows(TABLE, COLUMNS, rows(studies))
     facts = {"studies": studies, "level": LEVEL, "fractions": [round(one, 4) for one in truth().tolist()]}

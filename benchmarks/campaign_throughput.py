@@ -7,7 +7,6 @@ the speed-up itself only on a quiet one: what all other processes took is printe
 are compiled once.
 """
 
-import json
 import os
 import subprocess
 import sys
@@ -19,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from harness import SCENARIOS, command_line
+from harness import SCENARIOS, command_line, read_document
 
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
@@ -94,7 +93,7 @@ def cluster(folder: Path) -> Iterator[str]:
                 processes.append(subprocess.Popen(command, stdout=log, stderr=log, cwd=Path(__file__).parent))
             while not file.is_file():
                 time.sleep(0.05)
-        yield json.loads(file.read_text())["address"]
+        yield read_document(file)["address"]
     finally:
         for process in processes:
             process.kill()
@@ -119,7 +118,6 @@ def empty_runs(folder: Path, count: int) -> None:
 
 
 def main() -> None:
-    """Measure both."""
     parser = command_line(__doc__, landings=40, empty_runs=20_000)
     parser.add_argument("--study", type=Path, metavar="DIR", help="keep the bed of the landings in this folder")
     options = parser.parse_args()

@@ -63,7 +63,6 @@ def errors_of_case(model: Model, noise: float, count: int, seed: int) -> tuple[f
 
 
 def main() -> None:
-    """Print the table."""
     options = command_line(__doc__, seeds=10, counts="50,100,250,450", cases=",".join(CASES)).parse_args()
     print("| truth | runs | default | Gaussian process | paper, 241 runs | default / paper | its own estimate |")
     print("|---|---|---|---|---|---|---|")

@@ -68,7 +68,6 @@ def trial(
 
 
 def main() -> None:
-    """Print the table."""
     options = command_line(__doc__, trials=40).parse_args()
     exact = {model: true_indices(model) for model in (smooth, kinked)}
     print(

@@ -60,7 +60,6 @@ def errors(truth: Model, noise: float, count: int, seed: int) -> list[float]:
 
 
 def main() -> None:
-    """Print the table."""
     options = command_line(__doc__, seeds=3, counts="50,100").parse_args()
     # Of lengths at their limits: harmless here.
     warnings.filterwarnings("ignore", module="sklearn")

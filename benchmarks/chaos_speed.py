@@ -60,7 +60,6 @@ def reference_matrix(x: np.ndarray, indices: np.ndarray) -> np.ndarray:
 
 
 def reference(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
-    """Plain NumPy."""
     indices = multi_index_set(3, DEGREE)
 
     def build() -> np.ndarray:
@@ -111,7 +110,6 @@ def plain(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
 
 
 def with_chaospy(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
-    """chaospy."""
     import chaospy
 
     joint = chaospy.J(*(chaospy.Uniform(-1.0, 1.0) for _ in range(3)))
@@ -127,7 +125,6 @@ def with_chaospy(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
 
 
 def with_openturns(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contender:
-    """openturns."""
     import openturns
 
     joint = openturns.JointDistribution([openturns.Uniform(-1.0, 1.0)] * 3)
@@ -155,7 +152,6 @@ def with_openturns(x: np.ndarray, y: np.ndarray, points: np.ndarray) -> Contende
 
 
 def main() -> None:
-    """Print the table."""
     parser = command_line(__doc__, points=10_000_000, rounds=5)
     parser.add_argument("--alone", action="store_true", help="without the other libraries, whose memory slows all")
     options = parser.parse_args()

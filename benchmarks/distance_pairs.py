@@ -273,7 +273,6 @@ FAMILIES = {
 
 
 def poses(shapes: Library, family: Family, generator: np.random.Generator, count: int) -> Poses:
-    """Return pairs of a family."""
     first = generator.choice(np.concatenate([shapes.kinds[kind] for kind in family.first]), count)
     same = family.second == ("same",)
     second = first if same else generator.choice(np.concatenate([shapes.kinds[k] for k in family.second]), count)

@@ -49,7 +49,6 @@ def one_pair(second: int) -> Pairs:
 
 
 def scratch(shapes: Library) -> Scratch:
-    """Return scratch for the largest pair."""
     vertices, edges = (int(np.diff(s).max()) for s in (shapes.cores.vertex_start, shapes.cores.edge_start))
     return scratch_for(vertices + edges, 1)
 
@@ -214,7 +213,6 @@ def ask_plane(
     cores: Cores, bodies: Bodies, first: Integers, rotation: Floats, position: Floats, normal: Floats, pair: Pairs,
     gap: Floats,
 ) -> None:  # fmt: skip
-    """Ask for gaps over planes."""
     for k in range(len(first)):
         pair.first[0] = pair.first_part[0] = first[k]
         bodies.position[first[k]], bodies.rotation[first[k]] = position[k, 0], rotation[k, 0]

@@ -18,7 +18,6 @@ RESULTS = Path(__file__).with_suffix(".json")
 
 
 def main(repeats: int) -> None:
-    """Measure, and write the medians."""
     first = origin(f"benchmarks/doctor_speed.py {repeats}")
     rounds = [list(measured_speeds()) for _ in range(repeats)]
     # The first speed is that of the work by which the pace of a machine is told.

@@ -87,7 +87,6 @@ def interval_row(run_count: int, bed_count: int, studies: int) -> Row:
 
 
 def all_rows(studies: int) -> Iterator[Row]:
-    """Make all rows, one after the other."""
     for run_count in (150, 300):
         for name, truth in (("weak", WEAK), ("strong", STRONG)):
             yield law_row(name, truth, run_count, studies)
@@ -97,7 +96,6 @@ def all_rows(studies: int) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Make all rows and write them."""
     studies = command_line(__doc__, studies=10).parse_args().studies
     begin = origin(f"benchmarks/emulator_calibration.py --studies {studies}")
     rows = []

@@ -55,7 +55,6 @@ def with_outputs(draws: np.ndarray, count: int) -> np.ndarray:
 
 
 def any_run(x: np.ndarray, y: np.ndarray, points: np.ndarray, count: int) -> np.ndarray:
-    """One of the runs, whatever the inputs."""
     return y[np.random.default_rng(11).integers(len(y), size=(len(points), count))]
 
 
@@ -144,7 +143,6 @@ def wanted(cases: list[str], methods: list[str], runs: list[int], seeds: int) ->
 
 
 def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
-    """The row of one fit."""
     if name in (SIR, BOUNDED_SIR):
         return sir_row(sir, method, 0.0 if name == BOUNDED_SIR else -np.inf)
     made = published_row if name in PUBLISHED else truth_row
@@ -152,7 +150,6 @@ def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
 
 
 def main() -> None:
-    """Make all rows, writing each as it comes."""
     everything = [ANY_RUN, OWN, EXPANSION, *RIVALS]
     options = command_line(
         __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE,

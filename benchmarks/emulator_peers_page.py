@@ -4,19 +4,14 @@ python benchmarks/emulator_peers_page.py
 """
 
 import statistics
-import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from emulator_peers import ANY_RUN, EXPANSION, KINDS, OWN, TABLE
 from emulator_rivals import RIVALS
 from emulator_truths import PUBLISHED, TRUTHS
-from harness import PAGES, Row, read_rows
+from harness import Row, read_rows
+from page import table, write_page
 
-sys.path.append(str(Path(__file__).parents[1] / "validation"))
-from page_text import broken, table
-
-PAGE = PAGES / "emulator_peers.md"
 # Hilscher (2024), master's thesis with code, file error.txt: of degree 5, median of ten designs.
 PUBLISHED_SPCE = {("bimodal", 400): 0.0201, ("bimodal", 800): 0.0149, ("bimodal", 1600): 0.0077}
 PUBLISHED_PROCESS = {("bimodal", 400): 0.068, ("bimodal", 800): 0.065, ("bimodal", 1600): 0.063}
@@ -24,70 +19,9 @@ HEADS = {
     OWN: "`fit`", "near rows": "near runs", "process and residuals": "Gaussian process", "forest rows": "forest",
     "Gaussian mixture": "mixture", EXPANSION: "`fit_stochastic_expansion`", ANY_RUN: "any run",
 }  # fmt: skip
-BEGIN = """\
-# Emulators compared with alternatives
-
-How accurate is the emulator compared with other methods fitted to the same runs?
-
-On eight known distributions with 150 and 300 runs, `fit` has the smallest error in {best} of {count} cases. Its error
-is {least} to {most} times that of resampling the runs without regard to the inputs ("any run").
-
-`emulator.fit` estimates the conditional distribution of a stochastic model from runs ([Emulators](../emulator.md)). The
-alternatives use scikit-learn:
-
-- **near runs**: resampling of the k nearest runs; k has the lowest energy score on held-out groups;
-- **Gaussian process**: its mean, with a length scale for each input, plus its leave-one-out residuals;
-- **forest**: resampling of runs by how often they share a leaf of five runs with the point;
-- **mixture**: a Gaussian mixture of inputs and outputs; BIC chooses the number of components.
-
-## Eight known distributions
-
-`benchmarks/emulator_truths.py` defines them. Runs come in groups of ten that share a small effect. The table lists the
-energy distance between the emulated and the true distribution of the outputs, at 60 new inputs (200 samples each,
-without bias), divided by that of resampling any of the runs. 0 means equal to the truth; 1 means that the inputs are
-not used. Values are means over {seeds} seeds, with the standard error for `fit` in brackets. The best of a row is bold.
-
-"""
-PUBLISHED_TEXT = """
-For "capture in a ring", the root mean square error of the probability of capture over 500 inputs, with 150 and 300
-runs,
-is: {captures}.
-
-## Published cases
-
-The cases are the bimodal one of [Zhu-2023] and geometric Brownian motion (with `lower=0`), on Latin hypercubes without
-repeats. The table lists the mean over 200 inputs of the squared Wasserstein distance, divided by the variance of the
-output (1000 levels, 4000 samples). Values are the median (worst) of {rivals} seeds; for the first two methods on the
-bimodal case, of {seeds}.
-
-"""
-SIR_TEXT = """
-"Published" values are those of a Python implementation of stochastic expansions of degree 5 and of a Gaussian process,
-from the files of Hilscher's thesis (2024). They are medians of ten designs of that work. Its worst expansions had
-0.038,
-3.8 and 0.12.
-
-The next table has the same distance for UQLab's stochastic SIR model: 500 runs without repeats and 100 validation
-points
-of 10 000 runs (`StochasticSIR/SIR2d.mat` of UQLab 2.1, not part of this repository).
-
-"""
-END = """
-## Limits
-
-The eight distributions were chosen for this benchmark and have up to twelve inputs. The published values were not
-computed again.
-
-## Reproduce this page
-
-`python benchmarks/emulator_peers.py` computes the rows and `python benchmarks/emulator_peers_page.py` writes the page.
-A
-fit of `fit` to 300 runs takes {least:.1f} to {most:.1f} s of CPU time, one thread.
-"""
 
 
 def mean_error(rows: Sequence[Row]) -> tuple[float, float]:
-    """Mean of the errors, and its standard error."""
     errors = [row["error"] for row in rows]
     spread = statistics.stdev(errors) / len(errors) ** 0.5 if len(errors) > 1 else 0.0
     return statistics.mean(errors), spread
@@ -111,7 +45,6 @@ def truth_table(rows: list[Row]) -> str:
 
 
 def summary(rows: list[Row]) -> dict[str, str | int]:
-    """In how many cases `fit` is best, of how many, and the least and largest of its mean errors."""
     cases = [(name, runs) for name in TRUTHS for runs in (150, 300)]
     means = [
         {method: mean_error(of)[0] for method in (OWN, *RIVALS)
@@ -125,7 +58,6 @@ def summary(rows: list[Row]) -> dict[str, str | int]:
 
 
 def published_table(rows: list[Row]) -> str:
-    """A row for each published case and number of runs."""
     methods, lines = [OWN, EXPANSION, *RIVALS, ANY_RUN], []
     for case, runs in sorted({(row["case"], row["runs"]) for row in rows if row["case"] in PUBLISHED}):
         cells = []
@@ -139,7 +71,6 @@ def published_table(rows: list[Row]) -> str:
 
 
 def sir_table(rows: list[Row]) -> str:
-    """A row for each method, without and with the bound."""
     lines = []
     for method, head in HEADS.items():
         errors = [
@@ -159,7 +90,6 @@ def _captures(ring: Sequence[Row], method: str, runs: int) -> list[float]:
 
 
 def main() -> None:
-    """Write the page."""
     rows = read_rows(TABLE, KINDS)
     seeds, of_published = (len({row["seed"] for row in rows if row["case"] in cases}) for cases in (TRUTHS, PUBLISHED))
     rivals = len({row["seed"] for row in rows if row["case"] in PUBLISHED and row["method"] not in (OWN, EXPANSION)})
@@ -170,13 +100,11 @@ def main() -> None:
         if all(by_runs := [_captures(ring, method, runs) for runs in (150, 300)])
     )
     costs = [row["fit_cpu_s"] for row in rows if row["method"] == OWN and row["runs"] == 300]
-    page = [
-        BEGIN.format(seeds=seeds, **summary(rows)), truth_table(rows),
-        PUBLISHED_TEXT.format(captures=captures, seeds=of_published, rivals=rivals), published_table(rows),
-        SIR_TEXT, sir_table(rows), END.format(least=min(costs), most=max(costs)),
-    ]  # fmt: skip
-    text = broken("\n\n".join(page)) + "\n"
-    PAGE.write_text(text, encoding="utf-8")
+    write_page(
+        "emulator_peers", seeds=seeds, **summary(rows), truths=truth_table(rows), captures=captures,
+        published_seeds=of_published, rivals=rivals, published=published_table(rows), sir=sir_table(rows),
+        shortest=min(costs), longest=max(costs),
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

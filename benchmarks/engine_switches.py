@@ -8,7 +8,6 @@ far from where they end with every trick on the bodies end. Rows of FILE whose s
 """
 
 import argparse
-import json
 import os
 import shutil
 import subprocess
@@ -18,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 from grains_beds import bed, relaxed, touch_down
-from harness import ROOT, Row, command_line, cpu_seconds, origin, write_document
+from harness import ROOT, Row, command_line, cpu_seconds, origin, read_document, write_document
 
 # Name, file, what stands there, what stands there without the trick.
 SWITCHES = {
@@ -96,7 +95,6 @@ def compare(switch: str, whole: Path, folder: Path) -> Row:
 
 
 def main() -> None:
-    """Measure the switches asked for."""
     parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("switch", nargs="*", default=[*SWITCHES])
     parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
@@ -104,7 +102,7 @@ def main() -> None:
     if chosen.measure:
         measure(chosen.folder, chosen.measure)
         return
-    known = json.loads(chosen.out.read_text())["rows"] if chosen.out.exists() else []
+    known = read_document(chosen.out, {"rows": []})["rows"]
     rows: list[Row] = [row for row in known if row["without"] not in chosen.switch]
     with tempfile.TemporaryDirectory() as scratch:
         whole = Path(scratch)

@@ -247,7 +247,6 @@ def no_event(run_count: int, study_count: int) -> float:
 
 
 def rows(count: int) -> Iterator[Row]:
-    """All rows, as they come."""
     for runs, beds in DESIGNS:
         for rho in CORRELATIONS:
             truth = Truth(rho=rho)
@@ -301,7 +300,6 @@ def setting(truth: Truth, runs: int, beds: int) -> Row:
 
 
 def main() -> None:
-    """Measure and write."""
     count = command_line(__doc__, studies=400).parse_args().studies
     write_rows(TABLE, COLUMNS, map(rounded, rows(count)))
     write_made(TABLE, f"benchmarks/estimate_coverage.py --studies {count}", studies=count, level=LEVEL)

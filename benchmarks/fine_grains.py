@@ -67,7 +67,6 @@ def wide_bed(bed: Bed, recipe: BedRecipe) -> Bed:
 
 
 def main() -> None:
-    """Pour, put together, land, write."""
     parser = command_line(__doc__, "study", diameter=0.023, grains=1200, bed=Path, out=Path)
     parser.add_argument("--held", type=float, nargs="+", default=[])
     given = parser.parse_args()

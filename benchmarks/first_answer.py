@@ -72,7 +72,6 @@ def summary(rows: list[Row]) -> Row:
 
 
 def main() -> None:
-    """Measure in turn, write."""
     options = {"pieces": list(PIECES), "rounds": 2, "one_core": False, "out": Path}
     given = command_line(__doc__, "old", "new", **options).parse_args()
     if given.one_core:

@@ -114,7 +114,6 @@ def processor() -> str:
 
 
 def main() -> None:
-    """Measure, print and write."""
     options = command_line(
         __doc__, table=[25_000, 50_000, 100_000], exact=[2_500, 5_000, 10_000], threads=2
     ).parse_args()

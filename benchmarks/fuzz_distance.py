@@ -72,7 +72,6 @@ def outside(shapes: Library, shape: Integers, point: Floats) -> Floats:
 
 
 def check_points(shapes: Library, meshes: Meshes, pairs: Poses, size: Floats) -> Result:
-    """Compare closest points."""
     answer = closest(shapes, pairs)
     claimed, normal, n = answer[:, DISTANCE], answer[:, NORMAL], len(answer)
     expected, gap = np.zeros(n), np.zeros(n)
@@ -105,7 +104,6 @@ def check_kept(shapes: Library, meshes: Meshes, pairs: Poses, size: Floats, gene
 
 
 def check_plane(shapes: Library, pairs: Poses, size: Floats) -> Result:
-    """Compare gaps over planes."""
     claimed = over_plane(shapes, pairs)
     away = pairs.position[:, 0] - pairs.position[:, 1]
     normal = away / np.linalg.norm(away, axis=1)[:, None]
@@ -121,7 +119,6 @@ def worst(errors: Floats) -> float:
 
 
 def check(shapes: Library, meshes: Meshes, name: str, seed: int, count: int) -> Result:
-    """Make `count` pairs of a family and compare."""
     family: Family = FAMILIES[name]
     generator = np.random.default_rng((seed, list(FAMILIES).index(name)))
     pairs = poses(shapes, family, generator, count)
@@ -134,7 +131,6 @@ def check(shapes: Library, meshes: Meshes, name: str, seed: int, count: int) -> 
 
 
 def main() -> None:
-    """Compare all families and print the table."""
     parser = command_line(__doc__, seed=1)
     parser.add_argument("--pairs", type=int, default=48_000, help="of every family")
     parser.add_argument("--shapes", type=int, default=100, help="of every kind")

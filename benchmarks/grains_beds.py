@@ -22,7 +22,6 @@ def library(path: Path) -> list[ConvexHull]:
 
 
 def shapes_of(folder: Path, case: str, radii: np.ndarray) -> list[Shape]:
-    """Return the shape of each body."""
     if case.startswith("sph"):
         made = {radius: Sphere(radius) for radius in set(radii)}
         return [made[radius] for radius in radii]

@@ -9,7 +9,6 @@ Settled beds are relaxed for 20 000 steps with drag, then timed over undamped on
 counts, and everything but threads runs on one thread.
 """
 
-import json
 import os
 import statistics
 import subprocess
@@ -25,7 +24,7 @@ from typing import Any
 import numpy as np
 from grains_beds import ROCK, WIDTH, bed, boxes, coordination, relaxed, touch_down
 from harness import Row as Result
-from harness import command_line, cpu_seconds, origin, timed, write_document
+from harness import command_line, cpu_seconds, origin, read_document, timed, write_document
 
 from lithobrake.dem import Box, World
 
@@ -42,7 +41,6 @@ def yardstick(folder: Path) -> Result:
 
 
 def settled(folder: Path, case: str) -> Result:
-    """Time a settled bed."""
     world = relaxed(bed(folder, case), RELAX_STEPS)
     seconds = cpu_seconds(lambda: world.run(steps=TIMED_STEPS), REPEATS)
     return rates(world, seconds, TIMED_STEPS)
@@ -195,11 +193,10 @@ LONG = ("scaling", "memory", "threads")
 
 
 def main() -> None:
-    """Measure the cases asked for."""
     parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("case", nargs="*", default=[name for name in CASES if name not in LONG])
     chosen = parser.parse_args()
-    known = json.loads(chosen.out.read_text()) if chosen.out.exists() else {}
+    known = read_document(chosen.out, {})
     for name in chosen.case:
         found = CASES[name](chosen.folder)
         known[name] = {"result": found, **origin(f"benchmarks/grains_speed.py BED_FOLDER {name}")}

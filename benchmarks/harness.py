@@ -12,6 +12,7 @@ import statistics
 import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,14 +36,14 @@ def origin(command: str) -> Row:
 
 
 def command_line(doc: str | None, *places: str, **options: Any) -> argparse.ArgumentParser:
-    """Return a parser of paths in their places, and of options.
+    """Return a parser of paths in their places, one or more for a name that ends with "...", and of options.
 
     The value of an option is its default, and says what it reads: False is a switch, a tuple or list takes one value or
     more. A type instead of a value makes it required, and reads it.
     """
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in places:
-        parser.add_argument(name, type=Path)
+        parser.add_argument(name.removesuffix("..."), type=Path, nargs="+" if name.endswith("...") else None)
     for name, value in options.items():
         option = f"--{name.replace('_', '-')}"
         if value is False:
@@ -57,11 +58,34 @@ def command_line(doc: str | None, *places: str, **options: Any) -> argparse.Argu
     return parser
 
 
+def study_tables(path: Path, *changes: Mapping[str, Row], **top: Any) -> Row:
+    """The tables of a study file with other keys, in its sections and above them; a key that is None is left out."""
+    tables = tomllib.loads(path.read_text(encoding="utf-8")) | top
+    for part in changes:
+        for name, keys in part.items():
+            merged = tables.get(name, {}) | keys
+            tables[name] = {key: value for key, value in merged.items() if value is not None}
+    return tables
+
+
+def between(lower: float, upper: float, distribution: str = "uniform") -> Row:
+    """A quantity of a study file between two values."""
+    return {"distribution": distribution, "lower": lower, "upper": upper}
+
+
 def write_document(path: Path, content: Row) -> None:
     """Write a JSON document, whole or not at all."""
     draft = path.with_name(f"{path.name}.part")
     draft.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     draft.replace(path)
+
+
+def read_document(path: Path, absent: Row | None = None) -> Row:
+    """Return a JSON document; absent: what stands for one that is not there, else that raises FileNotFoundError."""
+    if absent is not None and not path.exists():
+        return absent
+    found: Row = json.loads(path.read_text(encoding="utf-8"))
+    return found
 
 
 @contextmanager
@@ -140,7 +164,6 @@ class Checkout:
         )
 
     def answer(self, one: Row) -> Row:
-        """Do one piece of work."""
         assert self.process.stdin is not None
         assert self.process.stdout is not None
         self.process.stdin.write(json.dumps(one) + "\n")

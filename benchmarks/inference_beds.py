@@ -41,7 +41,6 @@ class Setting(NamedTuple):
 
 
 def settings(soils: list[str]) -> Iterator[Setting]:
-    """All of them."""
     for soil in soils:
         for bed_share in BED_SHARES:
             for bounces, one_bed in ((5, True), (5, False), (1, False)):
@@ -50,7 +49,6 @@ def settings(soils: list[str]) -> Iterator[Setting]:
 
 
 def landed(setting: Setting, soil: np.ndarray, random: np.random.Generator) -> list[Observation]:
-    """Synthetic landings on one soil."""
     count = setting.bounces
     effects = np.repeat(random.standard_normal(), count) if setting.one_bed else random.standard_normal(count)
     truth = replace(SOILS[setting.soil], rho=setting.bed_share)
@@ -71,7 +69,6 @@ class Case(NamedTuple):
 
 
 def cases(given: tuple[Setting, int]) -> tuple[Setting, list[Case]]:
-    """Soils of one setting with one emulator, numbered."""
     setting, number = given
     # Of thousands of posteriors some would take minutes each.
     inference.can_walk = lambda: False
@@ -103,7 +100,6 @@ def judged(
 
 
 def rows(setting: Setting, found: list[Case]) -> Iterator[Row]:
-    """What the cases of one setting give, a row for each input."""
     for column, key in enumerate(INPUTS):
         counts = np.histogram([one.ranks[column] for one in found], STEPS, (0, DRAWS + 1))[0]
         yield rounded({
@@ -117,7 +113,6 @@ def rows(setting: Setting, found: list[Case]) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Measure and write, the table anew with every emulator."""
     given = command_line(__doc__, cases=200, workers=4, soils=["weak"]).parse_args()
     of_setting: dict[Setting, list[Case]] = {setting: [] for setting in settings(given.soils)}
     work = [(setting, number) for number in range(given.cases // CASES_AN_EMULATOR) for setting in of_setting]

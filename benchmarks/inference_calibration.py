@@ -32,9 +32,9 @@ DRAWS, STEPS, CASES_AN_EMULATOR, POINTS, REFITS = 99, 10, 50, 2048, 10
 SOILS = {"weak": WEAK, "strong": STRONG}
 
 
-def fitted(truth: Truth, seed: int) -> emulator.Emulator:
-    """An emulator of 300 synthetic landings on 30 beds."""
-    x, y, outcome, bed = truth.study(300, 30, seed)
+def fitted(truth: Truth, seed: int, run_count: int = 300, bed_count: int = 30) -> emulator.Emulator:
+    """An emulator of synthetic landings."""
+    x, y, outcome, bed = truth.study(run_count, bed_count, seed)
     upper = [SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf]
     return emulator.fit(
         INPUTS, x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0], upper=upper,
@@ -145,7 +145,6 @@ def information_rows(name: str, outputs: tuple[str, ...]) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Measure and write."""
     parser = command_line(__doc__, cases=200)
     parser.add_argument("--bounces", type=int, nargs="+", default=[1], help="of the simulator; five take ten minutes")
     given = parser.parse_args()

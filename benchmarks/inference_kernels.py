@@ -42,7 +42,6 @@ def posteriors(bed_share: float, one_bed: bool, cases: int) -> Iterator[tuple[fl
 
 
 def rows(bed_share: float, one_bed: bool, cases: int) -> Iterator[Row]:
-    """A row for each kernel and input."""
     found = list(posteriors(bed_share, one_bed, cases))
     for kernel in KERNELS:
         learnt = [(soil, list(one.learnt().values()), one.effective_count) for of, soil, one in found if of == kernel]
@@ -57,7 +56,6 @@ def rows(bed_share: float, one_bed: bool, cases: int) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Measure and write."""
     cases = command_line(__doc__, cases=80).parse_args().cases
     # Of hundreds of posteriors some would take minutes each.
     inference.can_walk = lambda: False

@@ -28,7 +28,6 @@ COLUMNS = ["journey", "checkout", "end", "face", "touchdowns", "cpu_s", *COMPARE
 
 
 def run(checkout: Path, study: Path, folder: Path) -> None:
-    """Make the study with a checkout."""
     environment = os.environ | {"PYTHONPATH": str(checkout.resolve())}
     command = [sys.executable, "-m", "lithobrake", "run", str(study.resolve()), "--out", str(folder.resolve())]
     subprocess.run(command, env=environment, cwd=checkout, check=True)
@@ -88,7 +87,6 @@ def summary(old: list[Row], new: list[Row]) -> Row:
 
 
 def main() -> None:
-    """Run where asked, compare, write."""
     given = command_line(__doc__, "old", "new", work=Path, study=Path, out=Path, run=False).parse_args()
     if given.run:
         for name in ("old", "new"):

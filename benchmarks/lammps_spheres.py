@@ -8,26 +8,6 @@ import numpy as np
 from grains_beds import GRAVITY, ROCK, TIME_STEP, WIDTH
 from harness import cpu_seconds
 
-SETUP = """
-units si
-atom_style sphere
-boundary f f f
-newton off
-comm_modify vel yes
-read_data {data}
-pair_style granular
-pair_coeff * * hertz/material {young} {restitution} {poisson} tangential mindlin NULL 1.0 {friction} damping coeff_restitution
-neighbor 0.004 bin
-timestep {step}
-fix gravity all gravity {gravity} vector 0 0 -1
-fix floor all wall/gran granular hertz/material {young} {restitution} {poisson} tangential mindlin NULL 1.0 {friction} damping coeff_restitution zplane 0.0 NULL
-fix sides_x all wall/gran granular hertz/material {young} {restitution} {poisson} tangential mindlin NULL 1.0 {friction} damping coeff_restitution xplane {low} {high}
-fix sides_y all wall/gran granular hertz/material {young} {restitution} {poisson} tangential mindlin NULL 1.0 {friction} damping coeff_restitution yplane {low} {high}
-fix motion all nve/sphere
-fix drag all viscous 2.0
-thermo 100000
-"""  # noqa: E501
-
 
 def write_data(path: Path, rows: np.ndarray, width: float) -> None:
     """Write radius, position, velocity and spin of spheres as a LAMMPS data file."""
@@ -50,7 +30,7 @@ def seconds_a_step(lammps: Any, path: Path, steps: int, repeats: int) -> tuple[i
         write_data(data, rows, width)
         engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
         engine.commands_string(
-            SETUP.format(
+            Path(__file__).with_suffix(".in").read_text(encoding="ascii").format(
                 data=data, young=ROCK.young_modulus, poisson=ROCK.poisson_ratio, restitution=ROCK.restitution,
                 friction=ROCK.friction, gravity=GRAVITY, step=TIME_STEP, low=-0.5 * width, high=0.5 * width,
             )

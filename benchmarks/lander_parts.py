@@ -91,7 +91,6 @@ def draw(bodies: MovingBodies, path: Path) -> None:
 
 
 def main() -> None:
-    """Land, write, draw."""
     parser = command_line(__doc__, bed=Path, landings=3, out=Path, picture=Path)
     given = parser.parse_args()
     small = small_bed(given.bed)

@@ -52,7 +52,6 @@ def beds_of(study: Study, folder: Path) -> list[Bed]:
 
 
 def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
-    """Number of the bed, lander and landing of each draw."""
     inputs = DrawnDesign(study).inputs
     for number, row in enumerate(sobol_sequence(inputs, count, seed=3).tolist()):
         values = draw(study, medians(study) | dict(zip(inputs, row, strict=True)), 1000 + number)
@@ -73,7 +72,6 @@ def landed(bed: Bed, body: Lander, arrival: Landing, way: str) -> Row:
 
 
 def compared(plain: list[Row], other: list[Row]) -> Row:
-    """How one way does beside the first."""
     found: Row = {
         "outcomes": dict(Counter(row["outcome"] for row in other)),
         "same_outcome": float(np.mean([a["outcome"] == b["outcome"] for a, b in zip(plain, other, strict=True)])),
@@ -96,7 +94,6 @@ def compared(plain: list[Row], other: list[Row]) -> Row:
 
 
 def main() -> None:
-    """Land, compare, write."""
     ways = ["global:30", "local:15", "local:25"]
     options = {"region": 0.1, "beds": 8, "landings": 200, "stepping": ways, "out": Path}
     given = command_line(__doc__, "study", "beds_in", **options).parse_args()

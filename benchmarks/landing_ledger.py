@@ -48,7 +48,6 @@ def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, resolved: 
 
 
 def main() -> None:
-    """Land in all ways, tell, write."""
     given = command_line(__doc__, "beds", landings=16).parse_args()
     study = drawn_study(STUDY, BEDS, 0.1)
     small = study.bed.model_copy(update={"grain_count": GRAINS, "width": (WIDTH, WIDTH)})

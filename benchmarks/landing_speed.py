@@ -62,7 +62,6 @@ def land_cases() -> None:
 
 
 def main() -> None:
-    """Land in turn, write, tell the ratio."""
     # The other checkout has other modules: what lands imports the public face alone.
     from landing_ensembles import beds_of, drawn_study, draws
 

@@ -92,7 +92,6 @@ def one_emulator(truth: Truth, limits: list[float], exact: np.ndarray, seed: int
 
 
 def rows(name: str, truth: Truth, emulators: int, repeats: int) -> Iterator[Row]:
-    """A row for each probability."""
     random = np.random.default_rng(7)
     soils = random_soils(1_000_000, random)
     limits = np.quantile(speeds(truth, soils, np.arange(len(soils)), random), 1.0 - np.array(PROBABILITIES)).tolist()
@@ -114,7 +113,6 @@ def rows(name: str, truth: Truth, emulators: int, repeats: int) -> Iterator[Row]
 
 
 def main() -> None:
-    """Measure and write."""
     asked = command_line(__doc__, emulators=20, repeats=40).parse_args()
     soils = {"weak": WEAK, "strong": STRONG}
     found = (row for name, truth in soils.items() for row in rows(name, truth, asked.emulators, asked.repeats))

@@ -17,7 +17,7 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
-from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, timed, write_document
+from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, read_document, timed, write_document
 
 from lithobrake.campaign import read_records
 from lithobrake.pipeline.design.design import DrawnDesign
@@ -82,11 +82,10 @@ def measure(name: str, bed_count: int, count: int) -> Row:
 
 
 def main() -> None:
-    """Measure studies, one after the other."""
     parser = command_line(__doc__, beds=4, landings=14)
     parser.add_argument("studies", nargs="+", choices=STUDIES)
     given = parser.parse_args()
-    known = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    known = read_document(RESULTS, {})
     for name in given.studies:
         command = f"benchmarks/plan_estimate.py {name} --beds {given.beds} --landings {given.landings}"
         known[name] = {"result": measure(name, given.beds, given.landings), **origin(command)}

@@ -66,7 +66,6 @@ def pour_recipes() -> None:
 
 
 def main() -> None:
-    """Pour in turn, write, tell the ratio."""
     given = command_line(__doc__, "old", "new", study=Path, pours=3, tile=0.0, out=Path).parse_args()
     checkouts = {
         name: Checkout(folder, __file__, "--pouring") for name, folder in (("old", given.old), ("new", given.new))

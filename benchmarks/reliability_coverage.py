@@ -10,7 +10,6 @@ Writes benchmarks/results/reliability_coverage.csv, and .json beside it; with --
 `subset_simulation` alone are made anew, and the others stay as they stand there.
 """
 
-import json
 import math
 import time
 from collections.abc import Callable, Iterator
@@ -20,7 +19,7 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-from harness import RESULTS, Row, command_line, origin, read_rows, rounded, write_document, write_rows
+from harness import RESULTS, Row, command_line, origin, read_document, read_rows, rounded, write_document, write_rows
 from scipy import stats
 
 from lithobrake import emulator
@@ -93,7 +92,6 @@ def one_study(truth: Truth, seed: int) -> dict[str, tuple[float, ...]]:
 
 
 def study_rows(truth: Truth, count: int) -> Iterator[Row]:
-    """A row a quantity and probability, over so many studies."""
     begin = time.process_time()
     studies = [one_study(truth, seed) for seed in range(count)]
     cost = (time.process_time() - begin) / count
@@ -124,7 +122,6 @@ LIMIT_STATES: dict[str, tuple[Callable[[np.ndarray], np.ndarray], int, float]] =
 
 
 def subset_rows(count: int) -> Iterator[Row]:
-    """Subset simulation of each limit state, 500 and 1000 points a level, over so many seeds."""
     for name, (margin, dimension, exact) in LIMIT_STATES.items():
         for points in (500, 1000):
             found = [subset_simulation(margin, dimension, points_per_level=points, seed=seed) for seed in range(count)]
@@ -185,7 +182,6 @@ def openturns_subset(
 
 
 def main() -> None:
-    """Measure and write."""
     parser = command_line(__doc__, studies=200)
     parser.add_argument("--subset", action="store_true", help="only the rows of subset_simulation")
     chosen, begin = parser.parse_args(), time.process_time()
@@ -205,7 +201,7 @@ def main() -> None:
     write_rows(TABLE, COLUMNS, map(rounded, chain.from_iterable(parts)))
     measured = {"cpu_s": round(time.process_time() - begin)}
     if chosen.subset:
-        facts = json.loads(TABLE.with_suffix(".json").read_text())
+        facts = read_document(TABLE.with_suffix(".json"))
         facts["subset"] = measured | origin(f"{command} --subset")
     else:
         facts |= measured | origin(command) | {"openturns": getattr(openturns(), "__version__", None)}

@@ -49,7 +49,6 @@ def arrivals(landings: int, slowest: float, fastest: float, folder: Path) -> lis
 
 
 def landed(bed: Bed, body: Lander, event: Landing, way: str) -> Row:
-    """Land once in a way."""
     steps, resolved, held = (float(part) for part in way.split(":"))
     contact = replace(event.contact, steps_per_contact=steps, resolved_speed=resolved, held_speed=held)
     outcome, cpu = timed(lambda: land(bed, body, replace(event, contact=contact)))
@@ -109,7 +108,6 @@ def ways_of(rows: list[Row]) -> list[str]:
 
 
 def main() -> None:
-    """Land, or compare what has landed."""
     options = {"landings": 200, "speeds": [0.003, 0.02], "ways": [""], "share": "0/1", "out": Path}
     given = command_line(__doc__, "beds_in", **options).parse_args()
     if given.ways == [""]:

@@ -71,7 +71,6 @@ def parts(world: World) -> Iterator[tuple[str, float, float]]:
 
 
 def main() -> None:
-    """Time the parts of a step on the beds asked for."""
     parser = command_line(__doc__, "folder", out=Path(__file__).with_suffix(".json"))
     parser.add_argument("case", nargs="*", default=["hull1000", "sph4000"])
     chosen = parser.parse_args()

@@ -37,7 +37,6 @@ class SpeedAlone:
 
 
 def row(name: str, truth: Truth, seed: int) -> Row:
-    """Errors of both, and of drawing runs, after fits to one study."""
     x, y, _, bed = truth.study(RUNS, BEDS, seed)
     options = {"groups": bed, "lower": 0.0, "upper": SPEED_LIMIT}
     expansion, expansion_time = timed(lambda: emulator.fit_stochastic_expansion(INPUTS, x, y[:, 0], **options))
@@ -51,7 +50,6 @@ def row(name: str, truth: Truth, seed: int) -> Row:
 
 
 def main() -> None:
-    """Make all rows and write them."""
     studies = command_line(__doc__, studies=5).parse_args().studies
     begin = origin(f"benchmarks/stochastic_expansion.py --studies {studies}")
     rows = []

@@ -60,7 +60,6 @@ def rows(count: int) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Measure and write."""
     count = command_line(__doc__, seeds=200).parse_args().seeds
     write_rows(TABLE, COLUMNS, rows(count))
     write_made(TABLE, f"benchmarks/subset_with_chance.py --seeds {count}", seeds=count, level=LEVEL)

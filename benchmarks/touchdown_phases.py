@@ -33,7 +33,6 @@ class TimedJudge(OutcomeJudge):
     last: "TimedJudge"
 
     def look(self) -> None:
-        """Look, and take note."""
         super().look()
         TimedJudge.last = self
         notes = self.__dict__.setdefault("notes", [])
@@ -57,7 +56,6 @@ def phases(judge: TimedJudge) -> dict[str, tuple[float, float]]:
 
 
 def touchdowns(folder: Path, every: int) -> list[Row]:
-    """Inputs of the touchdowns of every so many journeys."""
     with sqlite3.connect(f"file:{folder / 'runs.sqlite'}?mode=ro", uri=True) as ledger:
         rows = [json.loads(inputs) for (inputs,) in ledger.execute("SELECT inputs FROM runs WHERE status = 'done'")]
     return [row for row in rows if "journey" in row and row["journey"] % every == 0]
@@ -70,7 +68,6 @@ def study_of(folder: Path) -> Study:
 
 
 def main() -> None:
-    """Land again, sum up, write."""
     given = command_line(__doc__, "folder", every=5, out=Path).parse_args()
     study, rows = study_of(given.folder), touchdowns(given.folder, given.every)
     simulation.OutcomeJudge = TimedJudge  # type: ignore[misc]

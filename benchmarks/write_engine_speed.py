@@ -3,10 +3,12 @@
 python benchmarks/write_engine_speed.py
 """
 
-import json
 from pathlib import Path
 from textwrap import fill
 from typing import Any
+
+from harness import ROOT, read_document
+from page import made, table, write_page
 
 HERE = Path(__file__).parent
 AIMS = {"hull1000": 2.0, "hull2000": 2.0, "hull4000": 2.0, "landing": 1.5, "sph4000": 8.0}
@@ -14,14 +16,11 @@ RATE = "million_particle_steps_a_cpu_second"
 
 
 def shown(value: Any) -> str:
-    """A value in a table."""
     return f"{value:.3g}" if isinstance(value, float) else str(value)
 
 
-def table(head: list[str], rows: list[list[Any]]) -> list[str]:
-    """A table in Markdown."""
-    lines = [head, ["---"] * len(head), *([shown(value) for value in row] for row in rows)]
-    return ["| " + " | ".join(line) + " |" for line in lines]
+def shown_table(heads: list[str], rows: list[list[Any]]) -> str:
+    return table(heads, ([shown(value) for value in row] for row in rows)).replace("---|", " --- |")
 
 
 def wrapped(line: str) -> str:
@@ -32,21 +31,21 @@ def wrapped(line: str) -> str:
 
 def measured(found: dict[str, Any]) -> str:
     """Where, when and how something was measured."""
-    return f"`{found['command']}`, {found['date']}, {found['machine']}, load {found['load']:.2g}."
+    return wrapped(made(found, f"load {found['load']:.2g}."))
 
 
-def beds(found: dict[str, Any]) -> list[str]:
-    """Speed on beds at rest and in landings."""
+def beds(found: dict[str, Any]) -> str:
     rows = []
     for name, aim in AIMS.items():
         results = found[name]["result"]
         for result in results if isinstance(results, list) else [results]:
             case = f"6 kg into hull1000 at {result['speed_m_s']} m/s" if name == "landing" else name
             rows.append([case, result["coordination"], result["ms_a_step"], result[RATE], aim, found[name]["load"]])
-    return table(["case", "coordination", "ms a step", "million particle-steps a CPU second", "aim", "load"], rows)
+    heads = ["case", "coordination", "ms a step", "million particle-steps a CPU second", "aim", "load"]
+    return shown_table(heads, rows)
 
 
-def others(found: dict[str, Any]) -> list[str]:
+def others(found: dict[str, Any]) -> str:
     """All other measurements, a line each."""
     lines = []
     for name, entry in found.items():
@@ -55,25 +54,23 @@ def others(found: dict[str, Any]) -> list[str]:
                 landings = result.pop("landings", [])
                 lines.append(f"- {name}: {listed(result)} ({entry['date']}, load {entry['load']:.2g})")
                 lines += [f"    - a landing: {listed(landing)}" for landing in landings]
-    return lines
+    return "\n".join(wrapped(line) for line in lines)
 
 
 def listed(values: dict[str, Any]) -> str:
-    """Names and values on a line."""
     return ", ".join(f"{key.replace('_', ' ')} {shown(value)}" for key, value in values.items())
 
 
-def step_parts(found: dict[str, Any]) -> list[str]:
-    """What a step is made of."""
+def step_parts(found: dict[str, Any]) -> str:
     rows = [
         [case, row["part"], row["a_body"], row["ns_a_body"]]
         for case, entry in found["cases"].items()
         for row in entry["parts"]
     ]
-    return [*table(["case", "part", "number a body", "ns a body"], rows), "", measured(found)]
+    return shown_table(["case", "part", "number a body", "ns a body"], rows)
 
 
-def switches(found: dict[str, Any]) -> list[str]:
+def switches(found: dict[str, Any]) -> str:
     """What each trick gains, and how far bodies end from where they end with it."""
     cases = ("hull1000", "sph4000", "touchdown")
     rows = [
@@ -81,31 +78,18 @@ def switches(found: dict[str, Any]) -> list[str]:
         for row in found["rows"]
     ]
     head = ["trick", *(text for case in cases for text in (f"{case}: gain", "change [m]"))]
-    return [*table(head, rows), "", measured(found)]
+    return shown_table(head, rows)
 
 
 def main() -> None:
-    """Write the page."""
     speed, parts, tricks = (
-        json.loads((HERE / name).read_text())
-        for name in ("grains_speed.json", "step_parts.json", "engine_switches.json")
+        read_document(HERE / name) for name in ("grains_speed.json", "step_parts.json", "engine_switches.json")
     )
-    page = [
-        "# Speed of the soft-surface engine", "",
-        "Written by `python benchmarks/write_engine_speed.py`. What was tried and did not pay: "
-        "[performance.md](performance.md).", "",
-        "## Beds at rest, and landings", "", *beds(speed), "", measured(speed["hull1000"]), "",
-        "The aims were set on a machine of this kind whose searches (the yardstick, below) took 460 ns.", "",
-        *others(speed), "",
-        "## What a step is made of", "", *step_parts(parts), "",
-        "## What each trick gains", "",
-        "Time without it over time with it; beside it, how far from where they end with all tricks the bodies end. "
-        "Rows that cannot touch a case (spheres' tricks on hulls) show the noise; ratios measured in turns, more "
-        "exact ones, stand in performance.md.", "",
-        *switches(tricks),
-    ]  # fmt: skip
-    page = [line if line.startswith("|") else wrapped(line) for line in page]
-    (HERE.parent / "docs" / "decisions" / "engine_speed.md").write_text("\n".join(page) + "\n", encoding="utf-8")
+    write_page(
+        "engine_speed", ROOT / "docs" / "decisions", filled=False, beds=beds(speed), others=others(speed),
+        measured=measured(speed["hull1000"]), parts=step_parts(parts), parts_measured=measured(parts),
+        switches=switches(tricks), switches_measured=measured(tricks),
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ def paragraph(words: str | None) -> list[str]:
 def section(name: str, model: type[BaseModel]) -> list[str]:
     """A heading, and a table of the keys that each class of the section adds, below its words."""
     lines = ["", f"## `[{name}]`", *paragraph(model.__doc__)]
-    owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
+    owners = {key: base for base in model.__mro__ if base.__doc__ for key in getattr(base, "model_fields", ())}
     for owner, keys in groupby(model.model_fields, key=owners.__getitem__):
         lines += [] if owner is model else paragraph(owner.__doc__)
         lines += [*TABLE, *rows({key: model.model_fields[key] for key in keys})]

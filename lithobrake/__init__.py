@@ -6,7 +6,8 @@ from lithobrake.vocabulary.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from lithobrake.pipeline.study_run import run
-    from lithobrake.results import StudyResults, open_study
+    from lithobrake.report.plotted_study import open_study
+    from lithobrake.results import StudyResults
 else:
     __getattr__, __dir__ = lazy_names(__name__)
 

@@ -14,10 +14,9 @@ from scipy import optimize, special
 
 from lithobrake.chaos import Distribution, LogUniform, Uniform, sobol_sequence
 
-INPUTS: dict[str, Distribution] = {
-    "friction": Uniform(0.3, 0.9), "restitution": Uniform(0.3, 0.9), "young_modulus": LogUniform(1e6, 1e8),
-    "rolling_resistance": Uniform(0.0, 0.3), "density": Uniform(1500.0, 3000.0),
-}  # fmt: skip
+INPUTS: dict[str, Distribution] = {"friction": Uniform(0.3, 0.9), "restitution": Uniform(0.3, 0.9),
+    "young_modulus": LogUniform(1e6, 1e8), "rolling_resistance": Uniform(0.0, 0.3),
+    "density": Uniform(1500.0, 3000.0)}  # fmt: skip
 OUTPUT_NAMES = ("speed_out", "elevation_out", "azimuth_out", "spin_out")
 OUTCOMES = ("clear", "captured", "left_sideways")
 # No lander leaves faster [m/s], or at an elevation outside 0 to this [rad].

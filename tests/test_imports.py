@@ -32,7 +32,7 @@ ALLOWED: dict[str, set[str]] = {
     "progress": {"campaign"},
     "doctor": {"campaign", "dem", "pipeline", "smallbody", "touchdown"},
     "__main__": {"cli"},
-    "__init__": {"pipeline", "results"},
+    "__init__": {"pipeline", "report", "results"},
     "cli": {"study", "pipeline", "campaign", "progress", "results", "export", "serve", "view", "doctor"},
 }
 # Parts in which no file imports one that imports it, directly or through others.
@@ -54,12 +54,11 @@ ROOMS = {
         "live",
         "pages",
         "study_plots",
+        "plotted_study",
         "study_report",
         "further_reports",
     ),
 }
-# What a file hands itself on to when a user asks for it, without knowing anything of it.
-HANDED_ON = {"results/study_results.py": {"lithobrake.report.study_plots.StudyPlots"}}
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)
 
@@ -84,8 +83,7 @@ def imported_names(path: Path, only_at_load: bool = False) -> set[str]:
             found |= {f"{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
-    handed_on = HANDED_ON.get(path.relative_to(PACKAGE).as_posix(), set())
-    return {name for name in found - handed_on if name.startswith("lithobrake.")}
+    return {name for name in found if name.startswith("lithobrake.")}
 
 
 def imported_parts(path: Path) -> set[str]:

@@ -6,7 +6,6 @@ Reads the kept studies of showcase/ (validation/keep_results.py) and writes to a
 variance of the rebound speed and of the return fraction, and the first touchdowns by the side that faces the ground.
 """
 
-import csv
 import shutil
 import sys
 import tempfile
@@ -26,7 +25,7 @@ from lithobrake.results.json_values import to_json
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, command_line, origin, write_document
+from harness import ROOT, command_line, origin, read_rows, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
 KEPT = ("drawn_700", "drawn_170", "mission")
@@ -44,8 +43,8 @@ def runs_of(folder: Path) -> DesignRuns:
 def returns_of(folder: Path) -> np.ndarray:
     """Share of the flights of each landing that return [run_count]."""
     count = len((folder / "runs" / "drawn.csv").read_text(encoding="utf-8").splitlines()) - 1
-    with (folder / "run_flights.csv").open(newline="", encoding="utf-8") as file:
-        return np.array([float(row["returns"] or "nan") for row in csv.DictReader(file)][:count])
+    rows = read_rows(folder / "run_flights.csv", {}, str)[:count]
+    return np.array([float(row["returns"] or "nan") for row in rows])
 
 
 def parts(folder: Path) -> dict[str, Any]:
@@ -66,7 +65,6 @@ def parts(folder: Path) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Write the table."""
     command_line(__doc__).parse_args()
     found = {name: parts(ROOT / "showcase" / name) for name in KEPT}
     write_document(RESULTS, {"studies": found, **origin("validation/attitude_parts.py")})

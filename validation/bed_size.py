@@ -108,7 +108,6 @@ def summary(rows: list[Row]) -> Row:
 
 
 def main() -> None:
-    """Run all landings and write what came of them."""
     chosen = command_line(__doc__, placements=10, out=Path(__file__).parent).parse_args()
     start, rows = time.process_time(), []
     rule = {way: smallest_bed(LANDER, ROCK, DIAMETER, speed) for way, (speed, _) in LANDINGS.items()}

@@ -321,7 +321,6 @@ CHECKS: dict[str, Callable[[], Iterator[Result]]] = {
 
 
 def main() -> None:
-    """Run the checks asked for."""
     parser = command_line(__doc__, out=Path(__file__).parent)
     parser.add_argument("check", nargs="*", default=[*CHECKS])
     chosen = parser.parse_args()

@@ -6,25 +6,23 @@ Reads every bulk_*.json and bed_size.json beside it that is there; a check that 
 figures go to docs/validation.
 """
 
-import json
 import math
+import sys
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from bulk import CHECKS
-from bulk_words import TEXT
-from page_text import broken, table
 
-from lithobrake.report.figures.style import INK, INPUT_COLOURS, SITE, STYLE, TRAINING
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, SITE, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from drawing import figure
+from harness import PAGES, read_document
+from page import made, table, write_page
 
 HERE = Path(__file__).parent
-PAGES = HERE.parent / "docs" / "validation"
 Rows = list[dict[str, Any]]
 # Outputs of the check of the bed's size: words and factor of the table. Impacts: speed, and angle from the normal.
 OUTPUTS = {
@@ -43,7 +41,6 @@ def grouped(rows: Rows, by: str, what: str) -> dict[Any, np.ndarray]:
 
 
 def lines(name: str, rows: Rows) -> str:
-    """Return a table of means and scatter, with published values where there are any."""
     by, columns = SHOWN[name]
     if name == "froude":
         rows = [row | {by: f"{row[by]:g}, {row['gravity']:g}"} for row in sorted(rows, key=lambda row: row[by])]
@@ -64,24 +61,23 @@ def lines(name: str, rows: Rows) -> str:
 
 def draw_froude(rows: Rows) -> None:
     """Penetration and duration against the Froude number, by gravity."""
-    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), constrained_layout=True)
-    gravities = sorted({row["gravity"] for row in rows})
-    for axis, column in zip(axes, ("penetration_over_diameter", "duration_scaled"), strict=True):
-        for place, gravity in enumerate(gravities):
-            table = grouped([row for row in rows if row["gravity"] == gravity], "froude", column)
-            # Side by side, so that no bar hides another.
-            beside = np.array(list(table)) * 1.04 ** (place - 1)
-            mean = [values.mean() for values in table.values()]
-            spread = [values.std(ddof=1) for values in table.values()]
-            axis.errorbar(
-                beside, mean, spread, color=INPUT_COLOURS[place], marker="os^"[place], markersize=5, capsize=3,
-                label=f"g = {gravity:g} m/s²",
-            )  # fmt: skip
-        axis.set(xlabel=LABELS["froude"], ylabel=LABELS[column], xscale="log", ylim=(0.0, None))
-        axis.set_xticks(list(table), [f"{number:g}" for number in table], minor=False)
-        axis.minorticks_off()
-    axes[0].legend(loc="lower right", title="bars: one standard deviation", title_fontsize=8)
-    figure.savefig(PAGES / "bulk_froude.png")
+    with figure(PAGES / "bulk_froude.png", 1, 2, (8.0, 3.4)) as (_, axes):
+        gravities = sorted({row["gravity"] for row in rows})
+        for axis, column in zip(axes, ("penetration_over_diameter", "duration_scaled"), strict=True):
+            for place, gravity in enumerate(gravities):
+                table = grouped([row for row in rows if row["gravity"] == gravity], "froude", column)
+                # Side by side, so that no bar hides another.
+                beside = np.array(list(table)) * 1.04 ** (place - 1)
+                mean = [values.mean() for values in table.values()]
+                spread = [values.std(ddof=1) for values in table.values()]
+                axis.errorbar(
+                    beside, mean, spread, color=INPUT_COLOURS[place], marker="os^"[place], markersize=5, capsize=3,
+                    label=f"g = {gravity:g} m/s²",
+                )  # fmt: skip
+            axis.set(xlabel=LABELS["froude"], ylabel=LABELS[column], xscale="log", ylim=(0.0, None))
+            axis.set_xticks(list(table), [f"{number:g}" for number in table], minor=False)
+            axis.minorticks_off()
+        axes[0].legend(loc="lower right", title="bars: one standard deviation", title_fontsize=8)
 
 
 EXPECTED = {
@@ -99,26 +95,25 @@ LABELS = {
 
 def draw(name: str, rows: Rows, by: str, columns: list[str]) -> None:
     """Means, scatter and single runs of the first two columns; crosses: what is expected."""
-    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.1), constrained_layout=True)
-    for axis, column in zip(axes, columns, strict=False):
-        table = grouped(rows, by, column)
-        for place, values in enumerate(table.values()):
-            (single,) = axis.plot([place] * len(values), values, "o", color=TRAINING, alpha=0.6, markeredgewidth=0.0)
-            mean = axis.errorbar(
-                place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color=INK,
-                markersize=18, capsize=4,
-            )  # fmt: skip
-        handles = {"one run": single, "mean and standard deviation": mean}
-        expected = EXPECTED.get((name, column), [])
-        if expected:
-            (handles["published"],) = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
-        # Names in two lines stand beside each other.
-        names = [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table]
-        axis.set_xticks(range(len(table)), names)
-        axis.set(xlabel=LABELS[by], ylabel=LABELS[column], xlim=(-0.5, len(table) - 0.5))
-        if axis is axes[0]:
-            figure.legend(handles.values(), handles, loc="outside lower center", ncols=3)
-    figure.savefig(PAGES / f"bulk_{name}.png")
+    with figure(PAGES / f"bulk_{name}.png", 1, 2, (8.0, 3.1)) as (drawn, axes):
+        for axis, column in zip(axes, columns, strict=False):
+            table = grouped(rows, by, column)
+            for place, values in enumerate(table.values()):
+                (single,) = axis.plot([place] * len(values), values, "o", color=TRAINING, alpha=0.6, mew=0.0)
+                mean = axis.errorbar(
+                    place, values.mean(), values.std(ddof=1) if len(values) > 1 else None, fmt="_", color=INK,
+                    markersize=18, capsize=4,
+                )  # fmt: skip
+            handles = {"one run": single, "mean and standard deviation": mean}
+            expected = EXPECTED.get((name, column), [])
+            if expected:
+                (handles["published"],) = axis.plot(range(len(expected)), expected, "x", color=SITE, markersize=7)
+            # Names in two lines stand beside each other.
+            names = [str(key).replace(", ", "\n").replace("hedron", "-\nhedron") for key in table]
+            axis.set_xticks(range(len(table)), names)
+            axis.set(xlabel=LABELS[by], ylabel=LABELS[column], xlim=(-0.5, len(table) - 0.5))
+            if axis is axes[0]:
+                drawn.legend(handles.values(), handles, loc="outside lower center", ncols=3)
 
 
 # Of each check: column that tells its rows apart, columns of the table, and the one to compare with published values.
@@ -152,16 +147,15 @@ def section(name: str) -> str:
     path, (by, columns) = HERE / f"bulk_{name}.json", SHOWN[name]
     if not path.exists():
         return "Not run."
-    found = json.loads(path.read_text())
-    with plt.rc_context(STYLE):
-        draw_froude(found["rows"]) if name == "froude" else draw(name, found["rows"], by, columns)
-    made = f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time."
-    return "\n\n".join([lines(name, found["rows"]), f"![{ALTS[name]}](bulk_{name}.png)", made])
+    found = read_document(path)
+    draw_froude(found["rows"]) if name == "froude" else draw(name, found["rows"], by, columns)
+    cost = made(found, f"{found['cpu_s']} s of CPU time.")
+    return "\n\n".join([lines(name, found["rows"]), f"![{ALTS[name]}](bulk_{name}.png)", cost])
 
 
 def gravities() -> str:
     """Return how far the means at one Froude number are apart between gravities, against their scatter."""
-    rows: Rows = json.loads((HERE / "bulk_froude.json").read_text())["rows"]
+    rows: Rows = read_document(HERE / "bulk_froude.json")["rows"]
     apart = []
     for column in SHOWN["froude"][1]:
         scores = []
@@ -188,21 +182,19 @@ def bed_size(found: dict[str, Any]) -> dict[str, str]:
             apart.append(value["difference_in_standard_errors"])
             parts.append((abs(value["double"] / value["plain"] - 1.0), f"{words.split(' [')[0]}, {WAYS[way]}"))
     rule = {f"{w:.3g} m wide and {d:.3g} m deep" for w, d in found["smallest_width_and_depth_m"].values()}
-    made = f"`{found['command']}`, {found['date']}, {found['machine']}, {found['cpu_s']} s of CPU time"
     return {
-        "beds": table(heads, cells), "rule": " or ".join(sorted(rule)), "made": made, "count": str(len(apart)),
+        "made": made(found, f"{found['cpu_s']} s of CPU time"), "beds": table(heads, cells),
+        "rule": " or ".join(sorted(rule)), "count": str(len(apart)),
         "largest": f"{100.0 * max(parts)[0]:.0f} %", "which": max(parts)[1],
         "most": f"{max(apart, key=abs):.1f}", "below": str(sum(one < 0.0 for one in apart)),
     }  # fmt: skip
 
 
 def main() -> None:
-    """Write the page and the figures."""
-    page = TEXT.format(
-        **{name: section(name) for name in CHECKS}, gravities=gravities(),
-        **bed_size(json.loads((HERE / "bed_size.json").read_text())),
+    write_page(
+        "bulk", **{name: section(name) for name in CHECKS}, gravities=gravities(),
+        **bed_size(read_document(HERE / "bed_size.json")),
     )  # fmt: skip
-    (PAGES / "bulk.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

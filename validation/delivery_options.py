@@ -7,9 +7,7 @@ then studies of their own, with 48 journeys, another seed and other beds, so tha
 Folders are below --work, where what was stopped goes on. Writes delivery_options.json.
 """
 
-import argparse
 import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +15,7 @@ import lithobrake
 from lithobrake.results import StudyResults
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, origin, write_document
+from harness import SCENARIOS, command_line, origin, study_tables, write_document
 
 JOURNEYS = 48
 # Speed [m/s], incidence and latitude [deg].
@@ -26,14 +24,13 @@ KEYS = ("speed", "incidence_deg", "latitude_deg")
 
 
 def tables(number: int) -> dict[str, Any]:
-    """The scenario with the delivery of one option alone."""
-    study: dict[str, Any] = tomllib.loads((SCENARIOS / "aim.toml").read_text(encoding="utf-8"))
-    study.pop("aim")
-    study["delivery"] |= dict(zip(KEYS, OPTIONS[number], strict=True))
-    study["journey"] |= {"count": JOURNEYS}
     # Pictures of a landing at 0.15 m/s want a little more width than the scenario has.
-    study["bed"] |= {"width": [0.58, 0.58], "grain_count": 104}
-    return {**study, "seed": 200 + number}
+    changes = {
+        "delivery": dict(zip(KEYS, OPTIONS[number], strict=True)), "journey": {"count": JOURNEYS},
+        "bed": {"width": [0.58, 0.58], "grain_count": 104},
+    }  # fmt: skip
+    study = study_tables(SCENARIOS / "aim.toml", changes, seed=200 + number)
+    return {name: keys for name, keys in study.items() if name != "aim"}
 
 
 def compared(number: int, options: StudyResults, landings: StudyResults) -> dict[str, Any]:
@@ -53,10 +50,7 @@ def compared(number: int, options: StudyResults, landings: StudyResults) -> dict
 
 
 def main() -> None:
-    """Run the scenario and its three options, and write how they compare."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=Path, default=Path("delivery_options"))
-    work = parser.parse_args().work
+    work = command_line(__doc__, work=Path("delivery_options")).parse_args().work
     options = lithobrake.run(SCENARIOS / "aim.toml", work / "aim", report=False)
     found = []
     for number in range(len(OPTIONS)):

@@ -22,6 +22,7 @@ from lithobrake.analysis.equal_area import latitude_longitude
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import Row, command_line, read_rows, rounded, write_made, write_rows
+from page import table
 
 TABLE = Path(__file__).with_suffix(".csv")
 COLUMNS = ("places", "axes", "share", "clouds", "area_ratio", "area_deviation", "held")
@@ -37,7 +38,6 @@ def cloud(count: int, axes: float, random: np.random.Generator) -> np.ndarray:
 
 
 def rows(cloud_count: int) -> Iterator[Row]:
-    """A row for each number of places, ratio of axes and share."""
     for count in COUNTS:
         for axes in AXES:
             random, found = np.random.default_rng([count, int(axes)]), {share: [] for share in SHARES}
@@ -60,19 +60,16 @@ def rows(cloud_count: int) -> Iterator[Row]:
 def page_table() -> str:
     """What was made, as a table in Markdown: a line a number of places and ratio of axes."""
     made = {(row["places"], row["axes"], row["share"]): row for row in read_rows(TABLE, {"places": int})}
-    lines = [
-        "| places | ratio of the axes of the cloud | area of 50 % / exact | inside | area of 95 % / exact | inside |",
-        "|---|---|---|---|---|---|",
-    ]
+    lines = []
     for count, axes in product(COUNTS, AXES):
         both = (made[count, axes, share] for share in SHARES)
         cells = (f"{one['area_ratio']:.2f} ({one['area_deviation']:.2f}) | {one['held']:.2f}" for one in both)
-        lines.append(f"| {count} | {axes:g} to 1 | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+        lines.append((str(count), f"{axes:g} to 1", *cells))
+    heads = (word for share in SHARES for word in (f"area of {100 * share:.0f} % / exact", "inside"))
+    return table(["places", "ratio of the axes of the cloud", *heads], lines) + "\n"
 
 
 def main() -> None:
-    """Make the table and write it, or print what the page has of it."""
     options = command_line(__doc__, clouds=200, page=False).parse_args()
     if options.page:
         print(page_table())

@@ -6,10 +6,7 @@ Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site
 folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
 """
 
-import argparse
-import json
 import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +14,9 @@ import lithobrake
 from lithobrake.results import StudyResults
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, origin, write_document
+from harness import SCENARIOS, between, command_line, origin, read_document, study_tables, write_document
 
 JOURNEYS, BEDS = 32, 8
-
-
-def between(lower: float, upper: float, law: str = "uniform") -> dict[str, Any]:
-    """A distribution of the study file."""
-    return {"distribution": law, "lower": lower, "upper": upper}
 
 
 CASES: dict[str, dict[str, Any]] = {
@@ -50,16 +42,6 @@ CASES: dict[str, dict[str, Any]] = {
         "site": {"body": "didymos"}, "delivery": {"latitude_deg": 65.0, "speed": between(0.05, 0.30)},
     },
 }  # fmt: skip
-
-
-def tables(number: int, changes: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """The quick study with other keys and a seed of its own; a key that is None is left out."""
-    study: dict[str, Any] = tomllib.loads((SCENARIOS / "quick.toml").read_text(encoding="utf-8"))
-    few = {"journey": {"count": JOURNEYS}, "bed": {"bed_count": BEDS}}
-    for part in (few, changes):
-        for name, keys in part.items():
-            study[name] = {key: value for key, value in (study[name] | keys).items() if value is not None}
-    return {**study, "seed": 100 + number}
 
 
 def compared(study: StudyResults) -> dict[str, Any]:
@@ -90,17 +72,15 @@ def compared(study: StudyResults) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Follow the landers of all cases in both ways, and write how they ended."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--work", type=Path, default=Path("emulated_journeys"))
-    parser.add_argument("--cases", nargs="*", default=list(CASES))
-    given = parser.parse_args()
+    given = command_line(__doc__, work=Path("emulated_journeys"), cases=list(CASES)).parse_args()
+    few = {"journey": {"count": JOURNEYS}, "bed": {"bed_count": BEDS}}
     path = Path(__file__).with_suffix(".json")
-    found = json.loads(path.read_text(encoding="utf-8"))["cases"] if path.is_file() else {}
+    found = read_document(path, {"cases": {}})["cases"]
     for number, (name, changes) in enumerate(CASES.items()):
         if name in given.cases:
             folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
-            found[name] = compared(lithobrake.run(tables(number, changes), folder, report=False))
+            tables = study_tables(SCENARIOS / "quick.toml", few, changes, seed=100 + number)
+            found[name] = compared(lithobrake.run(tables, folder, report=False))
             print(name, found[name], flush=True)
             in_order = {one: found[one] for one in CASES if one in found}
             counts = {key: sum(bool(one[key]) for one in in_order.values()) for key in ("agrees", "is_inside")}

@@ -2,13 +2,9 @@
 
     python validation/expansion_accuracy.py [--grounds NAME ...] [--kept NAME ...] [--work FOLDER] [--out validation]
 
-Impact and attitude are those of scenarios/one_place.toml, the impact point is the middle of the tile. A cell varies
-three or two inputs, the others stand at their medians: a Smolyak grid for the expansion, points drawn for its test, and
-twins of the first of these, a tenth of a millimetre aside. "full" ranges are those of the scenario, others so many
-parts of each median to both sides. A sweep moves friction, or the restitution of the grains, alone, in equal steps.
-
-Writes expansion_accuracy.csv, a line for each landing, as they end, and expansion_accuracy_beds.csv. What stands there
-already is not done again: delete both to start anew. Grounds and beds are those of grain_size.py.
+docs/validation/expansion_accuracy.md has the set-up; grounds and beds are those of grain_size.py. Writes
+expansion_accuracy.csv, a line for each landing, as they end, and expansion_accuracy_beds.csv. What stands there already
+is not done again: delete both to start anew.
 """
 
 import sys
@@ -55,12 +51,10 @@ class Cell(NamedTuple):
 
 
 def cells(name: str, number: int, kept: str, level: int, tests: int = TESTS) -> list[Cell]:
-    """Cells of all ranges on a bed."""
     return [Cell(name, number, kept, one, level, tests) for one in RANGES]
 
 
 def sweep(name: str, number: int = 0, of: str = "friction", steps: int = STEPS) -> Cell:
-    """Cell of a sweep of one property of the grains."""
     return Cell(name, number, of, "full", None, steps=steps)
 
 
@@ -113,7 +107,6 @@ def landed(cell: Cell, ground: Bed, design: str, point: Floats) -> Row:
 
 
 def main() -> None:
-    """Make the landings that are missing."""
     here, work = Path(__file__).parent, Path(tempfile.gettempdir()) / "lithobrake_grain_size"
     names = tuple(dict.fromkeys(cell.ground for cell in CELLS))
     given = command_line(__doc__, grounds=names, kept=(*KEPT, *SWEPT), work=work, out=here).parse_args()

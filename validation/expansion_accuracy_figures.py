@@ -6,32 +6,26 @@ Reads expansion_accuracy.csv and expansion_accuracy.json beside it; writes expan
 expansion_accuracy.md to docs/validation.
 """
 
-import json
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from expansion_accuracy import CELLS, HOW, KEPT, KINDS, RANGES, SWEPT, Cell, designs, laws
-from expansion_accuracy_words import TEXT
 from numpy.typing import NDArray
-from page_text import broken, table, two_digits
 from paper_study_figures import PAPER_MAPE
 
 from lithobrake.chaos import absolute_percentage_error, fit, term_count
-from lithobrake.report.figures.style import INPUT_COLOURS, QUIET, STYLE
+from lithobrake.report.figures.style import INPUT_COLOURS, QUIET
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import PAGES, read_rows
+from drawing import STYLE, plt
+from harness import PAGES, Row, read_document, read_rows
+from page import made, table, two_digits, write_page
 
 HERE = Path(__file__).parent
 Floats = NDArray[np.float64]
-Row = dict[str, Any]
 FROM_NORMAL = "from_normal"  # rad; the paper does not say from where it counts the direction
 TITLES = {
     "speed_out": "rebound speed", "elevation_out": "rebound elevation", FROM_NORMAL: "angle from the normal",
@@ -109,7 +103,6 @@ def sweep(rows: list[Row], cell: Cell) -> Sweep | None:
 
 
 def words(cell: Cell) -> str:
-    """Grains and ratio of a cell."""
     ground = HOW[cell.ground]
     return f"{ground.grain}s, {ground.ratio:g}"
 
@@ -187,7 +180,6 @@ def fit_table(found: dict[Cell, dict[str, Score]]) -> str:
 
 
 def sweep_table(swept: dict[Cell, Sweep]) -> str:
-    """Return a line a sweep."""
     heads = ["grains, ratio", "bed", "parameter", "steps", "jumps", "median step [% of the mean]",
              "largest step [% of the mean]"]  # fmt: skip
     return table(heads, (
@@ -203,7 +195,6 @@ def reached(one: dict[str, Score], *names: str) -> bool:
 
 
 def verdict(found: dict[Cell, dict[str, Score]]) -> str:
-    """Return where the expansion reaches the published errors."""
     asked = {"rebound speed": ("speed_out",), "direction": DIRECTIONS, "spin rate": ("spin_out",)}
     parts = []
     for title, names in asked.items():
@@ -218,7 +209,6 @@ def verdict(found: dict[Cell, dict[str, Score]]) -> str:
 
 
 def skill(found: dict[Cell, dict[str, Score]]) -> str:
-    """Return how many cells that reach the published error of the speed explain little of it."""
     fine = [one["speed_out"].q2 for one in found.values() if reached(one, "speed_out")]
     return (
         f"Of the {len(fine)} combinations with the published error of the speed, {sum(q2 < 0.5 for q2 in fine)} have "
@@ -255,7 +245,6 @@ def not_run(cells: list[Cell], found: Iterable[Cell]) -> str:
 
 
 def place_of(cell: Cell) -> tuple[str, float, int]:
-    """Return grains, ratio and bed of a cell."""
     return HOW[cell.ground].grain, HOW[cell.ground].ratio, cell.bed
 
 
@@ -265,8 +254,9 @@ def markers(swept: Iterable[Cell]) -> str:
     return ", ".join(f"{list(MARKERS.values())[bed % len(MARKERS)]} {bed}" for bed in beds)
 
 
-def page(rows: list[Row], origin: Row) -> str:
-    """Return the text of the page."""
+def main() -> None:
+    rows = read_rows(HERE / "expansion_accuracy.csv", KINDS)
+    kept = read_document(HERE / "expansion_accuracy.json")
     found = {cell: one for cell in CELLS if cell.level is not None and (one := scores(rows, cell))}
     swept = {cell: one for cell in CELLS if cell.level is None and (one := sweep(rows, cell))}
     draw(found, swept)
@@ -274,23 +264,15 @@ def page(rows: list[Row], origin: Row) -> str:
     speed, elevation, _, spin = (PAPER[name] for name in OUTPUTS)
     ours, papers = (", ".join(f"`{name}`" for name in KEPT[kind]) for kind in ("ours", "paper's"))
     spent = sum(row["cpu_s"] for row in rows) / 60.0
-    text = TEXT.format(
-        degree=DEGREE, speed=speed, elevation=elevation, spin=spin, verdict=verdict(found), ours=ours, papers=papers,
-        terms=term_count(len(KEPT["ours"]), DEGREE), few=term_count(len(KEPT["two"]), DEGREE), skill=skill(found),
-        markers=markers(swept), errors=error_table(rows, found), fits=fit_table(found), jump=JUMP,
-        kinks=kink_table(found, swept), sweeps=sweep_table(swept),
+    write_page(
+        "expansion_accuracy", degree=DEGREE, speed=speed, elevation=elevation, spin=spin, verdict=verdict(found),
+        ours=ours, papers=papers, terms=term_count(len(KEPT["ours"]), DEGREE),
+        few=term_count(len(KEPT["two"]), DEGREE), skill=skill(found), markers=markers(swept),
+        errors=error_table(rows, found), fits=fit_table(found), jump=JUMP, kinks=kink_table(found, swept),
+        sweeps=sweep_table(swept),
         missing=not_run([cell for cell in CELLS if cell not in found and cell not in swept], found),
-        made=f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}, "
-        f"{spent:.0f} min of CPU time",
+        made=made(kept, "one thread", f"load {kept['load']:.0f}", f"{spent:.0f} min of CPU time"),
     )  # fmt: skip
-    return broken(text) + "\n"
-
-
-def main() -> None:
-    """Fit, draw, write."""
-    rows = read_rows(HERE / "expansion_accuracy.csv", KINDS)
-    content = page(rows, json.loads((HERE / "expansion_accuracy.json").read_text()))
-    (PAGES / "expansion_accuracy.md").write_text(content, encoding="utf-8")
 
 
 if __name__ == "__main__":

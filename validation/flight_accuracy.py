@@ -107,7 +107,6 @@ def ends(body: Body, start: tuple[np.ndarray, np.ndarray], **choices: Any) -> tu
 
 
 def main() -> None:
-    """Compare, print and write."""
     options = command_line(__doc__, oracle=200, own=2000).parse_args()
     alone, rows = didymos(partner=False), []
     start = cone(alone, options.oracle, seed=3)

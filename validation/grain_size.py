@@ -2,17 +2,10 @@
 
     python validation/grain_size.py [--grounds NAME ...] [--work FOLDER] [--out validation]
 
-Lander, site and input distributions are those of scenarios/first_bounce.toml, its impact too, but for "flat" ways. A
-block has two soils (materials of grains and lander), two impact points, on two beds, and two attitudes: eight landings,
-all combinations, and a twin of the first, a tenth of a millimetre aside. Draws of a block are the same on all grounds.
-Pairs of landings of a block that differ in one of the three give its part.
-
-Grounds repeat after a width. Width and depth are at least those of smallest_bed.py, and the width leaves two grains
-more; "larger" ones are half as wide and deep again. Hulls are those of the package; spheres have rolling resistance,
-which stands for their lack of corners.
-
-Writes grain_size_beds.csv, a line for each bed, and grain_size.csv, a line for each landing, as they end. What stands
-there already is not done again: delete both to start anew. Beds are kept in the work folder.
+docs/validation/grain_size.md has the set-up. Samples of a block are the same on all grounds; width and depth of these
+are at least those of smallest_bed.py. Writes grain_size_beds.csv, a line for each bed, and grain_size.csv, a line for
+each landing, as they end. What stands there already is not done again: delete both to start anew. Beds are kept in the
+work folder.
 """
 
 import math
@@ -84,7 +77,6 @@ Soil = tuple[Material, Lander]
 
 
 def soil(values: dict[str, float], grain: str) -> Soil:
-    """Material of the grains, and the lander, from values of the inputs."""
     rock = Material(
         density=DENSITY, rolling_friction=ROLLING if grain == "sphere" else 0.0,
         **{name.removeprefix("grain."): value for name, value in values.items() if name.startswith("grain.")},
@@ -136,7 +128,6 @@ class Block(NamedTuple):
 
 
 def block(number: int) -> Block:
-    """What is drawn for a block."""
     generator = np.random.default_rng([41, number])
     soils = [{name: float(law.ppf(generator.random(1))[0]) for name, law in INPUTS.items()} for _ in range(2)]
     points = [tuple(generator.uniform(-0.5, 0.5, size=2).tolist()) for _ in range(2)]
@@ -206,7 +197,6 @@ def landings_of(ground: Ground) -> Iterator[tuple[str, int, tuple[int, int, int,
 
 
 def main() -> None:
-    """Make the landings that are missing."""
     here, work = Path(__file__).parent, Path(tempfile.gettempdir()) / "lithobrake_grain_size"
     given = command_line(__doc__, grounds=tuple(GROUNDS), work=work, out=here).parse_args()
     given.work.mkdir(parents=True, exist_ok=True)

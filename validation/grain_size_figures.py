@@ -6,31 +6,25 @@ Reads grain_size.csv, grain_size_beds.csv and grain_size.json beside it; writes 
 docs/validation.
 """
 
-import json
 import sys
 from collections import Counter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from grain_size import DURATION, EDGES, FLIGHTS, GROUNDS, KINDS, MASS, ROLLING, WAYS
-from grain_size_words import HEAD, LIMITS
 from numpy.typing import NDArray
-from page_text import broken
 
 from lithobrake.analysis import LEVEL
-from lithobrake.report.figures.style import QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import QUIET, TEST, TRAINING
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import PAGES, read_rows
+from drawing import figure
+from harness import PAGES, Row, read_document, read_rows
+from page import made, table, write_page
 
 HERE = Path(__file__).parent
 Floats = NDArray[np.float64]
-Row = dict[str, Any]
 OUTPUTS = {
     "speed_out": "rebound speed", "elevation_out": "rebound elevation", "spin_out": "rebound spin rate",
     "returns": "return fraction",
@@ -119,11 +113,6 @@ def parts(rows: list[Row], name: str) -> Parts:
     return Parts(*(estimate(one).share for one in shares), estimate(soil / point), chaos, count)
 
 
-def read() -> tuple[list[Row], list[Row]]:
-    """Landings and beds."""
-    return read_rows(HERE / "grain_size.csv", KINDS), read_rows(HERE / "grain_size_beds.csv", KINDS)
-
-
 def groups(rows: list[Row]) -> dict[tuple[str, str], list[Row]]:
     """Landings of each ground and way, whole blocks alone, by way, kind of grain and ratio."""
     found: dict[tuple[str, str], list[Row]] = {}
@@ -148,8 +137,8 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
     """Total effects of soil and impact point by ratio: rows of grains, columns of outputs, steep impacts."""
     kinds = {"hull": "hulls", "sphere": "spheres"}
     ratios = sorted({GROUNDS[name].ratio for name in of_steep(found)})
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(2, len(OUTPUTS), figsize=(9.6, 5.3), layout="constrained", sharey=True, sharex=True)
+    path, count = PAGES / "grain_size.png", len(OUTPUTS)
+    with figure(path, 2, count, (9.6, 5.3), dpi=150, sharey=True, sharex=True) as (drawn, axes):
         for row, (grain, word) in zip(axes, kinds.items(), strict=True):
             for axis, (name, title) in zip(row, OUTPUTS.items(), strict=True):
                 for part, (label, colour, marker, shift) in PARTS.items():
@@ -167,14 +156,11 @@ def draw(found: dict[tuple[str, str], dict[str, Parts]]) -> None:
                 if grain == "hull":
                     axis.set_title(title)
             row[0].set_ylabel(f"{word}\ntotal effect / variance")
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
-        figure.supxlabel("longest edge of the lander over diameter of the grains", fontsize=9)
-        figure.savefig(PAGES / "grain_size.png", dpi=150)
-        plt.close(figure)
+        drawn.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+        drawn.supxlabel("longest edge of the lander over diameter of the grains", fontsize=9)
 
 
 def words(name: str) -> str:
-    """Kind of grain and ratio."""
     return f"{GROUNDS[name].grain}s{', larger bed' if GROUNDS[name].wider > 1.0 else ''} | {GROUNDS[name].ratio:g}"
 
 
@@ -184,13 +170,12 @@ def part_tables(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
     heads += ["soil / impact point", "chaos", "blocks"]
     tables = []
     for key, title in OUTPUTS.items():
-        lines = [f"### {title.capitalize()}\n", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        rows = []
         for (name, way), of in found.items():
             p = of[key]
             effects = [with_interval(one, p.blocks) for one in (p.soil, p.main, p.point, p.attitude, p.ratio)]
-            cells = [words(name), f"{WAYS[way][1]:g}", *effects, f"{p.chaos:.3f}", str(p.blocks)]
-            lines.append(f"| {' | '.join(cells)} |")
-        tables.append("\n".join(lines))
+            rows.append([words(name), f"{WAYS[way][1]:g}", *effects, f"{p.chaos:.3f}", str(p.blocks)])
+        tables.append(f"### {title.capitalize()}\n\n{table(heads, rows)}")
     return "\n\n".join(tables)
 
 
@@ -199,12 +184,11 @@ def with_interval(one: Estimate, blocks: int) -> str:
     return str(one) if blocks >= FEW else f"{one.value:.2f}"
 
 
-def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> list[str]:
-    """A line for each ground and way: beds and landings."""
+def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> str:
     heads = ["grains", "ratio", "impact angle [deg]", "grains in a bed", "width [m]", "depth [cm]", "beds", "landings"]
     heads += ["captured", "time limit", "rebound speed [cm/s]", "penetration, 90 % quantile [cm]"]
     heads += ["CPU time of a bed [s]", "CPU time of a landing [s]"]
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    lines = []
     for (name, way), of in rows.items():
         own, ends = [bed for bed in beds if bed["ground"] == name], Counter(row["status"] for row in of)
         speed = 100.0 * np.array([row["speed_out"] for row in of])
@@ -214,8 +198,8 @@ def landing_table(rows: dict[tuple[str, str], list[Row]], beds: list[Row]) -> li
         cells += [str(ends["captured"]), str(ends["time_limit"])]
         cells += [f"{np.nanmean(speed):.1f} ± {np.nanstd(speed, ddof=1):.1f}", f"{deep:.1f}"]
         cells += [f"{np.mean([bed['cpu_s'] for bed in own]):.1f}", f"{np.mean([row['cpu_s'] for row in of]):.2f}"]
-        lines.append(f"| {' | '.join(cells)} |")
-    return lines
+        lines.append(cells)
+    return table(heads, lines)
 
 
 def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
@@ -240,35 +224,23 @@ def verdict(found: dict[tuple[str, str], dict[str, Parts]]) -> str:
     return "\n".join([*sentences, f"- **Attitude**: {effect}"])
 
 
-def page(rows: list[Row], beds: list[Row], origin: Row) -> str:
-    """The text of the page."""
-    of = groups(rows)
+def main() -> None:
+    rows, beds = (read_rows(HERE / name, KINDS) for name in ("grain_size.csv", "grain_size_beds.csv"))
+    kept, of = read_document(HERE / "grain_size.json"), groups(rows)
     found = {key: {name: parts(own, name) for name in OUTPUTS} for key, own in of.items()}
     draw(found)
     names = {name for name, _ in found}
     absent = [f'"{name}"' for name in GROUNDS if name not in names]
-    steep, flat = WAYS["steep"], WAYS["flat"]
-    texts = {
-        "edges": " x ".join(f"{edge:g}" for edge in EDGES), "mass": MASS, "edge": max(EDGES), "level": 100 * LEVEL,
-        "resamples": RESAMPLES, "rolling": ROLLING, "speed": steep[0], "steep": steep[1], "flat": flat[1],
-        "verdict": verdict(found), "tables": part_tables(found), "few": FEW,
-    }  # fmt: skip
-    missing = f"Not run: {', '.join(absent)}." if absent else "All beds of the script were run."
-    made = f"`{origin['command']}`, {origin['date']}, {origin['machine']}, one thread, load {origin['load']:.0f}"
     spent = sum(row["cpu_s"] for row in (*rows, *beds)) / 60.0
     counts = Counter(bed["ground"] for bed in beds if bed["ground"] in names).values()
-    limits = LIMITS.format(
-        flights=FLIGHTS, hours=DURATION / 3600.0, missing=missing, fewest=min(counts), most=max(counts)
+    write_page(
+        "grain_size", edges=" x ".join(f"{edge:g}" for edge in EDGES), mass=MASS, edge=max(EDGES), level=100 * LEVEL,
+        resamples=RESAMPLES, rolling=ROLLING, speed=WAYS["steep"][0], steep=WAYS["steep"][1], flat=WAYS["flat"][1],
+        verdict=verdict(found), tables=part_tables(found), few=FEW, landings=landing_table(of, beds), flights=FLIGHTS,
+        hours=DURATION / 3600.0, fewest=min(counts), most=max(counts),
+        missing=f"Not run: {', '.join(absent)}." if absent else "All beds of the script were run.",
+        made=made(kept, "one thread", f"load {kept['load']:.0f}", f"{spent:.0f} min of CPU time"),
     )  # fmt: skip
-    lines = [HEAD.format(**texts), *landing_table(of, beds), limits]
-    return broken("\n".join([*lines, f"The landings: {made}, {spent:.0f} min of CPU time."])) + "\n"
-
-
-def main() -> None:
-    """Draw and write."""
-    rows, beds = read()
-    content = page(rows, beds, json.loads((HERE / "grain_size.json").read_text()))
-    (PAGES / "grain_size.md").write_text(content, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -6,10 +6,7 @@ FOLDER holds bennu_2692.obj and itokawa_5430.obj. Each case changes some keys of
 journeys, in a folder below --work, where a case that was stopped goes on. Writes journey_breadth.json, a row a case.
 """
 
-import argparse
-import json
 import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +17,7 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, Shape
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, origin, write_document
+from harness import SCENARIOS, command_line, origin, read_document, study_tables, write_document
 
 JOURNEYS, BEDS = 8, 4
 HOUR = 3600.0
@@ -66,16 +63,6 @@ def cases(shapes: Path) -> dict[str, dict[str, Any]]:
     }  # fmt: skip
 
 
-def tables(changes: dict[str, dict[str, Any]]) -> dict[str, Any]:
-    """The quick study with other keys; one that is None is left out."""
-    study: dict[str, Any] = tomllib.loads((SCENARIOS / "quick.toml").read_text(encoding="utf-8"))
-    few = {"journey": {"count": JOURNEYS}, "bed": {"bed_count": BEDS}}
-    for part in (few, changes):
-        for name, keys in part.items():
-            study[name] = {key: value for key, value in (study[name] | keys).items() if value is not None}
-    return study
-
-
 def ended(study: StudyResults) -> dict[str, Any]:
     """How the journeys of a case ended, and what they took."""
     results, journeys = study.summary["results"], study.journeys
@@ -90,20 +77,19 @@ def ended(study: StudyResults) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Follow the journeys of all cases, and write how they ended."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shapes", type=Path, required=True)
-    parser.add_argument("--work", type=Path, default=Path("breadth"))
+    parser = command_line(__doc__, shapes=Path, work=Path("breadth"))
     parser.add_argument("--cases", nargs="*")
     given = parser.parse_args()
     path = Path(__file__).with_suffix(".json")
+    few = {"journey": {"count": JOURNEYS}, "bed": {"bed_count": BEDS}}
     # Cases that are not asked for stay as they were found.
-    found = json.loads(path.read_text(encoding="utf-8"))["cases"] if given.cases and path.exists() else {}
+    found = read_document(path, {"cases": {}})["cases"] if given.cases else {}
     for name, changes in cases(given.shapes.absolute()).items():
         if given.cases and name not in given.cases:
             continue
         folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
-        found[name] = ended(lithobrake.run(tables(changes), folder, report=False))
+        tables = study_tables(SCENARIOS / "quick.toml", few, changes)
+        found[name] = ended(lithobrake.run(tables, folder, report=False))
         print(name, found[name], flush=True)
     document = {**origin("validation/journey_breadth.py --shapes FOLDER"), "journeys": JOURNEYS, "cases": found}
     write_document(path, document)

@@ -29,6 +29,7 @@ from lithobrake.analysis import quantile_estimate, share_estimate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import Row, command_line, read_rows, rounded, write_made, write_rows
+from page import table
 
 TABLE = Path(__file__).with_suffix(".csv")
 COLUMNS = (
@@ -134,7 +135,6 @@ def estimates(found: dict[str, np.ndarray]) -> Iterator[tuple[str, float, float 
 
 
 def setting(truth: Truth, journey_count: int, bed_count: int, study_count: int) -> Iterator[Row]:
-    """A row for each quantity."""
     held: dict[str, list[tuple[float, ...]]] = {}
     for seed in range(study_count):
         for name, value, lower, upper in estimates(truth.study(journey_count, bed_count, seed)):
@@ -153,17 +153,12 @@ def setting(truth: Truth, journey_count: int, bed_count: int, study_count: int) 
 
 
 def kept_rows() -> list[Row]:
-    """The table that was made."""
     return read_rows(TABLE, {"quantity": str, "journeys": int, "beds": int})
 
 
 def page_table(rows: list[Row]) -> str:
     """How often each interval held, as a table in Markdown."""
-    settings = list(product(DESIGNS, RHOS))
-    lines = [
-        "| journeys, beds; rho | truth | " + " | ".join(f"{n}, {b}; {rho:g}" for (n, b), rho in settings) + " |",
-        "|---|---|" + "---|" * len(settings),
-    ]
+    settings, lines = list(product(DESIGNS, RHOS)), []
     for duration, (name, words) in product(DURATIONS, WORDS.items()):
         found = [row for row in rows if row["duration_s"] == duration and row["quantity"] == name]
         held = {((row["journeys"], row["beds"]), row["rho"]): row["held"] for row in found}
@@ -171,12 +166,12 @@ def page_table(rows: list[Row]) -> str:
         span = " to ".join(dict.fromkeys(f"{one:.2g}" if one < 1.0 else f"{one:.0f}" for one in (true[0], true[-1])))
         # Of an event that hardly a study meets, the interval of none decides; escapes do not depend on the time.
         if true[-1] > 0.005 and (name != "escaped" or duration == DURATIONS[0]):
-            lines.append(f"| {words} | {span} | " + " | ".join(f"{held[one]:.2f}" for one in settings) + " |")
-    return "\n".join(lines) + "\n"
+            lines.append((words, span, *(f"{held[one]:.2f}" for one in settings)))
+    heads = ("journeys, beds; rho", "truth", *(f"{n}, {b}; {rho:g}" for (n, b), rho in settings))
+    return table(heads, lines) + "\n"
 
 
 def main() -> None:
-    """Make the table and write it, or print what the page has of it."""
     options = command_line(__doc__, studies=1000, page=False).parse_args()
     if options.page:
         print(page_table(kept_rows()))

@@ -12,7 +12,6 @@ the pairs that agree: those where the interval of the difference holds 0.
 import math
 import sys
 import tempfile
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -24,7 +23,8 @@ from lithobrake.analysis import LEVEL, share_estimate
 from lithobrake.results import StudyResults
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, write_document
+from harness import SCENARIOS, Row, add_row, between, command_line, origin, read_rows, study_tables, write_document
+from page import table
 
 TABLE = Path(__file__).with_suffix(".csv")
 JOURNEYS, BEDS, FIRST_SEED = 32, 8, 201
@@ -37,14 +37,9 @@ WORDS = {
 PARTS = ("value", "lower", "upper")
 
 
-def uniform(lower: float, upper: float) -> Row:
-    """A quantity between two values."""
-    return {"distribution": "uniform", "lower": lower, "upper": upper}
-
-
 def arrival(speed: tuple[float, float], incidence: tuple[float, float], **more: Any) -> dict[str, Row]:
     """Speeds [m/s] and incidences [deg] of a delivery."""
-    return {"delivery": {"speed": uniform(*speed), "incidence_deg": uniform(*incidence), **more}}
+    return {"delivery": {"speed": between(*speed), "incidence_deg": between(*incidence), **more}}
 
 
 # A softer soil takes longer steps.
@@ -56,26 +51,17 @@ SETTINGS: dict[str, dict[str, Row]] = {
     "6 to 14 cm/s, 50 to 85 deg": {**arrival((0.06, 0.14), (50.0, 85.0)), "grain": SOFT},
     "ball": {**FAST, "grain": SOFT, "lander": {"shape": "sphere", "edges": None, "diameter": 0.12}},
     "flat box, tumbling": {
-        **arrival((0.08, 0.2), (0.0, 70.0), spin_x=uniform(-0.2, 0.2)), "grain": SOFT,
+        **arrival((0.08, 0.2), (0.0, 70.0), spin_x=between(-0.2, 0.2)), "grain": SOFT,
         "lander": {"edges": [0.16, 0.16, 0.08], "mass": 3.0},
     },
-    "slippery soil": {**FAST, "grain": SOFT | {"friction": uniform(0.2, 0.4)}},
-    "elastic soil": {**FAST, "grain": SOFT | {"restitution": uniform(0.8, 0.95)}},
+    "slippery soil": {**FAST, "grain": SOFT | {"friction": between(0.2, 0.4)}},
+    "elastic soil": {**FAST, "grain": SOFT | {"restitution": between(0.8, 0.95)}},
     "equator, leading side": {
         **arrival((0.08, 0.2), (0.0, 70.0), latitude_deg=0.0, longitude_deg=90.0), "grain": SOFT,
     },
     "75 deg south": {**arrival((0.08, 0.2), (0.0, 70.0), latitude_deg=-75.0, longitude_deg=20.0), "grain": SOFT},
     "the quick study": {},
 }  # fmt: skip
-
-
-def tables(changes: dict[str, Row], seed: int) -> Row:
-    """The quick study with other keys; one that is None is left out."""
-    study: Row = tomllib.loads((SCENARIOS / "quick.toml").read_text(encoding="utf-8")) | {"seed": seed}
-    for part in ({"journey": {"count": JOURNEYS}, "bed": BED}, changes):
-        for name, keys in part.items():
-            study[name] = {key: value for key, value in (study[name] | keys).items() if value is not None}
-    return study
 
 
 def largest_side(edges: list[float] | None) -> str | None:
@@ -109,14 +95,15 @@ def make(work: Path, setting_count: int) -> None:
         for seed in (FIRST_SEED + 2 * number, FIRST_SEED + 2 * number + 1):
             if (name, seed) in done:
                 continue
-            results = lithobrake.run(tables(changes, seed), work / str(seed), workers=1, report=False)
+            few = {"journey": {"count": JOURNEYS}, "bed": BED}
+            tables = study_tables(SCENARIOS / "quick.toml", few, changes, seed=seed)
+            results = lithobrake.run(tables, work / str(seed), workers=1, report=False)
             row = {"setting": name, "seed": seed, "journeys": JOURNEYS, "beds": BEDS, **found(results)}
             add_row(TABLE, row, digits=5)
             print(name, seed, row["at_rest value"], flush=True)
 
 
 def kept_rows() -> list[Row]:
-    """The table as it stands."""
     return read_rows(TABLE, {"setting": str, "seed": int, "journeys": int, "beds": int})
 
 
@@ -162,17 +149,17 @@ def cell(pair: tuple[Row, Row], name: str) -> str:
 
 def page_table() -> str:
     """All pairs, as a table in Markdown."""
-    heads = ("at rest [%]", "time to rest [min]", "contacts", "distance [m]", "on one of the largest sides [%]")
-    lines = [f"| seeds | setting | {' | '.join(heads)} |", "|---" * (len(heads) + 2) + "|"]
-    for pair in pairs():
-        seeds = ", ".join(str(row["seed"]) for row in pair)
-        lines.append(f"| {seeds} | {pair[0]['setting']} | {' | '.join(cell(pair, name) for name in WORDS)} |")
+    heads = ("seeds", "setting", "at rest [%]", "time to rest [min]", "contacts", "distance [m]",
+             "on one of the largest sides [%]")  # fmt: skip
+    lines = [
+        (", ".join(str(row["seed"]) for row in pair), pair[0]["setting"], *(cell(pair, name) for name in WORDS))
+        for pair in pairs()
+    ]
     totals = " | ".join(f"{one['agree']} of {one['pairs']}" for one in counted().values())
-    return "\n".join([*lines, f"| | pairs that agree | {totals} |"]) + "\n"
+    return "\n".join([table(heads, lines), f"| | pairs that agree | {totals} |"]) + "\n"
 
 
 def main() -> None:
-    """Make what is missing and count, or print what the page has of it."""
     work = Path(tempfile.gettempdir()) / "lithobrake_journey_seed_pairs"
     options = command_line(__doc__, work=work, settings=len(SETTINGS), page=False).parse_args()
     if not options.page:

@@ -7,7 +7,6 @@ writes the ledger as CSV and a contact sheet of the landing that the study shows
 machine and in which time it was made (from the log of the run, as bash's `time` ends it).
 """
 
-import json
 import re
 import shutil
 import sys
@@ -20,7 +19,7 @@ import lithobrake
 from lithobrake.export import ExportOptions, export_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, command_line, origin, write_document
+from harness import ROOT, command_line, origin, read_document, write_document
 
 OUTPUTS = ("speed_out", "elevation_out", "spin_out")
 KEPT = (
@@ -53,7 +52,6 @@ def rank_correlations(results: lithobrake.StudyResults) -> dict[str, dict[str, f
 
 
 def keep(study: Path, out: Path, motion: bool) -> None:
-    """Copy what is kept of a study, and export one landing."""
     out.mkdir(parents=True, exist_ok=True)
     for name in KEPT:
         if (study / name).exists():
@@ -75,7 +73,6 @@ def keep(study: Path, out: Path, motion: bool) -> None:
 
 
 def main() -> None:
-    """Keep one study."""
     parser = command_line(__doc__, "study", command=str, log=Path, out=ROOT / "showcase")
     parser.add_argument("--motion", action="store_true", help="the landing as VTKHDF too, some megabytes")
     parser.add_argument(
@@ -83,7 +80,7 @@ def main() -> None:
     )
     given = parser.parse_args()
     out = given.out / given.study.name
-    earlier = json.loads((out / "origin.json").read_text()) if given.kept_landings else {}
+    earlier = read_document(out / "origin.json") if given.kept_landings else {}
     keep(given.study, out, given.motion)
     log = given.log.read_text()
     made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}

@@ -69,7 +69,6 @@ def fill(ledger: Ledger, study: Study, rows: list[Numbers], landings: list[tuple
 
 
 def main() -> None:
-    """Fill the ledger."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("kept", type=Path)
     parser.add_argument("out", type=Path)

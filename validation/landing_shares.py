@@ -30,7 +30,6 @@ BEFORE = ("95-97 %", "86 %", "73 %", "63 %", "54 %", "41 %")
 
 
 def shares(body: Body, count: int) -> list[dict[str, Any]]:
-    """What becomes of the starts in each band of speed."""
     random = np.random.default_rng(5)
     place, axes = body.local_frame(0.0, 0.0, 0.0)
     rows = []
@@ -49,7 +48,6 @@ def shares(body: Body, count: int) -> list[dict[str, Any]]:
 
 
 def cases(radar: Path | None) -> dict[str, Body]:
-    """The bodies that are compared."""
     both, alone = didymos(), didymos(partner=False)
     found = {"built-in, 5.32e11 kg, alone": alone, "built-in, 5.32e11 kg, with Dimorphos": both}
     if radar is not None:
@@ -61,7 +59,6 @@ def cases(radar: Path | None) -> dict[str, Body]:
 
 
 def main() -> None:
-    """Fly, print and write."""
     parser = command_line(__doc__, flights=4000)
     parser.add_argument("--radar", type=Path)
     options = parser.parse_args()

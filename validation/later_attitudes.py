@@ -7,7 +7,6 @@ later_attitudes.json how upright the box's z axis is at all touchdowns but the f
 the normal is uniform from 0 to 1 where attitudes are uniform over rotations (Kolmogorov-Smirnov).
 """
 
-import argparse
 import sys
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import origin, write_document
+from harness import command_line, origin, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
 
@@ -33,10 +32,7 @@ def upright(folder: Path) -> np.ndarray:
 
 
 def main() -> None:
-    """Write the test."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("studies", type=Path, nargs="+")
-    studies = parser.parse_args().studies
+    studies = command_line(__doc__, "studies...").parse_args().studies
     values = np.concatenate([upright(folder) for folder in studies])
     found = {
         "studies": [folder.name for folder in studies],

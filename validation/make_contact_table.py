@@ -14,36 +14,11 @@ from pathlib import Path
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import PAGES, ROOT, origin
-from page_text import broken, table
+from harness import ROOT, origin
+from page import table, write_page
 
-PAGE = PAGES / "contact.md"
 ROWS = Path(__file__).with_name("contact_rows.csv")
 ALL = Path(__file__).with_name("contact_tests.csv")
-HEAD = """\
-# What the contact physics reproduces
-
-Does the contact law reproduce known solutions, and do systems of many bodies conserve momentum and energy?
-
-**{passed} of {count} tests of the physics pass**, and {met} of the {rows} known results below are reproduced within the
-tolerance. The expected values and tolerances were fixed before the code was written. T1 to T7 are the tests of Chung
-and Ooi (2011), Granular Matter 13, 643-656; the other values are derived in the tests.
-
-"Measured" lists the computed value of every comparison in the tests of a row. Semicolons separate sets of parameters.
-For a conserved quantity the value is its change. Some comparisons only ensure that the test does what is intended (for
-example that a contact occurred); their numbers are listed too. "Holds" is the result of a comparison of arrays.
-"""
-TAIL = """
-## Limits
-
-These tests cover single contacts and small systems. [Bulk behaviour](bulk.md) covers compression, angle of repose,
-Froude scaling and packings. The distances of a million pairs of hulls are in `benchmarks/results/fuzz_distance.txt`.
-
-## Reproduce this page
-
-`{command}` runs the tests of `tests/physics` and writes this page and `validation/contact_tests.csv`, which has every
-assertion of every test: {date}, {machine}, Python {python}.
-"""
 
 
 class Notes:
@@ -77,7 +52,6 @@ def short(text: str) -> str:
 
 
 def name_of(test: str) -> str:
-    """Return the name of a test function from the identity of one of its runs."""
     return test.split("::")[1].split("[")[0].removeprefix("test_")
 
 
@@ -123,25 +97,19 @@ def write_tests(notes: Notes) -> None:
             writer.writerow([Path(test.split("::")[0]).name, name, short(notes.about[test]), compared, outcome])
 
 
-def page(notes: Notes) -> str:
-    """Return the text of the page."""
-    made, known = origin("validation/make_contact_table.py"), list(facts(notes))
-    head = HEAD.format(
-        passed=sum(outcome == "passed" for outcome in notes.outcome.values()), count=len(notes.outcome),
-        met=sum(cells[-1] == "yes" for _, cells in known), rows=len(known),
-    )  # fmt: skip
-    parts = [head]
+def write(notes: Notes) -> None:
+    known, parts = list(facts(notes)), []
     for part in dict.fromkeys(part for part, _ in known):
         heads = ["what", "expected", "tolerance", "measured", "reproduced"]
         parts += [f"## {part}", table(heads, [cells for one, cells in known if one == part])]
-    tail = TAIL.format(
-        command=made["command"], date=made["date"], machine=made["machine"], python=platform.python_version()
-    )
-    return broken("\n\n".join([*parts, tail])) + "\n"
+    write_page(
+        "contact", passed=sum(outcome == "passed" for outcome in notes.outcome.values()), count=len(notes.outcome),
+        met=sum(cells[-1] == "yes" for _, cells in known), rows=len(known), known="\n\n".join(parts),
+        python=platform.python_version(), **origin("validation/make_contact_table.py"),
+    )  # fmt: skip
 
 
 def main() -> None:
-    """Run the tests and write the page."""
     notes = Notes()
     with tempfile.TemporaryDirectory() as folder:
         # Compiled tests without the hook may lie about; nothing is read from them, and none are left.
@@ -151,7 +119,7 @@ def main() -> None:
              str(ROOT / "tests" / "physics")],
             plugins=[notes],
         )  # fmt: skip
-    PAGE.write_text(page(notes), encoding="utf-8")
+    write(notes)
     write_tests(notes)
     sys.exit(code)
 

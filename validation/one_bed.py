@@ -8,7 +8,6 @@ runs, which split soil, place and chaos. one_bed.json gets an entry a study as i
 run again: delete it to start anew. validation/one_bed_figures.py draws them.
 """
 
-import json
 import sys
 import tempfile
 import time
@@ -19,7 +18,7 @@ from typing import Any
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, command_line, origin, write_document
+from harness import SCENARIOS, command_line, origin, read_document, write_document
 
 FIRST_SEED = 101
 # Enough to see how far apart they are.
@@ -74,13 +73,12 @@ def told(results: lithobrake.StudyResults) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Run what is missing."""
     work = Path(tempfile.gettempdir()) / "lithobrake_one_bed"
     parser = command_line(__doc__, seeds=20, work=work, out=Path(__file__).parent)
     parser.add_argument("--workers", type=int, default=None)
     given = parser.parse_args()
     path = given.out / "one_bed.json"
-    entries = json.loads(path.read_text())["studies"] if path.exists() else []
+    entries = read_document(path, {"studies": []})["studies"]
     done = {(e["kind"], e["diameter_m"], e["seed"]) for e in entries}
     for kind, diameter, tables in studies(given.seeds):
         key = (kind, diameter, tables["seed"])

@@ -5,23 +5,22 @@
 Reads one_bed.json beside it; writes one_bed_seeds.png, one_bed_grains.png and one_bed.md to docs/validation.
 """
 
-import json
 import math
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 from one_bed import ELEVATION, SPEED
-from page_text import broken
 
-from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import INK, INPUT_COLOURS, QUIET, TEST, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from drawing import figure
+from harness import PAGES, read_document
+from page import made, table, write_page, yes
 
 HERE = Path(__file__).parent
-PAGES = HERE.parent / "docs" / "validation"
 Entry = dict[str, Any]
 PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "everything else", "chaos": "chaos"}
 INPUTS = {
@@ -33,57 +32,9 @@ OUTPUTS = {
     "returns": "return fraction",
 }  # fmt: skip
 LANDER_EDGE = 0.1  # m, the short edges
-HEAD = """\
-# One bed and many: tables
-
-Do two studies that differ in their seed alone agree?
-
-{answer}
-
-[One bed is not enough](../one_bed_is_not_enough.md) explains the studies and their result; this page has the tables.
-Brackets contain 90 % intervals.
-
-## Pairs of seeds
-
-![Return fraction, seed by seed](one_bed_seeds.png)
-
-Two studies agree if the interval of their difference contains 0. The paper method gives no interval over beds; the
-sampling error of its flights takes its place.
-
-{seeds}
-
-## The paper method on one bed each
-
-The return fraction has the 90 % sampling error of its 5000 flights. The other "±" are standard deviations over the
-samples. "Dominant input" is the one with the largest first-order Sobol index in the variance that the expansion
-explains. Q2 is on twelve fresh runs over all inputs; below 0 the expansion predicts worse than the mean.
-
-{places}
-
-## Parts of the variance by grain size
-
-![Parts of the variance, for three grain sizes](one_bed_grains.png)
-
-Each entry is a fraction of the variance of the output, with its 90 % interval. Estimates below 0 or above 1 are shown
-as 0 or 1. "Everything else" is impact point, attitude and the effects of the soil beyond terms of first and second
-degree. "Total effect of the soil" includes interactions with the impact point and the attitude. It comes from paired
-landings at one impact point on two soils. All beds have the same volume of grains and are 0.7 m wide.
-
-{grains}
-
-## Limits
-
-The tables hold over the soil ranges of `scenarios/first_bounce.toml` and `scenarios/one_place.toml`, at one speed and
-one site. [Soil against impact point](grain_size.md) covers finer grains.
-
-## Reproduce this page
-
-`python validation/one_bed_figures.py` writes the page and its figures. {made}
-"""
 
 
 def of_kind(studies: list[Entry], kind: str) -> list[Entry]:
-    """Studies of a kind, by seed."""
     return sorted((one for one in studies if one["kind"] == kind), key=lambda one: (one["seed"], one["diameter_m"]))
 
 
@@ -106,8 +57,7 @@ def holds(first: Entry, second: Entry) -> bool:
 
 def draw_seeds(studies: list[Entry]) -> None:
     """Both answers, seed by seed."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.0), constrained_layout=True, sharey=True)
+    with figure(PAGES / "one_bed_seeds.png", 1, 2, (9.0, 4.0), dpi=150, sharey=True) as (_, axes):
         for axis, kind, colour, title in (
             (axes[0], "one place", TEST, "Paper method, one bed each"),
             (axes[1], "draws", TRAINING, "Drawn method"),
@@ -130,7 +80,6 @@ def draw_seeds(studies: list[Entry]) -> None:
         axes[1].text(
             0.02, 0.02, "bars: 90 %, over beds, impact points, attitudes", transform=axes[1].transAxes, color=INK
         )
-        figure.savefig(PAGES / "one_bed_seeds.png", dpi=150)
 
 
 def within(share: float) -> float:
@@ -139,12 +88,10 @@ def within(share: float) -> float:
 
 
 def draw_grains(studies: list[Entry]) -> None:
-    """Parts of the variance by grain size."""
     found = sorted(of_kind(studies, "grain sizes"), key=lambda one: -one["diameter_m"])
     if not found:
         return
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, len(OUTPUTS), figsize=(9.2, 3.6), constrained_layout=True, sharey=True)
+    with figure(PAGES / "one_bed_grains.png", 1, len(OUTPUTS), (9.2, 3.6), dpi=150, sharey=True) as (drawn, axes):
         for axis, (output, symbol) in zip(axes, OUTPUTS.items(), strict=True):
             for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
                 parts = [(one["variance_shares"][output] or {}).get(part) for part in PARTS]
@@ -162,8 +109,7 @@ def draw_grains(studies: list[Entry]) -> None:
         for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
             label = f"grains of {100 * one['diameter_m']:g} cm"
             axes[0].plot([], [], "os^"[number], color=colour, ms=4, label=label)
-        figure.legend(loc="outside lower center", ncols=3)
-        figure.savefig(PAGES / "one_bed_grains.png", dpi=150)
+        drawn.legend(loc="outside lower center", ncols=3)
 
 
 def _interval(one: Entry) -> str:
@@ -173,63 +119,45 @@ def _interval(one: Entry) -> str:
     return f"{100 * returns['share']:.1f} ({100 * returns['lower']:.1f} to {100 * returns['upper']:.1f})"
 
 
-def seed_table(studies: list[Entry]) -> list[str]:
+def seed_table(studies: list[Entry]) -> str:
     """A line a pair of seeds."""
-    lines = [
-        "| seeds | drawn method: return fraction [%] | agree | paper method: return fraction [%] | agree |",
-        "|---|---|---|---|---|",
-    ]
-    places = {one["seed"]: one for one in of_kind(studies, "one place")}
+    lines, places = [], {one["seed"]: one for one in of_kind(studies, "one place")}
     for first, second in pairs(of_kind(studies, "draws")):
-        seeds = first["seed"], second["seed"]
-        cells = [f"{seeds[0]}, {seeds[1]}", f"{_interval(first)}; {_interval(second)}", _yes(holds(first, second))]
+        seeds, known = (first["seed"], second["seed"]), [(first, second)]
         if set(seeds) <= places.keys():
-            one, other = (places[seed] for seed in seeds)
-            cells += [f"{_interval(one)}; {_interval(other)}", _yes(holds(one, other))]
-        else:
-            cells += ["", ""]
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines
+            known.append((places[seeds[0]], places[seeds[1]]))
+        cells = [cell for two in known for cell in (f"{_interval(two[0])}; {_interval(two[1])}", yes(holds(*two)))]
+        lines.append([f"{seeds[0]}, {seeds[1]}", *cells, *[""] * (4 - len(cells))])
+    heads = (f"{method} method: return fraction [%]" for method in ("drawn", "paper"))
+    return table(["seeds", *(one for head in heads for one in (head, "agree"))], lines)
 
 
-def _yes(true: bool) -> str:
-    return "yes" if true else "no"
-
-
-def place_table(studies: list[Entry]) -> list[str]:
-    """Return a line a study of the paper method."""
-    lines = [
-        "| seed | return fraction [%] | rebound speed [cm/s] | rebound elevation [deg] | dominant input for the speed "
-        "| its Sobol index | Q2 of the speed |",
-        "|---" * 7 + "|",
-    ]
+def place_table(studies: list[Entry]) -> str:
+    """A line a study of the paper method."""
+    lines = []
     for one in of_kind(studies, "one place"):
         name, share = max(one["sobol_first"].items(), key=lambda item: item[1])
         speed = f"{100 * one['mean'][SPEED]:.1f} ± {100 * one['std'][SPEED]:.1f}"
         steep = f"{math.degrees(one['mean'][ELEVATION]):.0f} ± {math.degrees(one['std'][ELEVATION]):.0f}"
-        lines.append(
-            f"| {one['seed']} | {100 * one['returns']['share']:.1f} ± {100 * one['returns']['flight_sampling']:.1f} | "
-            f"{speed} | {steep} | {INPUTS[name]} | {share:.2f} | {one['q2']:.2f} |"
-        )
-    return lines
+        fraction = f"{100 * one['returns']['share']:.1f} ± {100 * one['returns']['flight_sampling']:.1f}"
+        lines.append([str(one["seed"]), fraction, speed, steep, INPUTS[name], f"{share:.2f}", f"{one['q2']:.2f}"])
+    heads = ("seed", "return fraction [%]", "rebound speed [cm/s]", "rebound elevation [deg]",
+             "dominant input for the speed", "its Sobol index", "Q2 of the speed")  # fmt: skip
+    return table(heads, lines)
 
 
-def grain_table(studies: list[Entry]) -> list[str]:
+def grain_table(studies: list[Entry]) -> str:
     """Parts of the variance by grain size, with intervals."""
-    lines = [
-        "| grains [cm] | lander's short edge / grain | output | "
-        + " | ".join(PARTS.values())
-        + " | total effect of the soil |"
-    ]
-    lines.append("|---" * (4 + len(PARTS)) + "|")
+    lines = []
     for one in sorted(of_kind(studies, "grain sizes"), key=lambda entry: -entry["diameter_m"]):
         beside = (one["runs"]["side_runs"] or {}).get("soil_total_effect", {})
         for output, symbol in OUTPUTS.items():
             shares = one["variance_shares"].get(output)
             cells = [_share(shares[part]) if shares else "" for part in PARTS] + [_share(beside.get(output))]
-            head = f"{100 * one['diameter_m']:.1f} | {LANDER_EDGE / one['diameter_m']:.1f} | {symbol}"
-            lines.append(f"| {head} | " + " | ".join(cells) + " |")
-    return lines
+            sizes = f"{100 * one['diameter_m']:.1f}", f"{LANDER_EDGE / one['diameter_m']:.1f}"
+            lines.append([*sizes, symbol, *cells])
+    heads = ("grains [cm]", "lander's short edge / grain", "output", *PARTS.values(), "total effect of the soil")
+    return table(heads, lines)
 
 
 def _share(part: dict[str, float] | None) -> str:
@@ -251,18 +179,15 @@ def answer(studies: list[Entry]) -> str:
 
 
 def main() -> None:
-    """Draw and write."""
-    content = json.loads((HERE / "one_bed.json").read_text())
+    content = read_document(HERE / "one_bed.json")
     studies = content["studies"]
     draw_seeds(studies)
     draw_grains(studies)
-    page = HEAD.format(
-        answer=answer(studies), seeds="\n".join(seed_table(studies)), places="\n".join(place_table(studies)),
-        grains="\n".join(grain_table(studies)),
-        made=f"The studies: `python {content['command'].removeprefix('python ')}`, {content['date']}, "
-        f"{content['machine']}.",
+    command = f"python {content['command'].removeprefix('python ')}"
+    write_page(
+        "one_bed", answer=answer(studies), seeds=seed_table(studies), places=place_table(studies),
+        grains=grain_table(studies), made=f"The studies: {made(content | {'command': command})}.",
     )  # fmt: skip
-    (PAGES / "one_bed.md").write_text(broken(page) + "\n")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ Fits the kept runs (showcase/paper/runs) in several ways and scores each on the 
 seen; writes paper_fits.json, of which paper_study_figures.py makes a table.
 """
 
-import csv
 import sys
 from functools import partial
 from pathlib import Path
@@ -20,7 +19,7 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, origin, timed, write_document
+from harness import ROOT, origin, read_rows, timed, write_document
 
 RUNS = ROOT / "showcase" / "paper" / "runs"
 INPUTS = DrawnDesign(read_study(RUNS.parent / "study.toml")).inputs
@@ -35,9 +34,7 @@ Runs = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def runs(design: str) -> Runs:
-    """Inputs and outputs of the runs of a design."""
-    with (RUNS / f"{design}.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_rows(RUNS / f"{design}.csv", {}, str)
 
     def column(name: str) -> list[float]:
         title = next(title for title in rows[0] if title.startswith(f"{name} ["))
@@ -48,20 +45,17 @@ def runs(design: str) -> Runs:
 
 
 def together(*parts: Runs) -> Runs:
-    """Runs of several designs, each point once."""
     x, y = (np.concatenate(columns) for columns in zip(*parts, strict=True))
     _, first = np.unique(x, axis=0, return_index=True)
     return x[first], y[first]
 
 
 def scored(training: Runs, fresh: Runs, options: dict[str, Any]) -> dict[str, dict[str, float]]:
-    """Scores of a fit to some runs on others, by output."""
     found = fit(INPUTS, *training, output_names=OUTPUTS, **options).score(*fresh)
     return {output: {key: found[output][key] for key in ("mape", "q2", "rmse")} for output in OUTPUTS}
 
 
 def main() -> None:
-    """Fit, score, write."""
     x, y = runs("test_all")
     seen, fresh = (x[:HELD_BACK], y[:HELD_BACK]), (x[HELD_BACK:], y[HELD_BACK:])
     grid = together(runs("screening"), runs("refined"))

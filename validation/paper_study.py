@@ -2,16 +2,12 @@
 
     python validation/paper_study.py [--work FOLDER] [--kinds twin "other beds" ...] [--out validation]
 
-"twin": scenarios/paper.toml a tenth of a millimetre beside, at order 3: what of its errors no expansion can take away.
-"other beds": scenarios/paper.toml with seeds from 2 on, each with a bed of its own, as deep and wide as those of
-studies/drawn_700.toml, at order 3 in both steps. "numerics": RUNS landings of studies/drawn_700.toml on BEDS beds, with
-one number of the model halved and doubled after the other. "grain sizes": SIZE_RUNS landings on as many beds of smaller
-grains (SIZES), poured under so much more gravity that they overlap as much. paper_study.json gets an entry a study as
-it ends; a study that stands in it is not run again: delete it to start anew. validation/paper_study_figures.py
-draws them.
+"twin": scenarios/paper.toml a tenth of a millimetre beside, at order 3. "other beds": the same study with seeds from 2
+on, on beds as deep and wide as those of studies/drawn_700.toml. "numerics": that study with one number of the
+model halved and doubled after the other. "grain sizes": on smaller grains, poured under so much more gravity that they
+overlap as much. paper_study.json gets an entry a study as it ends; one that stands in it is not run again.
 """
 
-import json
 import sys
 import tempfile
 import time
@@ -23,7 +19,7 @@ from typing import Any
 import lithobrake
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, VALIDATION_STUDIES, command_line, origin, write_document
+from harness import SCENARIOS, VALIDATION_STUDIES, command_line, origin, read_document, write_document
 
 Tables = dict[str, Any]
 PAPER = SCENARIOS / "paper.toml"
@@ -45,7 +41,6 @@ def walled(path: Path) -> Tables:
 
 
 def changed(tables: Tables, section: str, **values: Any) -> Tables:
-    """The tables with some values of a section changed."""
     return tables | {section: tables[section] | values}
 
 
@@ -86,7 +81,6 @@ def numerics() -> Iterator[tuple[str, Tables]]:
 
 
 def grain_sizes() -> Iterator[tuple[str, Tables]]:
-    """The drawn study on smaller grains."""
     base = changed(walled(DRAWN), "monte_carlo", sample_count=10_000)
     base = changed(base, "design", run_count=SIZE_RUNS)
     coarse, gravity = base["bed"]["diameter"]["value"], base["bed"]["pour_gravity"]
@@ -130,14 +124,13 @@ KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics, "grain si
 
 
 def main() -> None:
-    """Run what is missing."""
     work = Path(tempfile.gettempdir()) / "lithobrake_paper_study"
     parser = command_line(__doc__, work=work, out=Path(__file__).parent)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
     parser.add_argument("--workers", type=int, default=None)
     given = parser.parse_args()
     path = given.out / "paper_study.json"
-    entries = json.loads(path.read_text())["studies"] if path.exists() else []
+    entries = read_document(path, {"studies": []})["studies"]
     done = {(one["kind"], one["name"]) for one in entries}
     for kind in given.kinds:
         for name, tables in KINDS[kind]():

@@ -6,32 +6,30 @@ Reads showcase/paper, showcase/drawn_700, showcase/drawn_170 (validation/keep_re
 paper_fits.json; writes paper_study_*.png and paper_study.md to docs/validation.
 """
 
-import csv
-import json
 import math
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
-from page_text import broken
 from paper_study import spread_of
-from paper_study_words import ANSWERS, COST, END, ERRORS, FITS, GRAINS, HEAD, NUMERICS
 
-from lithobrake.report.figures.style import INK, QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import INK, QUIET, TEST, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from drawing import figure
+from harness import PAGES, ROOT, read_document, read_rows
+from page import table, write_page
 
 HERE = Path(__file__).parent
-PAGES = HERE.parent / "docs" / "validation"
-SHOWCASE = HERE.parent / "showcase"
+SHOWCASE = ROOT / "showcase"
 SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
 SYMBOLS = {SPEED: "rebound speed", ELEVATION: "rebound elevation", SPIN: "rebound spin rate"}
 # Factor and unit of the tables.
 UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
+HEADS = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
 PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
 METHODS = {"paper": "paper method, 1500 grains", "drawn_170": "drawn, 170 landings", "drawn_700": "drawn, 700 landings"}
@@ -64,7 +62,7 @@ Entry = dict[str, Any]
 
 def kept(name: str) -> Entry:
     """The results of a study that the repository keeps, as `told` of paper_study.py has them."""
-    found: Entry = json.loads((SHOWCASE / name / "summary.json").read_text())["results"]
+    found: Entry = read_document(SHOWCASE / name / "summary.json")["results"]
     if "designs" in found:
         outcomes = {design: runs["outcomes"] for design, runs in found["designs"].items()}
     else:
@@ -75,7 +73,7 @@ def kept(name: str) -> Entry:
 def entries(kind: str) -> list[Entry]:
     """What paper_study.py found of a kind."""
     path = HERE / "paper_study.json"
-    return [one for one in json.loads(path.read_text())["studies"] if one["kind"] == kind]
+    return [one for one in read_document(path)["studies"] if one["kind"] == kind]
 
 
 def share(one: Entry) -> tuple[float, float, float]:
@@ -111,32 +109,27 @@ def every_study() -> Iterator[tuple[str, Entry]]:
     yield from ((METHODS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
 
 
-def answer_table() -> list[str]:
-    """Return a line a study: outputs and return fraction."""
-    heads = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
-    lines = [f"| study | {' | '.join(heads)} | return fraction [%] |", "|---" * 5 + "|"]
+def answer_table() -> str:
+    lines = []
     for name, one in every_study():
         cells = []
         for output in OUTPUTS:
             factor, sample = UNITS[output][0], one["samples"][output]
             cells.append(f"{factor * sample['mean']:.3g} ± {factor * sample['std']:.2g}")
         value, low, high = share(one)
-        interval = f" ({low:.1f} to {high:.1f})" if low < high else ""
-        lines.append(f"| {name} | {' | '.join(cells)} | {value:.1f}{interval} |")
-    return lines
+        lines.append([name, *cells, f"{value:.1f}" + (f" ({low:.1f} to {high:.1f})" if low < high else "")])
+    return table(("study", *HEADS, "return fraction [%]"), lines)
 
 
-def driver_table() -> list[str]:
-    """Return a line a study: what the variance of the rebound speed comes from."""
-    lines = ["| study | variance of the rebound speed |", "|---|---|"]
-    return [*lines, *(f"| {name} | {drivers(one)} |" for name, one in every_study())]
+def driver_table() -> str:
+    """A line a study: what the variance of the rebound speed comes from."""
+    return table(("study", "variance of the rebound speed"), ((name, drivers(one)) for name, one in every_study()))
 
 
 def draw_answers() -> None:
     """Draw return fraction and rebound speed, study by study."""
     studies = list(every_study())
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, 2, figsize=(9.0, 4.4), constrained_layout=True, sharey=True)
+    with figure(PAGES / "paper_study_answers.png", 1, 2, (9.0, 4.4), dpi=150, sharey=True) as (_, axes):
         for place, (_, one) in enumerate(studies):
             colour = TEST if "screening" in one else TRAINING
             value, low, high = share(one)
@@ -151,13 +144,10 @@ def draw_answers() -> None:
         axes[0].set_yticks(range(len(studies)), [name for name, _ in studies])
         axes[0].set_xlabel("return fraction within 12 h [%]")
         axes[1].set_xlabel("rebound speed [cm/s]: mean, 5 to 95 %")
-        figure.savefig(PAGES / "paper_study_answers.png", dpi=150)
 
 
 def true_values(design: str, output: str) -> np.ndarray:
-    """Values of an output in the runs of a design, NaN for those that have none."""
-    with (SHOWCASE / "paper" / "runs" / f"{design}.csv").open(newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_rows(SHOWCASE / "paper" / "runs" / f"{design}.csv", {}, str)
     name = next(column for column in rows[0] if column.startswith(f"output:{output} ["))
     return np.array([float(row[name] or "nan") for row in rows])
 
@@ -166,7 +156,7 @@ def from_normal(design: str) -> np.ndarray:
     """Absolute errors of theta+ [%] where it counts from the normal of the surface."""
     elevation = true_values(design, ELEVATION)
     elevation = elevation[np.isfinite(elevation)]
-    ape = np.array(json.loads((SHOWCASE / "paper" / "scores.json").read_text())[design][ELEVATION]["ape"])
+    ape = np.array(read_document(SHOWCASE / "paper" / "scores.json")[design][ELEVATION]["ape"])
     return ape * elevation / (0.5 * math.pi - elevation)
 
 
@@ -181,135 +171,116 @@ def floor(output: str) -> tuple[float, float]:
     return math.sqrt(float(np.nanmean(apart**2))), 100.0 * float(np.nanmean(apart / np.abs(here)))
 
 
-def error_table() -> list[str]:
+def error_table() -> str:
     """Errors of the refined expansion beside the paper's."""
-    scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())
-    lines = [
-        "| output | paper: MAPE [%] | here: training runs [%] | fresh runs, kept inputs [%] "
-        "| fresh runs, all inputs [%] | Q2 of both | RMS error of both | due to chaos: RMS, MAPE |",
-        "|---" * 8 + "|",
-    ]
+    scores, lines = read_document(SHOWCASE / "paper" / "scores.json"), []
     for output in OUTPUTS:
         factor, unit = UNITS[output]
         own, kept_inputs, every = (scores[name][output] for name in ("refined", "test_kept", "test_all"))
         low, high = kept_inputs["mape_interval"]
         error, percent = floor(output)
-        lines.append(
-            f"| {SYMBOLS[output]} | {PAPER_MAPE[output]} | {own['mape']:.3g} | {kept_inputs['mape']:.3g} ({low:.3g} to "
-            f"{high:.3g}) | {every['mape']:.3g} | {kept_inputs['q2']:.2f}; {every['q2']:.2f} | "
-            f"{factor * kept_inputs['rmse']:.2g}; {factor * every['rmse']:.2g} {unit} | {factor * error:.2g} {unit}, "
-            f"{percent:.2g} % |"
-        )
-    angles = [float(from_normal(name).mean()) for name in ("refined", "test_kept", "test_all")]
-    cells = " | ".join(f"{angle:.3g}" for angle in angles)
-    return [*lines, f"| rebound elevation from the normal | {PAPER_MAPE[ELEVATION]} | {cells} | | | |"]
+        lines.append((
+            SYMBOLS[output], str(PAPER_MAPE[output]), f"{own['mape']:.3g}",
+            f"{kept_inputs['mape']:.3g} ({low:.3g} to {high:.3g})", f"{every['mape']:.3g}",
+            f"{kept_inputs['q2']:.2f}; {every['q2']:.2f}",
+            f"{factor * kept_inputs['rmse']:.2g}; {factor * every['rmse']:.2g} {unit}",
+            f"{factor * error:.2g} {unit}, {percent:.2g} %",
+        ))  # fmt: skip
+    angles = (f"{from_normal(name).mean():.3g}" for name in ("refined", "test_kept", "test_all"))
+    lines.append(("rebound elevation from the normal", str(PAPER_MAPE[ELEVATION]), *angles, "| |"))  # three empty cells
+    return table(
+        ("output", "paper: MAPE [%]", "here: training runs [%]", "fresh runs, kept inputs [%]",
+         "fresh runs, all inputs [%]", "Q2 of both", "RMS error of both", "due to chaos: RMS, MAPE"), lines,
+    )  # fmt: skip
 
 
-def fit_table() -> list[str]:
+def fit_table() -> str:
     """Other fits of the same runs, and of fewer."""
-    content = json.loads((HERE / "paper_fits.json").read_text())
-    heads = " | ".join(f"{SYMBOLS[output]}: MAPE [%], Q2" for output in OUTPUTS)
-    lines = [f"| runs | fit | {heads} |", "|---" * 5 + "|"]
-    for row in content["fits"]:
-        cells = [f"{row['scores'][output]['mape']:.3g}, {row['scores'][output]['q2']:.2f}" for output in OUTPUTS]
-        lines.append(f"| {row['count']}, {row['runs']} | {row['fit']} | {' | '.join(cells)} |")
-    return lines
+    lines = []
+    for row in read_document(HERE / "paper_fits.json")["fits"]:
+        cells = (f"{row['scores'][output]['mape']:.3g}, {row['scores'][output]['q2']:.2f}" for output in OUTPUTS)
+        lines.append((f"{row['count']}, {row['runs']}", row["fit"], *cells))
+    return table(("runs", "fit", *(f"{SYMBOLS[output]}: MAPE [%], Q2" for output in OUTPUTS)), lines)
 
 
-def numerics_table() -> list[str]:
-    """Return the means of the drawn study with one number of the model changed, over those of the reference."""
-    heads = " | ".join(f"{SYMBOLS[output]} [{UNITS[output][1]}] | / reference" for output in OUTPUTS)
-    lines = [f"| model | {heads} |", "|---" * (1 + 2 * len(OUTPUTS)) + "|"]
-    as_it_is: Entry = {}
+def numerics_table() -> str:
+    """Means of the drawn study with one number of the model changed, over those of the reference."""
+    lines, as_it_is = [], Entry()
     for one in entries("numerics"):
         as_it_is = one if one["name"].startswith("as it is") else as_it_is
         cells = []
         for output in OUTPUTS:
-            factor, mean, first = UNITS[output][0], one["outputs"][output]["mean"], as_it_is["outputs"][output]["mean"]
-            ends = f"{factor * mean['lower']:.3g} to {factor * mean['upper']:.3g}"
-            cells += [f"{factor * mean['value']:.3g} ({ends})", f"{mean['value'] / first['value']:.2f}"]
-        lines.append(f"| {CHANGES[one['name']]} | {' | '.join(cells)} |")
-    return lines
+            mean, first = one["outputs"][output]["mean"], as_it_is["outputs"][output]["mean"]
+            cells += [interval(mean, UNITS[output][0]), f"{mean['value'] / first['value']:.2f}"]
+        lines.append((CHANGES[one["name"]], *cells))
+    return table(("model", *(cell for head in HEADS for cell in (head, "/ reference"))), lines)
 
 
-def outcome_table() -> list[str]:
-    """Return the outcomes of the landings of these studies."""
-    lines = [f"| model | {' | '.join(OUTCOMES.values())} |", "|---" * (1 + len(OUTCOMES)) + "|"]
-    for one in entries("numerics"):
-        counts = " | ".join(str(one["outcomes"].get(outcome, 0)) for outcome in OUTCOMES)
-        lines.append(f"| {CHANGES[one['name']]} | {counts} |")
-    return lines
+def interval(mean: Entry, factor: float) -> str:
+    """A mean and its interval, in other units."""
+    return f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
 
 
-def grain_size_table() -> list[str]:
+def outcome_table() -> str:
+    lines = (
+        (CHANGES[one["name"]], *(str(one["outcomes"].get(outcome, 0)) for outcome in OUTCOMES))
+        for one in entries("numerics")
+    )
+    return table(("model", *OUTCOMES.values()), lines)
+
+
+def grain_size_table() -> str:
     """What decides on smaller grains: outcomes, V+, and the parts of its variance."""
-    lines = ["| longest edge of the lander | outcomes | rebound speed [cm/s] | return fraction [%] "
-             "| variance of the rebound speed |", "|---" * 5 + "|"]  # fmt: skip
-    for name, one in [
-        ("lander 1.2 grains", kept("drawn_700")),
-        *((e["name"], e) for e in entries("grain sizes")),
-    ]:
-        mean, factor = one["outputs"][SPEED]["mean"], UNITS[SPEED][0]
-        speed = f"{factor * mean['value']:.3g} ({factor * mean['lower']:.3g} to {factor * mean['upper']:.3g})"
+    lines, studies = [], [("lander 1.2 grains", kept("drawn_700"))]
+    for name, one in studies + [(e["name"], e) for e in entries("grain sizes")]:
         value, low, high = share(one)
         outcomes = ", ".join(f"{OUTCOMES[outcome]} {count}" for outcome, count in one["outcomes"].items())
-        fraction = f"{value:.0f} ({low:.0f} to {high:.0f})"
-        lines.append(f"| {name.removeprefix('lander ')} | {outcomes} | {speed} | {fraction} | {drivers(one)} |")
-    return lines
+        speed = interval(one["outputs"][SPEED]["mean"], UNITS[SPEED][0])
+        cells = (outcomes, speed, f"{value:.0f} ({low:.0f} to {high:.0f})", drivers(one))
+        lines.append((name.removeprefix("lander "), *cells))
+    heads = ("longest edge of the lander", "outcomes", "rebound speed [cm/s]", "return fraction [%]")
+    return table((*heads, "variance of the rebound speed"), lines)
 
 
-def time_table() -> list[str]:
-    """What each study cost."""
-    lines = ["| study | landings | wall time [min] | CPU time [min] | load |", "|---" * 5 + "|"]
+def time_table() -> str:
+    lines = []
     for name in METHODS:
-        noted = json.loads((SHOWCASE / name / "origin.json").read_text())
+        noted = read_document(SHOWCASE / name / "origin.json")
         # Where landings were kept and only what follows them was made again, the whole took as long as with them.
         noted |= noted.get("landings", {})
-        keys = {row["key"] for path in (SHOWCASE / name / "runs").glob("*.csv") for row in csv.DictReader(path.open())}
-        times = f"{noted['wall_s'] / 60.0:.0f} | {noted['cpu_s'] / 60.0:.0f} | {noted['load']:.1f}"
-        lines.append(f"| `{FILES[name]}` | {len(keys)} | {times} |")
-    return lines
+        keys = {row["key"] for path in (SHOWCASE / name / "runs").glob("*.csv") for row in read_rows(path, {}, str)}
+        times = (f"{noted[key] / 60.0:.0f}" for key in ("wall_s", "cpu_s"))
+        lines.append((f"`{FILES[name]}`", str(len(keys)), *times, f"{noted['load']:.1f}"))
+    return table(("study", "landings", "wall time [min]", "CPU time [min]", "load"), lines)
 
 
 # Pictures of the kept study that the page shows: a page can show none from outside docs/.
 SHOWN = {
     "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
 }  # fmt: skip
-PARTS = {
-    "Outputs and return fraction": ANSWERS,
-    "Errors of the expansion": ERRORS,
-    "Other fits of the same runs": FITS,
-    "Numerical parameters": NUMERICS,
-    "Smaller grains": GRAINS,
-    "Cost": COST,
-}
 
 
-def head() -> str:
-    """Return the question of the page and its answer."""
+def head() -> dict[str, object]:
     of_beds = [share(one)[0] for _, one in every_study() if "screening" in one]
     value, low, high = share(kept("drawn_700"))
-    scores = json.loads((SHOWCASE / "paper" / "scores.json").read_text())["test_kept"]
-    errors = ", ".join(f"{scores[output]['mape']:.0f} % ({SYMBOLS[output]})" for output in OUTPUTS)
-    published = ", ".join(f"{PAPER_MAPE[output]} %" for output in OUTPUTS)
-    return HEAD.format(
-        beds=len(of_beds), least=f"{min(of_beds):.1f}", most=f"{max(of_beds):.1f}", value=f"{value:.1f}",
-        low=f"{low:.1f}", high=f"{high:.1f}", errors=errors, published=published,
-    )  # fmt: skip
+    scores = read_document(SHOWCASE / "paper" / "scores.json")["test_kept"]
+    return {
+        "beds": len(of_beds), "least": f"{min(of_beds):.1f}", "most": f"{max(of_beds):.1f}",
+        "value": f"{value:.1f}", "low": f"{low:.1f}", "high": f"{high:.1f}",
+        "fresh": ", ".join(f"{scores[output]['mape']:.0f} % ({SYMBOLS[output]})" for output in OUTPUTS),
+        "published": ", ".join(f"{PAPER_MAPE[output]} %" for output in OUTPUTS),
+    }  # fmt: skip
 
 
 def main() -> None:
-    """Draw and write."""
     draw_answers()
     for source, name in SHOWN.items():
         shutil.copy(SHOWCASE / "paper" / source, PAGES / f"paper_study_{name}.png")
-    tables = {
-        "answers": answer_table, "drivers": driver_table, "errors": error_table, "fits": fit_table,
-        "numerics": numerics_table, "outcomes": outcome_table, "grains": grain_size_table, "cost": time_table,
-    }  # fmt: skip
-    lines = {name: "\n".join(table()) for name, table in tables.items()}
-    parts = [f"## {title}\n\n{text.format(**lines)}" for title, text in PARTS.items()]
-    (PAGES / "paper_study.md").write_text(broken("\n\n".join([head(), *parts, END])) + "\n")
+    write_page(
+        "paper_study", **head(), answers=answer_table(), drivers=driver_table(), errors=error_table(),
+        fits=fit_table(), numerics=numerics_table(), outcomes=outcome_table(), grains=grain_size_table(),
+        cost=time_table(),
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -2,14 +2,9 @@
 
     python validation/periodic_ground.py [--grounds NAME ...] [--beds FOLDER] [--out validation]
 
-Grains and lander are those of first_bounce.toml at the medians of their laws. On every ground at least 200 landings
-in each of three ways, equally many on each of its beds. Heading and attitude of a landing are drawn once, and are the
-same on all grounds. Its place is drawn over the whole tile of periodic ground. Between walls it is drawn in the middle
-half of the width, so that walls move away from the lander as beds grow, and where smallest_bed.py lets it land if that
-is less.
-
-Writes periodic_ground_beds.csv, a line for each bed, and periodic_ground.csv, a line for each landing, as they end.
-What stands there already is not done again: delete both to start anew. periodic_ground.json has the means.
+docs/validation/periodic_ground.md has the set-up. Heading and attitude of a landing are the same on all grounds. Writes
+periodic_ground_beds.csv, a line for each bed, and periodic_ground.csv, a line for each landing, as they end. What
+stands there already is not done again: delete both to start anew. periodic_ground.json has the means.
 """
 
 import math
@@ -154,7 +149,6 @@ def summary(out: Path) -> Row:
 
 
 def main() -> None:
-    """Land on all beds of the grounds and write what came of it."""
     here = Path(__file__).parent
     options = command_line(__doc__, grounds=tuple(GROUNDS), beds=Path(tempfile.gettempdir()), out=here).parse_args()
     options.beds.mkdir(parents=True, exist_ok=True)

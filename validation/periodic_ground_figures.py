@@ -5,24 +5,22 @@
 Reads periodic_ground.json beside it; writes periodic_ground.png and periodic_ground.md to docs/validation.
 """
 
-import json
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
-from page_text import broken
 from periodic_ground import GROUNDS, WAYS
-from periodic_ground_words import TEXT
 
-from lithobrake.report.figures.style import QUIET, STYLE, TEST, TRAINING
+from lithobrake.report.figures.style import QUIET, TEST, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from drawing import figure
+from harness import PAGES, read_document
+from page import made, table, write_page
 
 HERE = Path(__file__).parent
-PAGES = HERE.parent / "docs" / "validation"
 Entry = dict[str, Any]
 # What is drawn and tabulated of a landing: name, unit, and what an SI value is multiplied by.
 OUTPUTS = {
@@ -31,6 +29,7 @@ OUTPUTS = {
     "spin_out": ("rebound spin rate", "rad/s", 1.0),
     "penetration": ("penetration", "cm", 100.0),
 }
+MEANS = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
 WORDS = {"walls": "walls", "periodic": "period"}
 OUTCOMES = {
     "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
@@ -45,7 +44,6 @@ STUDY_FILES = {
 
 
 def in_words(way: str) -> str:
-    """Speed and incidence of a way to land."""
     speed, incidence, _ = WAYS[way]
     return f"{100 * speed:g} cm/s, {incidence:g} deg"
 
@@ -53,10 +51,8 @@ def in_words(way: str) -> str:
 def draw(grounds: dict[str, Entry]) -> None:
     """Every output in every way, by ground, with two standard errors."""
     known = [name for name in ORDER if grounds[name]["beds"]]
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(
-            len(OUTPUTS), len(WAYS), figsize=(9.2, 8.4), constrained_layout=True, sharex=True, squeeze=False
-        )
+    shape = (len(OUTPUTS), len(WAYS), (9.2, 8.4))
+    with figure(PAGES / "periodic_ground.png", *shape, dpi=150, sharex=True, squeeze=False) as (drawn, axes):
         for row, (key, (label, unit, scale)) in enumerate(OUTPUTS.items()):
             for column, way in enumerate(WAYS):
                 axis = axes[row, column]
@@ -74,39 +70,38 @@ def draw(grounds: dict[str, Entry]) -> None:
                     axis.set_ylabel(f"{label} [{unit}]")
                 words = [f"{WORDS[GROUNDS[name].sides]}\n{GROUNDS[name].width:g}" for name in known]
                 axis.set_xticks(range(len(known)), words, fontsize=6.5)
-        figure.supxlabel("width between walls, or period [m]; bars: two standard errors, over beds", fontsize=9)
-        figure.savefig(PAGES / "periodic_ground.png", dpi=150)
+        drawn.supxlabel("width between walls, or period [m]; bars: two standard errors, over beds", fontsize=9)
 
 
-def bed_table(grounds: dict[str, Entry]) -> list[str]:
+def bed_table(grounds: dict[str, Entry]) -> str:
     """A line a ground: how its beds lie, and what they cost."""
-    lines = ["| bed | grains | beds | solid fraction | coordination number | CPU time of a bed [s] |", "|---" * 6 + "|"]
+    lines = []
     for name in ORDER:
         entry = grounds[name]
-        cells = [f"{name} | {GROUNDS[name].grain_count} | {entry['beds']}"]
+        cells = [name, str(GROUNDS[name].grain_count), str(entry["beds"])]
         for key, digits in (("solid_fraction", 3), ("coordination_number", 2), ("cpu_s", 1)):
             value = entry.get(key)
             cells.append(f"{value['mean']:.{digits}f} ({value['standard_deviation']:.{digits}f})" if value else "")
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines
+        lines.append(cells)
+    heads = ("bed", "grains", "beds", "solid fraction", "coordination number", "CPU time of a bed [s]")
+    return table(heads, lines)
 
 
-def landing_table(grounds: dict[str, Entry], way: str) -> list[str]:
+def landing_table(grounds: dict[str, Entry], way: str) -> str:
     """A line a ground: what became of the landings of a way."""
-    heads = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
-    lines = ["| bed | landings | lost | captured | displacement > period | " + " | ".join(heads) + " | CPU time [s] |"]
-    lines.append("|---" * (6 + len(OUTPUTS)) + "|")
+    lines = []
     for name in ORDER:
         entry = grounds[name][way]
         if not entry["landings"]:
             continue
         ends, far = entry["outcomes"], entry["farther_than_period"]
         cells = [name, str(entry["landings"]), str(ends.get("left_sideways", 0)), str(ends.get("captured", 0))]
-        cells.append("-" if far is None else str(far))
-        cells += [_value(entry[key], scale) for key, (_, _, scale) in OUTPUTS.items()]
-        cells.append(_value(entry["cpu_s"], 1.0))
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines
+        lines.append([*cells, "-" if far is None else str(far), *means(entry), _value(entry["cpu_s"], 1.0)])
+    return table(("bed", "landings", "lost", "captured", "displacement > period", *MEANS, "CPU time [s]"), lines)
+
+
+def means(entry: Entry) -> list[str]:
+    return [_value(entry[key], scale) for key, (_, _, scale) in OUTPUTS.items()]
 
 
 def _value(entry: Entry | None, scale: float) -> str:
@@ -118,39 +113,27 @@ def _value(entry: Entry | None, scale: float) -> str:
     return f"{scale * entry['mean']:.{digits}f} ({error:.{digits}f})"
 
 
-def slope_table() -> list[str]:
+def slope_table() -> str:
     """A line a slope and kind of ground."""
-    heads = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
-    lines = ["| slope [deg] | sides | landings | lost | captured | " + " | ".join(heads) + " |"]
-    lines.append("|---" * (5 + len(OUTPUTS)) + "|")
-    for one in json.loads((HERE / "periodic_slopes.json").read_text())["slopes"]:
+    lines = []
+    for one in read_document(HERE / "periodic_slopes.json")["slopes"]:
         ends = one["outcomes"]
         counts = [sum(ends.values()), ends.get("left_sideways", 0), ends.get("captured", 0)]
-        cells = [f"{one['slope_deg']:g}", one["sides"], *(str(count) for count in counts)]
-        lines.append(
-            "| " + " | ".join(cells + [_value(one[key], scale) for key, (_, _, scale) in OUTPUTS.items()]) + " |"
-        )
-    return lines
+        lines.append([f"{one['slope_deg']:g}", one["sides"], *(str(count) for count in counts), *means(one)])
+    return table(("slope [deg]", "sides", "landings", "lost", "captured", *MEANS), lines)
 
 
-def study_table() -> list[str]:
+def study_table() -> str:
     """A line a study that periodic_studies.py read."""
-    heads = [f"{label} [{unit}]" for label, unit, _ in OUTPUTS.values()]
-    lines = [
-        "| study | bed | outcomes | return fraction [%] | escape [%] | " + " | ".join(heads) + " | solid fraction |"
-    ]
-    lines.append("|---" * (6 + len(OUTPUTS)) + "|")
-    for one in json.loads((HERE / "periodic_studies.json").read_text())["studies"]:
-        bed, returns, escaped = one["bed"], one["returns"], one["shares"]["escaped"]
+    lines = []
+    for one in read_document(HERE / "periodic_studies.json")["studies"]:
+        bed, shares = one["bed"], (one["returns"], one["shares"]["escaped"])
         ends = ", ".join(f"{count} {OUTCOMES[word]}" for word, count in sorted(one["outcomes"].items()))
         cells = [STUDY_FILES[one["title"]], f"{bed['sides']}, {bed['grain_count']} on {bed['width'][0]:g} m", ends]
-        cells += [
-            f"{100 * share['share']:.1f} ({100 * share['lower']:.1f} to {100 * share['upper']:.1f})"
-            for share in (returns, escaped)
-        ]
-        cells += [_value(one[key], scale) for key, (_, _, scale) in OUTPUTS.items()]
-        lines.append("| " + " | ".join([*cells, f"{one['solid_fraction']:.3f}"]) + " |")
-    return lines
+        cells += [f"{100 * of['share']:.1f} ({100 * of['lower']:.1f} to {100 * of['upper']:.1f})" for of in shares]
+        lines.append([*cells, *means(one), f"{one['solid_fraction']:.3f}"])
+    heads = ("study", "bed", "outcomes", "return fraction [%]", "escape [%]", *MEANS, "solid fraction")
+    return table(heads, lines)
 
 
 def trends(grounds: dict[str, Entry]) -> list[tuple[float, str, str]]:
@@ -172,18 +155,15 @@ def trends(grounds: dict[str, Entry]) -> list[tuple[float, str, str]]:
 
 
 def lost_of(entry: Entry) -> str:
-    """Return how many of the landings are lost."""
     return f"{entry['outcomes'].get('left_sideways', 0)} of {entry['landings']}"
 
 
 def speed_and_elevation(entry: Entry) -> str:
-    """Return the mean speed and elevation with their standard errors."""
     return " and ".join(f"{_value(entry[key], OUTPUTS[key][2])} {OUTPUTS[key][1]}"
                         for key in ("speed_out", "elevation_out"))  # fmt: skip
 
 
 def findings(grounds: dict[str, Entry]) -> dict[str, Any]:
-    """Return the numbers of the first sentences."""
     way = list(WAYS)[1]
     walls = [name for name in ORDER if GROUNDS[name].sides == "walls"]
     tiles = [name for name in ORDER if GROUNDS[name].sides != "walls"]
@@ -200,18 +180,15 @@ def findings(grounds: dict[str, Entry]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Draw and write."""
-    content = json.loads((HERE / "periodic_ground.json").read_text())
+    content = read_document(HERE / "periodic_ground.json")
     grounds = content["grounds"]
     draw(grounds)
-    landings = [f"### {in_words(way)}\n\n" + "\n".join(landing_table(grounds, way)) for way in WAYS]
-    page = TEXT.format(
-        **findings(grounds), beds="\n".join(bed_table(grounds)), landings="\n\n".join(landings),
-        slopes="\n".join(slope_table()), studies="\n".join(study_table()),
-        made=f"`{content['command']}`, {content['date']}, {content['machine']}, one process, load "
-        f"{content['load']:.0f}",
+    landings = [f"### {in_words(way)}\n\n{landing_table(grounds, way)}" for way in WAYS]
+    write_page(
+        "periodic_ground", **findings(grounds), beds=bed_table(grounds), landings="\n\n".join(landings),
+        slopes=slope_table(), studies=study_table(),
+        made=made(content, "one process", f"load {content['load']:.0f}"),
     )  # fmt: skip
-    (PAGES / "periodic_ground.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

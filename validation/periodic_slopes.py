@@ -82,7 +82,6 @@ def summary(out: Path) -> list[Row]:
 
 
 def main() -> None:
-    """Land on all beds and write what came of it."""
     chosen = command_line(__doc__, beds=Path(tempfile.gettempdir()), out=Path(__file__).parent).parse_args()
     chosen.beds.mkdir(parents=True, exist_ok=True)
     for sides, (_, _, bed_count, _) in GROUNDS.items():

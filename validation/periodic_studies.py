@@ -7,7 +7,6 @@ studies/drawn_170.toml), as it is or with the keys of [bed] that periodic_studie
 periodic_studies.json.
 """
 
-import argparse
 import math
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ import numpy as np
 from lithobrake.results import StudyResults, open_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import Row, origin, write_document
+from harness import Row, command_line, origin, write_document
 
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "penetration")
 
@@ -54,14 +53,8 @@ def numbers(study: StudyResults) -> Row:
 
 
 def main() -> None:
-    """Read all folders and write what they say."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folders", nargs="+", type=Path)
-    folders = parser.parse_args().folders
-    document = {
-        **origin("validation/periodic_studies.py FOLDER ..."),
-        "studies": [numbers(open_study(f)) for f in folders],
-    }
+    studies = [numbers(open_study(folder)) for folder in command_line(__doc__, "folders...").parse_args().folders]
+    document = {**origin("validation/periodic_studies.py FOLDER ..."), "studies": studies}
     write_document(Path(__file__).with_suffix(".json"), document)
 
 

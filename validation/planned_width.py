@@ -15,12 +15,9 @@ after another. For it the outcomes of journey_seed_pairs.py and emulated_journey
 working folders).
 """
 
-import csv
-import json
 import math
 import sys
 import tempfile
-import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -28,7 +25,21 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, SCENARIOS, Row, command_line, origin, read_rows, rounded, write_document, write_rows
+from harness import (
+    ROOT,
+    SCENARIOS,
+    Row,
+    between,
+    command_line,
+    origin,
+    read_document,
+    read_rows,
+    rounded,
+    study_tables,
+    write_document,
+    write_rows,
+)
+from page import table
 
 from lithobrake.analysis import HalfWidthRange as HalfWidths
 from lithobrake.analysis import half_width_range
@@ -49,11 +60,6 @@ TABLE = Path(__file__).with_suffix(".csv")
 RUNS, VALIDATION, SHOWCASE = TABLE.with_name("planned_width_runs.json"), TABLE.parent, ROOT / "showcase"
 
 
-def uniform(lower: float, upper: float) -> Row:
-    """A quantity between two values."""
-    return {"distribution": "uniform", "lower": lower, "upper": upper}
-
-
 def soil(lower: float, upper: float, **more: Any) -> Row:
     """Grains of these Young's moduli [Pa]."""
     return {"young_modulus": {"distribution": "log_uniform", "lower": lower, "upper": upper}, **more}
@@ -63,24 +69,24 @@ BALL = {"shape": "sphere", "edges": None, "diameter": 0.15, "mass": 3.0}
 # Keys that differ from scenarios/quick.toml or scenarios/first_bounce.toml; one that is None is left out.
 JOURNEYS: dict[str, dict[str, Row]] = {
     "ball, 8 to 25 cm/s": {
-        "delivery": {"speed": uniform(0.08, 0.25), "incidence_deg": uniform(0.0, 60.0)},
+        "delivery": {"speed": between(0.08, 0.25), "incidence_deg": between(0.0, 60.0)},
         "lander": BALL, "grain": soil(3e4, 3e5),
     },
     "flat heavy box, shallow": {
-        "delivery": {"speed": uniform(0.06, 0.15), "incidence_deg": uniform(40.0, 80.0)},
+        "delivery": {"speed": between(0.06, 0.15), "incidence_deg": between(40.0, 80.0)},
         "lander": {"edges": [0.2, 0.15, 0.08], "mass": 6.0}, "grain": soil(5e4, 5e5),
     },
     "cube on Didymos": {
-        "delivery": {"speed": uniform(0.05, 0.2), "latitude_deg": 60.0, "longitude_deg": 10.0},
+        "delivery": {"speed": between(0.05, 0.2), "latitude_deg": 60.0, "longitude_deg": 10.0},
         "lander": {"edges": [0.15, 0.15, 0.15], "mass": 2.5}, "grain": soil(5e4, 5e5), "site": {"body": "didymos"},
     },
     "elastic, slippery grains": {
-        "delivery": {"speed": uniform(0.06, 0.18)},
-        "grain": soil(3e4, 3e5, restitution=uniform(0.8, 0.95), friction=uniform(0.2, 0.4)),
+        "delivery": {"speed": between(0.06, 0.18)},
+        "grain": soil(3e4, 3e5, restitution=between(0.8, 0.95), friction=between(0.2, 0.4)),
     },
-    "slow, at the equator": {"delivery": {"speed": uniform(0.03, 0.09), "latitude_deg": 0.0, "longitude_deg": 90.0}},
+    "slow, at the equator": {"delivery": {"speed": between(0.03, 0.09), "latitude_deg": 0.0, "longitude_deg": 90.0}},
     "spinning, 10 to 30 cm/s": {
-        "delivery": {"speed": uniform(0.1, 0.3), "spin_x": uniform(-0.3, 0.3)}, "grain": soil(3e4, 3e5),
+        "delivery": {"speed": between(0.1, 0.3), "spin_x": between(-0.3, 0.3)}, "grain": soil(3e4, 3e5),
     },
 }  # fmt: skip
 LANDINGS: dict[str, dict[str, Row]] = {
@@ -92,18 +98,12 @@ JOURNEY_COUNT, LANDING_COUNT, FIRST_SEED = 60, 240, 501
 
 
 def tables(name: str, seed: int) -> Row:
-    """The tables of a fresh study."""
     follows = name in JOURNEYS
-    file = SCENARIOS / ("quick.toml" if follows else "first_bounce.toml")
-    study: Row = tomllib.loads(file.read_text(encoding="utf-8")) | {"seed": seed}
     count = {"journey": {"count": JOURNEY_COUNT}} if follows else {"design": {"run_count": LANDING_COUNT}}
     # A little wider than the bed of the quick study, so that no grain of so many beds is too long for it.
     bed = {"bed": {"bed_count": None, "grain_count": 120, "width": [0.62, 0.62]}}
-    for part in (count, bed, (JOURNEYS | LANDINGS)[name]):
-        for section, keys in part.items():
-            merged = study.get(section, {}) | keys
-            study[section] = {key: value for key, value in merged.items() if value is not None}
-    return study
+    path = SCENARIOS / ("quick.toml" if follows else "first_bounce.toml")
+    return study_tables(path, count, bed, (JOURNEYS | LANDINGS)[name], seed=seed)
 
 
 def answer_of(study: Study, folder: StudyFolder) -> Row:
@@ -139,7 +139,7 @@ def make(work: Path) -> None:
 
 def kept_runs() -> dict[str, Row]:
     """Outcomes and beds of studies, fresh ones by their name, others by that of their folder."""
-    kept: dict[str, Row] = json.loads(RUNS.read_text()) if RUNS.exists() else {}
+    kept: dict[str, Row] = read_document(RUNS, {})
     return kept
 
 
@@ -174,11 +174,8 @@ def after(study: Study, values: np.ndarray, bed: np.ndarray, count: int) -> Half
 
 
 def quick(journeys: int, beds: int) -> Study:
-    """A study of so many journeys."""
-    study: Row = tomllib.loads((SCENARIOS / "quick.toml").read_text(encoding="utf-8"))
-    study["journey"] |= {"count": journeys}
-    study["bed"] |= {"bed_count": beds}
-    return check_tables(study, SCENARIOS)
+    changes = {"journey": {"count": journeys}, "bed": {"bed_count": beds}}
+    return check_tables(study_tables(SCENARIOS / "quick.toml", changes), SCENARIOS)
 
 
 def row_of(group: str, name: str, study: Study, share: float, half_width: float, runs: Row | None = None) -> Row:
@@ -198,7 +195,6 @@ def row_of(group: str, name: str, study: Study, share: float, half_width: float,
 
 
 def kept_studies() -> Iterator[Row]:
-    """All studies, fresh ones first."""
     for name, runs in kept_runs().items():
         if name not in JOURNEYS | LANDINGS:
             continue
@@ -213,10 +209,10 @@ def kept_studies() -> Iterator[Row]:
         name, study = f"{one['setting']}, seed {one['seed']:.0f}", quick(int(one["journeys"]), int(one["beds"]))
         share, lower, upper = (one[f"at_rest {key}"] for key in ("value", "lower", "upper"))
         yield row_of("seed pairs", name, study, share, half(lower, upper))
-    for name, one in json.loads((VALIDATION / "emulated_journeys.json").read_text())["cases"].items():
+    for name, one in read_document(VALIDATION / "emulated_journeys.json")["cases"].items():
         share, lower, upper = one["by_landings"]["at_rest"]
         yield row_of("emulated journeys", name, quick(one["journeys"], 8), share, half(lower, upper))
-    for one in json.loads((VALIDATION / "delivery_options.json").read_text())["options"]:
+    for one in read_document(VALIDATION / "delivery_options.json")["options"]:
         share, lower, upper = one["by_landings"]
         name = f"{one['incidence_deg']:g} deg"
         yield row_of("delivery options", name, quick(48, 24), share, half(lower, upper))
@@ -229,11 +225,10 @@ def showcase_runs(folder: Path) -> Row:
         found = end_share(table.rests, table.bed)
         answer = {"share": found.share, "half_width": half(found.lower, found.upper)}
         return answer | {"values": table.rests.astype(float).tolist(), "bed": table.bed.tolist()}
-    with (folder / "runs" / "drawn.csv").open(newline="") as file:
-        beds = {row["key"]: int(float(row["input:bed"])) for row in csv.DictReader(file)}
-    with (folder / "run_flights.csv").open(newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["key"] in beds]
-    returns = json.loads((folder / "estimates.json").read_text())["returns"]
+    runs = read_rows(folder / "runs" / "drawn.csv", {}, str)
+    beds = {row["key"]: int(float(row["input:bed"])) for row in runs}
+    rows = [row for row in read_rows(folder / "run_flights.csv", {}, str) if row["key"] in beds]
+    returns = read_document(folder / "estimates.json")["returns"]
     answer = {"share": returns["share"], "half_width": half(returns["lower"], returns["upper"])}
     values = [float(row["returns"] or "nan") for row in rows]
     return answer | {"values": values, "bed": [beds[row["key"]] for row in rows]}
@@ -272,7 +267,6 @@ def pooled(studies: list[Row]) -> Row:
 
 
 def correlations() -> Row:
-    """Of journeys and of landings."""
     kept = kept_runs()
     journeys = [one for name, one in kept.items() if name not in LANDINGS] + [showcase_runs(SHOWCASE / "mission")]
     landings = [one for name, one in kept.items() if name in LANDINGS]
@@ -288,17 +282,15 @@ def promise(row: Row, when: str) -> str:
 
 def page_table(rows: list[Row]) -> str:
     """Fresh studies and those of the showcase as a table in Markdown [points]."""
-    lines = ["| study | runs, beds | share [%] | promised | after a third | came out |", "|---" * 6 + "|"]
-    for row in rows:
-        if row["group"] in ("fresh", "showcase"):
-            counts = f"{row['runs']}, {row['beds']} | {100 * row['share']:.0f}"
-            promises = " | ".join(promise(row, when) for when in ("before", "after a third"))
-            lines.append(f"| {row['study']} | {counts} | {promises} | {100 * row['half_width']:.1f} |")
-    return "\n".join(lines) + "\n"
+    lines = [
+        (row["study"], f"{row['runs']}, {row['beds']}", f"{100 * row['share']:.0f}",
+         *(promise(row, when) for when in ("before", "after a third")), f"{100 * row['half_width']:.1f}")
+        for row in rows if row["group"] in ("fresh", "showcase")
+    ]  # fmt: skip
+    return table(("study", "runs, beds", "share [%]", "promised", "after a third", "came out"), lines) + "\n"
 
 
 def main() -> None:
-    """Make what is missing, then compare."""
     work = Path(tempfile.gettempdir()) / "lithobrake_planned_width"
     parser = command_line(__doc__, work=work, page=False)
     parser.add_argument("--folders", nargs="+", type=Path, default=())

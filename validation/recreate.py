@@ -15,8 +15,6 @@ does not keep are taken from there. The same bits come out on the machine that m
 differ, and their statistics agree.
 """
 
-import csv
-import json
 import math
 import os
 import resource
@@ -31,7 +29,7 @@ from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import ROOT, command_line, origin, write_document
+from harness import ROOT, command_line, origin, read_document, read_rows, write_document, write_rows
 
 MARK = "made_by_recreate"  # a file in a copy
 COPIED = ("validation", "benchmarks", "scenarios", "docs")
@@ -74,7 +72,7 @@ def cases(root: Path = ROOT) -> dict[str, Case]:
     """All cases below a root, by name."""
     found, notes = {}, noted(root)
     for path in sorted((root / "validation").rglob("*.json")):
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = read_document(path)
         if isinstance(content, dict) and "command" in content:
             case = _case(path, content, root, notes)
             found[case.name] = case
@@ -106,18 +104,15 @@ def cells(content: Any) -> list[float]:
 
 def noted(root: Path = ROOT) -> dict[str, Any]:
     """What recreated cases cost and how they compared, by name."""
-    path = root / "validation" / NOTES
-    return dict(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
+    return read_document(root / "validation" / NOTES, {})
 
 
 def lines(table: Path) -> list[Line]:
     """The rows of a CSV table as text."""
-    with table.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return read_rows(table, {}, str)
 
 
 def expected(case: Case, rows: list[int] | None) -> str:
-    """What the rows of a case cost, in words."""
     cost = case.cpu_s
     if rows is not None and case.table is not None:
         costs = [lines(ROOT / case.table)[row].get("cpu_s") for row in rows]
@@ -135,10 +130,7 @@ def taken_out(table: Path, rows: list[int] | None) -> tuple[list[Line], list[Lin
     rest = [line for number, line in enumerate(kept) if number not in chosen]
     table.unlink()
     if rest:
-        with table.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, list(rest[0]))
-            writer.writeheader()
-            writer.writerows(rest)
+        write_rows(table, rest[0], rest)
     return gone, rest
 
 
@@ -264,7 +256,6 @@ def keep(name: str, cpu: float, apart: list[dict[str, float]] | None) -> None:
 
 
 def listed(known: dict[str, Case]) -> None:
-    """Print the cases."""
     print(f"{'case':32} {'rows':>6} {'CPU time [s]':>14}  made by")
     for case in known.values():
         count = "-" if case.table is None else str(len(lines(ROOT / case.table)))
@@ -273,7 +264,6 @@ def listed(known: dict[str, Case]) -> None:
 
 
 def main() -> int:
-    """List cases, or recreate rows of some."""
     parser = command_line(__doc__, within=math.inf)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--rows", type=int, nargs="+", help="of one case, counted from 0")

@@ -18,11 +18,9 @@ For all: variance of the estimate over the repeats, over the mean of the varianc
 90 % interval of that ratio for real studies.
 """
 
-import json
 import math
 import sys
 import tempfile
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -43,7 +41,20 @@ from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import StudySource, check_tables
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, rounded, write_document, write_rows
+from harness import (
+    SCENARIOS,
+    Row,
+    add_row,
+    command_line,
+    origin,
+    read_document,
+    read_rows,
+    rounded,
+    study_tables,
+    write_document,
+    write_rows,
+)
+from page import table
 
 TABLE = Path(__file__).with_suffix(".csv")
 SYNTHETIC = TABLE.with_stem("sequence_gain_synthetic")
@@ -53,11 +64,8 @@ POINTS = ("sequence", "random")
 
 
 def tables(seed: int, runs: int = RUNS, beds: int = BEDS) -> Row:
-    """The study of the first bounce with so many landings."""
-    study: Row = tomllib.loads((SCENARIOS / "first_bounce.toml").read_text(encoding="utf-8")) | {"seed": seed}
-    study["bed"] |= {"bed_count": beds}
-    study["design"] |= {"run_count": runs}
-    return study
+    changes = {"bed": {"bed_count": beds}, "design": {"run_count": runs}}
+    return study_tables(SCENARIOS / "first_bounce.toml", changes, seed=seed)
 
 
 def random_points(design: DrawnDesign, count: int, skip: int = 0) -> np.ndarray:
@@ -224,30 +232,26 @@ def synthetic_rows(count: int) -> Iterator[Row]:
 
 def page_tables() -> str:
     """Both tables in Markdown: real studies, then synthetic ones."""
-    lines = [
-        "| landings, beds | design points | repeats | scatter [points] | implied [points] | ratio of variances |",
-        "|---" * 6 + "|",
-    ]
-    for name, one in json.loads(TABLE.with_suffix(".json").read_text())["real"].items():
-        runs, kind = name.split(", ")
+    lines = []
+    for name, one in read_document(TABLE.with_suffix(".json"))["real"].items():
         low, high = one["ratio_interval"]
-        widths = f"{one['scatter_points']:.2f} | {one['implied_points']:.2f}"
-        lines.append(f"| {runs} | {kind} | {one['repeats']} | {widths} | {one['ratio']:.2f} ({low:.2f}-{high:.2f}) |")
-    heads = ["landings", "parts of soil, attitude, beds", "random points", "sequence",
-             "sequence, attitude in the regression"]  # fmt: skip
-    lines += ["", f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+        widths = f"{one['scatter_points']:.2f}", f"{one['implied_points']:.2f}"
+        lines.append((*name.split(", "), str(one["repeats"]), *widths, f"{one['ratio']:.2f} ({low:.2f}-{high:.2f})"))
+    heads = ("landings, beds", "design points", "repeats", "scatter [points]", "implied [points]",
+             "ratio of variances")  # fmt: skip
     found: dict[tuple[str, str], dict[tuple[str, str], str]] = {}
     for row in read_rows(SYNTHETIC, {}, others=str):
         of = (row["runs"], f"{float(row['soil']):g}, {float(row['attitude']):g}, {float(row['bed']):g}")
         said = f"{float(row['ratio']):.2f} ({float(row['held']):.2f})"
         found.setdefault(of, {})[row["points"], row["regression"]] = said
     ways = (("random", "soil"), ("sequence", "soil"), ("sequence", "soil and attitude"))
-    lines += [f"| {' | '.join((*of, *(row[way] for way in ways)))} |" for of, row in found.items()]
-    return "\n".join(lines) + "\n"
+    columns = ("landings", "parts of soil, attitude, beds", "random points", "sequence",
+               "sequence, attitude in the regression")  # fmt: skip
+    synthetic = table(columns, ((*of, *(row[way] for way in ways)) for of, row in found.items()))
+    return f"{table(heads, lines)}\n\n{synthetic}\n"
 
 
 def main() -> None:
-    """Make what is missing of the real studies, and all synthetic ones."""
     work = Path(tempfile.gettempdir()) / "lithobrake_sequence_gain"
     options = command_line(__doc__, work=work, repeats=30, large=20, studies=400, page=False).parse_args()
     if options.page:

@@ -2,17 +2,11 @@
 
     python validation/sliding_law.py [--out validation]
 
-The box lander of first_bounce.toml lies on settled beds and is pushed along them, level or down a slope. What it has
-lost when it lies still again, or leaves the bed, over its weight on the ground and its way is its friction. Writes
-sliding_law.csv, a line for each push as it ends, and sliding_law.json with the law that fits them. Pushes that stand in
-the table are not made again: delete it to start anew.
-
-By similarity all depends on friction, restitution, the Froude number v^2 / (g d) and E / (rho g d) alone. The last is
-1e5, by a gravity stronger than an asteroid's, in place of some 1e8; grains overlap by a thousandth of their size then,
-and some pushes at 1e6 tell what that changes.
+docs/validation/sliding_law.md has the set-up. Writes sliding_law.csv, a line for each push as it ends, and
+sliding_law.json with the law that fits them. Pushes that stand in the table are not made again: delete it to start
+anew.
 """
 
-import json
 import math
 import sys
 import time
@@ -30,7 +24,7 @@ from lithobrake.touchdown.bed import boxed_world
 from lithobrake.touchdown.simulation import release
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import Row, add_row, command_line, origin, read_rows, write_document
+from harness import Row, add_row, command_line, origin, read_document, read_rows, write_document
 
 DIAMETER, GRAINS, WIDTH = 0.09, 200, (1.5, 0.45)
 DENSITY, GRAVITY, CONTACT = 2500.0, 0.02, ContactModel()
@@ -186,7 +180,6 @@ def pushed(push: Push, folder: Path) -> Row:
 
 
 def noted(table: Path) -> list[Row]:
-    """Lines of the table on disk."""
     return read_rows(table, {"attitude": str, "stopped": lambda word: word == "True", "bed": int})
 
 
@@ -246,11 +239,10 @@ def summary(rows: list[Row]) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Make the pushes and write what came of them."""
     chosen = command_line(__doc__, out=Path(__file__).parent).parse_args()
     begin = time.process_time()
     table, told = chosen.out / "sliding_law.csv", chosen.out / "sliding_law.json"
-    rows, spent = noted(table), json.loads(told.read_text())["cpu_s"] if told.exists() else 0
+    rows, spent = noted(table), read_document(told, {"cpu_s": 0})["cpu_s"]
     done = [{key: row[key] for key in PUSH} for row in rows]
     to_do = [push for push in pushes() if asdict(push) not in done]
     for number, push in enumerate(to_do, start=1):

@@ -92,7 +92,6 @@ def accuracy(moments: tuple[float, ...], spin_count: int) -> Row:
 
 
 def main() -> None:
-    """Measure, print and write."""
     options = command_line(__doc__, spins=40).parse_args()
     mp.dps = 40
     bodies = [accuracy(moments, options.spins) for moments in BODIES]

@@ -7,14 +7,12 @@ ground with restitutions of hard_ground.py are followed in a folder of their own
 where_it_ends_up.json and the figure of docs/where_it_ends_up.md, and prints its table.
 """
 
-import argparse
 import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
 from hard_ground import HardGround
-from page_text import two_digits
 
 import lithobrake
 from lithobrake.report.figures.style import figure_style
@@ -23,7 +21,8 @@ from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import StudyResults, open_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-from harness import origin, write_document
+from harness import command_line, origin, write_document
+from page import two_digits
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
@@ -32,7 +31,6 @@ ENDS = ("at_rest", "escaped", "partner", "under_way", "failed")
 
 
 def numbers(name: str, study: StudyResults) -> dict[str, Any]:
-    """Ends and places of the journeys, and how the first touchdown ended."""
     results = study.summary["results"]
     rest = results["rest"]
     return {
@@ -50,8 +48,6 @@ def numbers(name: str, study: StudyResults) -> dict[str, Any]:
 
 
 def row(found: dict[str, Any]) -> str:
-    """A row of the table."""
-
     def share(one: dict[str, Any]) -> str:
         return f"{100 * one['share']:.0f} ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
 
@@ -84,17 +80,15 @@ def draw(study: StudyResults) -> None:
 
 
 def main() -> None:
-    """Follow all, write and print what came out."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    found = [numbers("soil", open_study(parser.parse_args().folder))]
+    soil = open_study(command_line(__doc__, "folder").parse_args().folder)
+    found = [numbers("soil", soil)]
     for restitution in RESTITUTIONS:
         model = HardGround(restitution, restitution)
         with tempfile.TemporaryDirectory() as folder:
             study = lithobrake.run(SCENARIO, Path(folder) / "out", model=model, report=False)
             found.append(numbers(f"hard, restitution {restitution:g}", study))
     print("\n".join(row(one) for one in found))
-    draw(open_study(parser.parse_args().folder))
+    draw(soil)
     document = {**origin("validation/where_it_ends_up.py FOLDER"), "grounds": found}
     write_document(Path(__file__).with_suffix(".json"), document)
 

@@ -20,6 +20,7 @@ from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 
@@ -172,10 +173,6 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
     return scaled
 
 
-# With so few beds their sums say less of a correlation than the pairs do.
-FEWEST_BEDS = 8
-
-
 @dataclass(frozen=True)
 class Estimated:
     """A number of one study, in its unit; a bound that the runs cannot give is None."""
@@ -310,7 +307,7 @@ def pair_correlation(first: Array, second: Array, beds: Labels) -> float | None:
     one, two = (values[both] - values[both].mean() for values in (first, second))
     found = [_correlation(one, two)]
     number = np.unique(beds[both], return_inverse=True)[1]
-    if number.max() + 1 >= FEWEST_BEDS:
+    if number.max() + 1 >= FEWEST_BEDS_OF_CORRELATION:
         sums = [np.bincount(number, values).astype(np.float64) for values in (one, two)]
         found.append(_correlation(sums[0], sums[1]))
     known = [r for r in found if r is not None]

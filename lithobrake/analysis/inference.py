@@ -10,22 +10,13 @@ from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
-from lithobrake.analysis.posterior import (
-    ENDLESS,
-    INSTALL,
-    LEAST,
-    WALKER_COUNT,
-    Observation,
-    Proposal,
-    by_bed,
-    can_walk,
-    walk,
-)
+from lithobrake.analysis.posterior import ENDLESS, INSTALL, WALKER_COUNT, Observation, Proposal, by_bed, can_walk, walk
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.training import one_thread
 from lithobrake.emulator.density import BedEffect, observed_density
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.percentages import percent
 
@@ -200,7 +191,7 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
     if not can_walk():
         return replace(found, remedy=INSTALL)
     shares = [law.cdf(values) for law, values in zip(found.inputs.values(), found.points.T, strict=True)]
-    scores = ndtri(np.clip(np.column_stack(shares), LEAST, 1.0 - LEAST))
+    scores = ndtri(np.clip(np.column_stack(shares), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
     random, middle = random_numbers(seed), found.weights @ scores
     spread = np.sqrt(found.weights @ (scores - middle) ** 2) + NARROWEST
     start = scores[random.choice(len(scores), WALKER_COUNT, p=found.weights)]
@@ -222,7 +213,7 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
 
 def _physical(laws: "Mapping[str, Distribution]", scores: Array) -> Array:
     """Points [count, input_count] in physical units from normal scores."""
-    shares = np.clip(ndtr(scores), LEAST, 1.0 - LEAST)
+    shares = np.clip(ndtr(scores), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
     return np.column_stack([law.ppf(share) for law, share in zip(laws.values(), shares.T, strict=True)])
 
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
+from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -96,7 +97,7 @@ class OutcomeModel:
         return np.column_stack(columns)
 
 
-def upper_limit(unit_count: int, level: float = 0.95) -> float:
+def upper_limit(unit_count: int, level: float = EXPANSION_LEVEL) -> float:
     """Largest probability that an event may have, at a level of confidence, which none of so many units has met.
 
     Units are independent: beds, not the runs on them (`unseen_limit`).

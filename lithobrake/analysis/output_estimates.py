@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike
 from lithobrake.analysis.confidence import LEVEL, Bounds, IntervalEstimate, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_TAIL
+from lithobrake.vocabulary.percentages import QUANTILES
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
 # handful of runs beyond the quantile lie on one or two of them (measured: docs/estimates.md).
-TAIL, FEWEST_BEDS_OF_TAIL = 0.1, 10
+TAIL = 0.1
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ def mean_estimate(y: ArrayLike, bed: ArrayLike) -> IntervalEstimate:
 
 
 def quantile_estimates(
-    y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = (0.05, 0.5, 0.95)
+    y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = QUANTILES
 ) -> list[IntervalEstimate]:
     """Quantiles of an output y [run_count], NaN where a run has none, with their intervals from beds [run_count].
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.percentages import percent
 
 if TYPE_CHECKING:
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
 # Of the points drawn near others a part is drawn from the prior still, and the rest wider than what is known so far, so
 # that nothing is lost.
 OF_PRIOR, WIDER = 0.2, 1.5
-# Probability as near to 0, or to 1, as a law without ends takes.
-LEAST = 2.0**-53
 INSTALL = 'install emcee, whose walkers reach what points do not: pip install "lithobrake[infer]"'
 ENDLESS = "emcee's walkers did not come to an end either; leave some bounces out, or give them larger errors"
 WALKER_COUNT = 64
@@ -53,7 +52,7 @@ class Proposal:
         from lithobrake.chaos import Uniform, sobol_sequence
 
         unit = {str(k): Uniform(0.0, 1.0) for k in range(dimension + 1)}
-        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), LEAST, 1.0 - LEAST)
+        uniforms = np.clip(sobol_sequence(unit, count, seed=seed), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
         scores = ndtri(uniforms[:, 1:])
         if self.normal is None:
             return scores, np.zeros(count)

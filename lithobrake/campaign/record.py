@@ -17,6 +17,7 @@ from typing import Any
 
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, reading
+from lithobrake.vocabulary.durations import duration_words
 
 log = logging.getLogger(__name__)
 
@@ -265,10 +266,7 @@ def per_time(rate: float, things: str = "") -> str:
 
 def duration(seconds: float) -> str:
     """Return a time [s] as text in a suitable unit."""
-    for limit, unit, size in ((120.0, "s", 1.0), (7200.0, "min", 60.0), (172_800.0, "h", 3600.0)):
-        if seconds < limit:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds / 86_400:.0f} days"
+    return duration_words(seconds, ".0f")
 
 
 def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:

@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from lithobrake.chaos.basis import condition_number as condition_number
     from lithobrake.chaos.basis import input_tables as input_tables
     from lithobrake.chaos.basis import multi_index_set as multi_index_set
-    from lithobrake.chaos.basis import smolyak_count as smolyak_count
-    from lithobrake.chaos.basis import term_count as term_count
     from lithobrake.chaos.bootstrap import coefficient_changes as coefficient_changes
     from lithobrake.chaos.bootstrap import score_intervals as score_intervals
     from lithobrake.chaos.bootstrap import sobol_estimates as sobol_estimates
     from lithobrake.chaos.bootstrap import sobol_intervals as sobol_intervals
+    from lithobrake.chaos.counts import smolyak_count as smolyak_count
+    from lithobrake.chaos.counts import term_count as term_count
     from lithobrake.chaos.design import GaussianCopula as GaussianCopula
     from lithobrake.chaos.design import christoffel as christoffel
     from lithobrake.chaos.design import christoffel_weights as christoffel_weights

@@ -16,6 +16,7 @@ from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import Training, checked_training, one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
 
 # With more terms for each point than this the residuals say too little about the error.
 TERMS_PER_POINT = 0.7
@@ -47,7 +48,7 @@ class Refit:
 
 @one_thread()
 def sobol_estimates(
-    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = EXPANSION_LEVEL, seed: int = 0
 ) -> dict[str, Any]:
     """Sobol indices freed of the scatter of the training runs x, y, with confidence intervals by resampling residuals.
 
@@ -104,7 +105,7 @@ def coefficient_changes(
 
 
 def sobol_intervals(
-    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = 0.95, seed: int = 0
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = EXPANSION_LEVEL, seed: int = 0
 ) -> dict[str, Any]:
     """The intervals of `sobol_estimates`, widened where needed to hold the indices of the expansion itself.
 
@@ -243,7 +244,13 @@ def _process_refit(training: Training, output: int, entry: dict[str, Any], indic
 
 
 def score_intervals(
-    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 1000, level: float = 0.95, seed: int = 0
+    surrogate: Surrogate,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    count: int = 1000,
+    level: float = EXPANSION_LEVEL,
+    seed: int = 0,
 ) -> dict[str, dict[str, tuple[float, float]]]:
     """Confidence intervals of mape [%], q2, rrmse and rmse on test runs x, y, by output name, resampling the runs.
 

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set, term_count
+from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set
+from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
 
 # Points of one scrambled Sobol sequence: its digits have no more places.
@@ -97,10 +99,6 @@ def _physical(distributions: Mapping[str, Distribution], uniforms: Array) -> Arr
     return np.column_stack([entry.ppf(inner[:, k]) for k, entry in enumerate(distributions.values())])
 
 
-# Probability as near to 0, or to 1, as a point comes.
-LEAST = 2.0**-53
-
-
 class GaussianCopula:
     """Inputs with given distributions and Spearman rank correlations [input_count, input_count].
 
@@ -143,7 +141,7 @@ class GaussianCopula:
         """
         independent = numbers("points", points)
         uniforms = [entry.cdf(independent[:, k]) for k, entry in enumerate(self.inputs.values())]
-        normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST, 1.0 - LEAST))
+        normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
         # Not by a matrix product, whose rounding depends on how many rows there are.
         together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
         found = self._physical(special.ndtr(together))

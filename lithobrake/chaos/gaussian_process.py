@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.basis import Indices, germs_of, multi_index_set, term_count
+from lithobrake.chaos.basis import Indices, germs_of, multi_index_set
+from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training import Training

@@ -11,9 +11,7 @@ from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import evaluate, make_plan
 from lithobrake.chaos.training import one_thread
-from lithobrake.vocabulary.arrays import Array
-
-Whole = NDArray[np.int64]
+from lithobrake.vocabulary.arrays import Array, Integers
 
 # Products of two terms that are worked on at once.
 BLOCK_ROWS = 400_000
@@ -70,7 +68,7 @@ def product_count(inputs: Mapping[str, Distribution], indices: Indices, coeffici
     return float(np.sum(_pair_counts(indices, tables)))
 
 
-def _pair_counts(indices: Indices, tables: list[Linearisation]) -> Whole:
+def _pair_counts(indices: Indices, tables: list[Linearisation]) -> Integers:
     """Number of entries of the products of each term with itself and later ones, [term_count]."""
     counts = np.empty(len(indices), dtype=np.int64)
     for i, row in enumerate(indices):
@@ -106,7 +104,7 @@ def central_moments(inputs: Mapping[str, Distribution], indices: Indices, coeffi
     return third, np.einsum("ij,ij->j", square, square)
 
 
-def _blocks(counts: Whole) -> Iterator[tuple[int, int]]:
+def _blocks(counts: Integers) -> Iterator[tuple[int, int]]:
     """Ranges of first terms whose products fit into memory together."""
     first = 0
     while first < len(counts):
@@ -117,7 +115,7 @@ def _blocks(counts: Whole) -> Iterator[tuple[int, int]]:
 
 def _block_products(
     indices: Indices, coefficients: Array, tables: list[Linearisation], first: int, last: int
-) -> tuple[Whole, Array]:
+) -> tuple[Integers, Array]:
     """Keys (a number for each multi-index) and coefficients of products of terms first to last with all later ones."""
     pairs = [np.arange(i, len(indices)) for i in range(first, last)]
     left, right = np.repeat(np.arange(first, last), [len(one) for one in pairs]), np.concatenate(pairs)
@@ -135,7 +133,7 @@ def _block_products(
     return _summed(keys, contributions)
 
 
-def _summed(keys: Whole, contributions: Array) -> tuple[Whole, Array]:
+def _summed(keys: Integers, contributions: Array) -> tuple[Integers, Array]:
     """Distinct keys in order, and the sums of their contributions [key_count, output_count]."""
     distinct, group = np.unique(keys, return_inverse=True)
     columns = [np.bincount(group, weights=column, minlength=len(distinct)) for column in contributions.T]

@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from lithobrake.chaos.basis import check_level, smolyak_count
+from lithobrake.chaos.counts import check_level, smolyak_count
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.vocabulary.arrays import Array

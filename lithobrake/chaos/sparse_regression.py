@@ -8,14 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.least_squares import Solution, solve_ols, terms_to_try
 from lithobrake.chaos.training import Training
-from lithobrake.vocabulary.arrays import Array
-
-Rows = NDArray[np.int64]
+from lithobrake.vocabulary.arrays import Array, Integers
 
 FOLDS = 10
 NORMS = (1.0, 0.75, 0.5)
@@ -76,7 +73,7 @@ def solve_sparse(training: Training, output: int, method: str, *, degree: int | 
 
 
 def _best_candidates(
-    training: Training, y: Array, method: str, ladders: list[list[Candidates]], folds: list[Rows]
+    training: Training, y: Array, method: str, ladders: list[list[Candidates]], folds: list[Integers]
 ) -> tuple[float, int, Candidates]:
     """Smallest mean squared error, the number of terms that has it, and the candidates they are chosen from."""
     best = np.inf, 0, next(one for ladder in ladders for one in ladder)
@@ -118,7 +115,7 @@ def _candidate_ladders(training: Training, degree: int | None, q_norm: float | N
     return ladders
 
 
-def _folds(training: Training) -> list[Rows]:
+def _folds(training: Training) -> list[Integers]:
     """Rows left out in each fold: the same for every candidate, random but fixed, equal runs together."""
     groups = training.groups or [np.array([row]) for row in range(training.count)]
     order = np.random.default_rng(0).permutation(len(groups))
@@ -126,7 +123,7 @@ def _folds(training: Training) -> list[Rows]:
     return [np.sort(np.concatenate([groups[k] for k in part])) for part in parts]
 
 
-def _order(matrix: Array, y: Array, method: str) -> Rows:
+def _order(matrix: Array, y: Array, method: str) -> Integers:
     """Columns in the order in which the method takes them up; the constant (column 0) is always in and not listed."""
     from sklearn.linear_model import lars_path, orthogonal_mp
 
@@ -156,7 +153,7 @@ def _order(matrix: Array, y: Array, method: str) -> Rows:
     return (usable[order[entered[order] < path.shape[1]]] + 1).astype(np.int64)
 
 
-def _path(matrix: Array, y: Array, order: Rows) -> tuple[Array, Array, Array]:
+def _path(matrix: Array, y: Array, order: Integers) -> tuple[Array, Array, Array]:
     """Orthogonal factor, triangle and projected outputs for the constant and the columns in their order."""
     orthogonal, triangle = np.linalg.qr(matrix[:, np.concatenate([[0], order]).astype(np.int64)])
     # Later columns that are combinations of earlier ones would divide by rounding.
@@ -165,7 +162,7 @@ def _path(matrix: Array, y: Array, order: Rows) -> tuple[Array, Array, Array]:
     return orthogonal[:, :good], triangle[:good, :good], orthogonal[:, :good].T @ y
 
 
-def _fold_errors(matrix: Array, y: Array, method: str, folds: Sequence[Rows]) -> Array:
+def _fold_errors(matrix: Array, y: Array, method: str, folds: Sequence[Integers]) -> Array:
     """Mean squared error at left-out points for each number of chosen terms, [length + 1]."""
     from scipy.linalg import solve_triangular
 

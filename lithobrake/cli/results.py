@@ -28,6 +28,7 @@ from lithobrake.cli.arguments import (
     tell_result,
 )
 from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.pipeline import OneJourney
@@ -113,7 +114,7 @@ def runs(
         records = open_study(folder).ledger
         units: dict[str, str] = {}
         # The names of a campaign that is no study are its author's, and so are their units.
-        if (folder / "study.toml").is_file():
+        if (folder / STUDY_FILE).is_file():
             from lithobrake.study.units import run_units
 
             units = run_units()

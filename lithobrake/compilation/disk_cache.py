@@ -15,6 +15,7 @@ from pathlib import Path
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import open_regular
+from lithobrake.vocabulary.constants import DAY
 
 PLACE = Path(".local", "state", "lithobrake", "cache.key")
 _LENGTH = 32
@@ -69,7 +70,7 @@ _WRITABLE_BY_OTHERS = 0o022
 _REMOVABLE = re.compile(r"[0-9a-f]{64}|\.[0-9a-f]{64}\.\d+\.part")
 _REMEDY = "set LITHOBRAKE_CACHE to a folder that is yours alone"
 # A draft that is older [s] was left behind by a process that was killed while it wrote.
-_ABANDONED = 86_400.0
+_ABANDONED = DAY
 
 
 class DiskCache:

@@ -3,7 +3,7 @@
 Other parts use this one by the names that stand here.
 """
 
-from lithobrake.dem.bodies.rigid_body import Material, Part, RigidBody, checked_inertia, new_body
+from lithobrake.dem.bodies.rigid_body import Part, RigidBody, checked_inertia, new_body
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.bodies.vectors import folded, period_of
 from lithobrake.dem.law.restitution import pair_law
@@ -11,6 +11,7 @@ from lithobrake.dem.observables import BodyMotion
 from lithobrake.dem.stepping.engine import rotation_matrices
 from lithobrake.dem.stepping.time_step_stability import contact_duration
 from lithobrake.dem.world import StepTooLargeError, World
+from lithobrake.vocabulary.material import Material
 
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Part", "RigidBody", "Shape", "Sphere", "StepTooLargeError", "World",

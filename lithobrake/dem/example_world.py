@@ -1,9 +1,9 @@
 """A world of two grains above a plane: stepped once, it has the kernels compiled that any other world calls."""
 
-from lithobrake.dem.bodies.rigid_body import Material
 from lithobrake.dem.bodies.shape import Box
 from lithobrake.dem.world import World
 from lithobrake.dem.world_state import NOTHING_WATCHED
+from lithobrake.vocabulary.material import Material
 
 
 def two_grains() -> World:

@@ -6,12 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Floats, Pairs, Step
+from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Step
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody, vector
 from lithobrake.dem.bodies.vectors import NO_PERIOD
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.time_step_stability import largest_step, shortest_contact
 from lithobrake.dem.world_state import WorldState
+from lithobrake.vocabulary.arrays import Floats
 
 
 def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_momentum: Floats) -> Floats:

@@ -8,8 +8,7 @@ from dataclasses import asdict
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.dem.bodies.arrays import Floats
-from lithobrake.dem.bodies.rigid_body import Material, Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
+from lithobrake.dem.bodies.rigid_body import Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.bodies.vectors import period_of, refuse_tilted_plane
 from lithobrake.dem.law.restitution import contact_options
@@ -29,6 +28,8 @@ from lithobrake.dem.stepping.time_loop import (
 )
 from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
+from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.material import Material
 
 
 class StepTooLargeError(ValueError):

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import LOSSES, Floats, Pairs, Period, Step
+from lithobrake.dem.bodies.arrays import LOSSES, Pairs, Period, Step
 from lithobrake.dem.bodies.motion import write_spins
-from lithobrake.dem.bodies.rigid_body import Material, Part, Plane, RigidBody
+from lithobrake.dem.bodies.rigid_body import Part, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.law.restitution import contact_options
 from lithobrake.dem.local_stepping.local_engine import LocalEngine, Setting
@@ -28,6 +28,8 @@ from lithobrake.dem.stepping.engine import (
 from lithobrake.dem.stepping.neighbours import no_pairs
 from lithobrake.dem.stepping.time_loop import new_record
 from lithobrake.files.atomic import atomic_path
+from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.material import Material
 
 NOTHING_WATCHED = -1
 

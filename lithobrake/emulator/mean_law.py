@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set, term_count
+from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
+from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.emulator.ridge_ladder import Ladder
 from lithobrake.vocabulary.arrays import Array

@@ -11,6 +11,7 @@ from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, kernels
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.percentages import HIGH, LOW
 
 
 def folds_of(group: NDArray[np.int64], most: int) -> NDArray[np.int64]:
@@ -75,7 +76,7 @@ def pit(values: Array, weights: Array, observed: Array) -> Array:
 MOST_FOLDS = 12
 # Rows of an ensemble whose mutual distances are taken; of more than this every second, third, ... one.
 MOST_MEMBERS = 300
-BAND = (0.05, 0.95)
+BAND = (LOW, HIGH)
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,10 @@ import numpy as np
 from lithobrake.export.flown import Flown
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path, write_whole
-from lithobrake.geometry.naif_kernels import DAY, NUMBERS, spice
+from lithobrake.geometry.naif_kernels import NUMBERS, spice
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
 

@@ -18,6 +18,7 @@ from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.study_files import ARCS_FILE
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
@@ -99,7 +100,7 @@ class Flown:
                 return chosen
             return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
         # The folder of an earlier version notes no journeys.
-        if not (results.folder / "arcs.csv").is_file():
+        if not (results.folder / ARCS_FILE).is_file():
             return self.of_samples(samples)
         noted = _noted(results.arcs.where(np.isin(results.arcs["sample"], samples)), results.study["rest"]["duration"])
         alone = self.of_samples([sample for sample in samples if sample not in noted["sample"]])
@@ -198,7 +199,7 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
     site, name = results.study["site"], body_name(results)
     partner = None
     if site["body"] in BUILT_IN_BODIES:
-        partner = getattr(smallbody, site["body"])(partner=site["partner"]).partner
+        partner = smallbody.built_in_body(site["body"], partner=site["partner"]).partner
     # A study of before this key has none.
     shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
     return Body(shape, mass, spin_period, name, partner)

@@ -14,6 +14,7 @@ from lithobrake.files.atomic import refuse_existing
 from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
 from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.study_files import JOURNEYS_FILE, REST_FILE
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def _geojson(results: StudyResults, folder: Path, chosen: ExportOptions) -> None
 
 
 def _has_rest(results: StudyResults) -> bool:
-    return any((results.folder / name).is_file() for name in ("rest.csv", "journeys.csv"))
+    return any((results.folder / name).is_file() for name in (REST_FILE, JOURNEYS_FILE))
 
 
 # Two kinds of files show one landing, which may take minutes to make again.

@@ -14,6 +14,7 @@ from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus
+from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
 if TYPE_CHECKING:
     from PIL.TiffImagePlugin import ImageFileDirectory_v2
@@ -31,7 +32,7 @@ NOTE = f"{WORDS}; coordinates in degrees, longitude first"
 PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
 REST_PROPERTIES = ("sample", "ground", "time_s", "rebounds", "path_length")
 JOURNEY_PROPERTIES = ("journey", "bed", "time_s", "distance", "contacts", "touchdowns", "path_length", "face")
-TOUCHDOWN_PROPERTIES = ("journey", "touchdown", "key", "outcome", "begin_s", "end_s", "impact.speed")
+TOUCHDOWN_PROPERTIES = ("journey", "touchdown", "key", "outcome", "begin_s", "end_s", IMPACT_SPEED)
 NO_FLOATS: dict[str, Callable[[Any], int | str]] = {
     **dict.fromkeys(("sample", "facet", "journey", "bed", "contacts", "touchdowns", "touchdown"), int),
     **dict.fromkeys(("ground", "face", "key", "outcome"), str),

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from lithobrake.geometry.limits import alike
 from lithobrake.vocabulary.arrays import Array
 
 
@@ -53,14 +54,6 @@ def quaternion_products(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     w, v, s, u = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
     scalar = w * s - np.sum(v * u, axis=1, keepdims=True)
     return np.concatenate([scalar, w * u + s * v + np.cross(v, u)], axis=1)
-
-
-# They differ by less than this part.
-ALIKE = 1e-6
-
-
-def alike(first: float, second: float) -> bool:
-    return math.isclose(first, second, rel_tol=ALIKE)
 
 
 UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"

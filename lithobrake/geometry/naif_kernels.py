@@ -18,8 +18,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
+from lithobrake.vocabulary.known_bodies import KNOWN_BODIES
 
+INSTALL = 'pip install "lithobrake[spice]"'
 # Shapes of millions of plates take some seconds; a damaged kernel may lead round in a circle [s].
 TIME_LIMIT = 300.0
 _PROGRAM = f"from {__name__} import answer; answer()"
@@ -101,10 +104,9 @@ def _damaged(kernels: Sequence[str], words: str) -> ValueError:
 
 
 # Bodies that SPICE's own table of names may lack.
-NUMBERS = {"didymos": 920065803, "dimorphos": 120065803}
+NUMBERS = {key: body.kernel_number for key, body in KNOWN_BODIES.items() if body.kernel_number is not None}
 # What others, older kernels among them, call the same two bodies.
-OLD_NUMBERS = {2065803: 920065803, 20065803: 920065803}
-DAY = 86_400.0  # [s]
+OLD_NUMBERS = dict.fromkeys((2065803, 20065803), NUMBERS["didymos"])
 
 
 def spin(kernels: Sequence[str], body: str | int) -> tuple[float, float, float, float]:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.files.atomic import atomic_path, write_rows, write_whole
+from lithobrake.files.atomic import atomic_path, write_rows
 from lithobrake.files.reading import content_hash, read_rows
-from lithobrake.geometry.mesh_files import labelled_mesh, mesh_unit
+from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import SITE_KEYS, Site
@@ -17,7 +17,15 @@ from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import ARC, FIXED, FLIGHT, Quantity, quantity
+from lithobrake.vocabulary.study_files import (
+    ARCS_FILE,
+    BODY_FILE,
+    FLIGHT_CHECKS_FILE,
+    JOURNEYS_FILE,
+    SAMPLE_FLIGHTS_FILE,
+)
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Flights
@@ -67,8 +75,8 @@ class Ways:
 
     @classmethod
     def of_journeys(cls, folder: "StudyFolder") -> "Ways":
-        ends = {row["journey"]: row["end"] for row in read_rows(folder / "journeys.csv", ("journey", "end"), AGAIN)}
-        rows = read_rows(folder / "arcs.csv", tuple(ARC), AGAIN)
+        ends = {row["journey"]: row["end"] for row in read_rows(folder / JOURNEYS_FILE, ("journey", "end"), AGAIN)}
+        rows = read_rows(folder / ARCS_FILE, tuple(ARC), AGAIN)
         rows = [row for row in rows if int(row["sample"]) < PATHS][:MOST_ARCS]
 
         def column(name: str) -> np.ndarray:
@@ -127,7 +135,6 @@ def _write(folder: "StudyFolder", position: np.ndarray, time: np.ndarray, ways: 
 
 # Flights of which the Jacobi constant is looked at.
 CHECKED = 200
-QUANTILES = (0.05, 0.5, 0.95)
 # docs/flights.md says what each is.
 COLUMNS = (
     "sample", "start_speed", "start_elevation_deg", "velocity_x", "velocity_y", "velocity_z",
@@ -191,11 +198,11 @@ def fly_samples(job: Job) -> None:
     for words in (job.site.warning, job.site.rotation_words):
         if words:
             job.say(words)
-    job.folder.write_json("flights.json", _checks(job, start))
+    job.folder.write_json(FLIGHT_CHECKS_FILE, _checks(job, start))
     write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
     write_flight_paths(job, body, Ways.of_samples(flown, start.sample))
-    write_table(job.folder, "flights.csv", COLUMNS, flight_rows(start, flown))
+    write_table(job.folder, SAMPLE_FLIGHTS_FILE, COLUMNS, flight_rows(start, flown))
 
 
 def write_table(
@@ -260,7 +267,8 @@ def write_shape(body: "Body", folder: StudyFolder) -> None:
     # repr has all digits, so that who reads the file has the same body; OBJ counts vertices from 1.
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
-    write_whole(folder / "body.obj", "\n".join(lines) + "\n")
+    with atomic_path(folder / BODY_FILE) as draft:
+        draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def flight_rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:

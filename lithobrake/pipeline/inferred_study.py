@@ -26,11 +26,12 @@ from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPI
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
-from lithobrake.results.study_files import STUDY_FILE, intact_file
+from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.units import conversion, input_units, run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator

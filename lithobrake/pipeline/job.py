@@ -11,7 +11,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 
 
-class Progress(Protocol):
+class StudyProgress(Protocol):
     """Shows a study at work: the stages as they begin, how far the work in each is, sentences that stay."""
 
     def begin(self, title: str, number: int, count: int) -> None:
@@ -43,18 +43,17 @@ def note_nothing(**what: Any) -> None:
 class Job:
     """A study, its folder, where runs are made, and where progress is shown.
 
-    design, site: the runs that the study asks for, and where it lands, each worked out once.
+    design: the runs that the study asks for, and where it lands, each worked out once.
     tables: the study file as it was written, for the record. model: a function of the user's own that makes the
     touchdowns in place of the soil. keeps_logs: each run leaves a log in the folder. wanted: files of the present stage
     that are not there, or no longer good. note: notes for other processes how far the stage is, by name.
     """
 
     design: DrawnDesign
-    site: Site
     tables: Mapping[str, Any]
     folder: StudyFolder
     executor: Executor
-    shown: Progress
+    shown: StudyProgress
     model: Callable[[dict[str, float], int], Mapping[str, Any]] | None = None
     keeps_logs: bool = False
     wanted: tuple[str, ...] = ()
@@ -64,6 +63,11 @@ class Job:
     def study(self) -> Study:
         """The study, with as many runs as it has by now."""
         return self.design.study
+
+    @property
+    def site(self) -> Site:
+        """Where the study lands."""
+        return self.design.site
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         """Show how far a piece of work is; detail: more about it, in lines."""

@@ -14,6 +14,7 @@ from lithobrake.study.quantity import median
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.outcomes import SampleOutcome
 from lithobrake.vocabulary.quantities import RUN, TOUCHDOWN, VELOCITY_OUT, quantity
+from lithobrake.vocabulary.study_files import SAMPLES_FILE
 
 VELOCITY = VELOCITY_OUT
 
@@ -126,7 +127,7 @@ class Samples:
         import h5py
 
         study_units = input_units()
-        with atomic_path(folder / "samples.h5") as draft, h5py.File(draft, "w") as file:
+        with atomic_path(folder / SAMPLES_FILE) as draft, h5py.File(draft, "w") as file:
             for name in ("inputs", "outputs", "outcome"):
                 file.create_dataset(name, data=getattr(self, name))
             if self.without_scatter is not None:
@@ -147,7 +148,7 @@ class Samples:
         """Read samples.h5. Raises ValueError for a damaged file."""
         import h5py
 
-        with reading(folder / "samples.h5", AGAIN), h5py.File(folder / "samples.h5") as file:
+        with reading(folder / SAMPLES_FILE, AGAIN), h5py.File(folder / SAMPLES_FILE) as file:
             arrays = {name: data[()] for name, data in file.items()}
             return cls(list(file.attrs["input_names"]), list(file.attrs["output_names"]), **arrays)
 

@@ -26,7 +26,7 @@ from lithobrake.pipeline.stages import FOLLOW_JOURNEYS
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.limit_state import LimitState
-from lithobrake.vocabulary.quantities import JOURNEYS_FILE
+from lithobrake.vocabulary.study_files import JOURNEYS_FILE
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:

@@ -16,6 +16,8 @@ from lithobrake.study.checks import settling_problems
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
+from lithobrake.vocabulary.constants import DAY, HOUR
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -26,7 +28,6 @@ SITE_KEYS = (
     "latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error", "mass", "spin_period",
     "partner_longitude_deg", "rotation_time",
 )  # fmt: skip
-DAY = 86_400.0  # s
 # Below this share of gravity the acceleration at a place counts as nearly none.
 NEARLY_NONE = 0.05
 # Accelerations that differ by this factor, or in direction, are told to the user.
@@ -193,7 +194,7 @@ class Site:
             return f"{where} push outward by {outward:.2g} m/s2 and eject what lies there: {end}"
         words = "outward" if outward > 0.0 else "inward"
         # Metres that a fall or a drift covers in an hour say more than micrometres per second squared.
-        hour = 0.5 * abs(outward) * 3600.0**2
+        hour = 0.5 * abs(outward) * HOUR**2
         return (
             f"{where} nearly cancel: only {abs(outward):.2g} m/s2 {words} remain, {hour:.2g} m in the first hour from "
             f"rest. A small error of mass, spin or shape can reverse this, and then {end}"
@@ -231,10 +232,9 @@ def _body(study: Study) -> "Body":
 
 @lru_cache(maxsize=4)
 def _built_in(name: str, partner: bool, extents: tuple[float, float, float] | None) -> "Body":
-    from lithobrake import smallbody
+    from lithobrake.smallbody import built_in_body
 
-    body: Body = getattr(smallbody, name)(partner=partner, extents=extents)
-    return body
+    return built_in_body(name, partner=partner, extents=extents)
 
 
 # Moments of the body are those of its shape, and the orbit hardly depends on its mass: that of the median is taken.
@@ -263,7 +263,7 @@ def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Sh
     return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
-def with_site_gravity(study: Study, name: str = "study.toml") -> Study:
+def with_site_gravity(study: Study, name: str = STUDY_FILE) -> Study:
     """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
 
     Raises StudyError, with the name of the study file, where no bed would settle under it.

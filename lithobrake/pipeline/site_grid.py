@@ -10,7 +10,7 @@ from lithobrake.analysis import EqualAreaCells, best_choice, share_difference
 from lithobrake.files.reading import hashed_seed, read_rows
 from lithobrake.geometry.frames import directions
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quantile_of_some
-from lithobrake.pipeline.answer.journey_ends import MEDIAN, JourneyTable
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.first_bounces.aiming import ways_from_aims
@@ -18,21 +18,17 @@ from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN
 from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
-from lithobrake.pipeline.journeys.touchdown_emulator import (
-    GRAVITY,
-    INCIDENCE,
-    SLOPE,
-    SPEED,
-    Arrivals,
-    TouchdownEmulator,
-)
+from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arrivals, TouchdownEmulator
 from lithobrake.pipeline.sky import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.run_results import ShareInterval
 from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteSpread
 from lithobrake.study.question_sections import SkyBody
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_REGION
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import TOUCHDOWNS_FILE, UNKNOWN_END
+from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
+from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
+from lithobrake.vocabulary.study_files import TOUCHDOWNS_FILE
 
 # Places of each cell that are looked at.
 PLACES = 24
@@ -135,7 +131,7 @@ def follow_sites(job: Job, cells: EqualAreaCells, lander_count: int) -> SiteLand
 
 def site_arrivals(job: Job, cells: EqualAreaCells, lander_count: int) -> Arrivals:
     """The landers of all cells at their first touchdowns, one cell after the other."""
-    one = Arrivals.drawn(job.design, job.site, len(job.design.rows), lander_count)
+    one = Arrivals.drawn(job.design, len(job.design.rows), lander_count)
     random = np.random.default_rng(hashed_seed(job.study.seed, "sites"))
     places = cells.places_deg(np.broadcast_to(random.random((lander_count, 2)), (cells.total, lander_count, 2)))
     aims = {"latitude_deg": places[..., 0].ravel(), "longitude_deg": places[..., 1].ravel()}
@@ -147,8 +143,7 @@ def site_arrivals(job: Job, cells: EqualAreaCells, lander_count: int) -> Arrival
 # A cell of which more landers have an unknown end is not answered.
 MOST_UNKNOWN = 0.1
 # Ends of the spread over the places of a cell.
-LOW, HIGH = 0.05, 0.95
-WORDS = {GRAVITY: "gravity", SLOPE: "slope", SPEED: "impact speed", INCIDENCE: "impact angle"}
+WORDS = {GRAVITY: "gravity", SLOPE: "slope", IMPACT_SPEED: "impact speed", IMPACT_INCIDENCE: "impact angle"}
 
 
 def site_cells(
@@ -232,8 +227,8 @@ def _spread(values: np.ndarray) -> SiteSpread:
     return SiteSpread(float(values.mean()), low, high)
 
 
-# Regions of equal area, and journeys and beds that say something of one.
-REGIONS, FEWEST, FEWEST_BEDS = 8, 8, 4
+# Regions of equal area, and journeys that say something of one.
+REGIONS, FEWEST_JOURNEYS = 8, 8
 
 
 def first_places(job: Job) -> tuple[np.ndarray, np.ndarray]:
@@ -260,7 +255,9 @@ def site_agreement(job: Job) -> tuple[SiteAgreement, ...]:
     parts = [(None, known)] + [(place, region == place) for place in range(REGIONS)]
     found = []
     for place, those in parts:
-        if place is not None and (those.sum() < FEWEST or len(np.unique(table.bed[those])) < FEWEST_BEDS):
+        if place is not None and (
+            those.sum() < FEWEST_JOURNEYS or len(np.unique(table.bed[those])) < FEWEST_BEDS_OF_REGION
+        ):
             continue
         latitude_deg, longitude_deg = (None, None) if place is None else regions.centres_deg[place].tolist()
         of_region = share_difference(landings[those], emulator[those], table.bed[those], why=why)

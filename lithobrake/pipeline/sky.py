@@ -14,17 +14,18 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.study import Study
 from lithobrake.study.delivered_states import orbiter_states
-from lithobrake.study.lander_section import SIDES
+from lithobrake.study.lander_section import OUTWARD
 from lithobrake.study.quantity import Scalar, Uncertain
 from lithobrake.study.question_checks import utc
 from lithobrake.study.question_sections import SkyBody
+from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import JOURNEYS_FILE, SKY, SKY_FILE
+from lithobrake.vocabulary.quantities import SIDES, SKY
+from lithobrake.vocabulary.study_files import JOURNEYS_FILE, SKY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Screen
 
-Floats = np.ndarray
 # Of a span of time, evenly over it, each in the middle of its part.
 DATES = 24
 
@@ -147,10 +148,6 @@ def screens(body: "Body", count: int, blocks: int) -> "Iterator[Screen | None]":
         yield Screen(centre, 0.25 * float(extents[0] + extents[1]), 0.5 * float(extents[2]))
 
 
-# Outward, by the lander's own axes, in the order of SIDES.
-NORMALS = np.array([sign * np.eye(3)[axis] for axis in range(3) for sign in (1.0, -1.0)])
-
-
 class View(NamedTuple):
     """A part of the time: unit vectors to a body from each lander, [lander_count, direction_count, 3], how far away it
     is there [m], the part that each direction stands for, [direction_count], and what hides it."""
@@ -260,5 +257,5 @@ def _side_normals(landers: list[dict[str, float]]) -> np.ndarray:
     for number, one in enumerate(landers):
         quaternion = [one[f"attitude_{part}"] for part in "wxyz"]
         if np.isfinite(quaternion).all():
-            found[number] = Rotation.from_quat(quaternion, scalar_first=True).apply(NORMALS)
+            found[number] = Rotation.from_quat(quaternion, scalar_first=True).apply(np.array(OUTWARD))
     return found

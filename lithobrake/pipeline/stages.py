@@ -55,6 +55,16 @@ from lithobrake.pipeline.runs.run_table import file_of
 from lithobrake.pipeline.sky import look_up, sky_dependencies, sky_files
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import OWN_KEYS
+from lithobrake.vocabulary.study_files import (
+    BODY_FILE,
+    FLIGHT_CHECKS_FILE,
+    REFINED_FILE,
+    SAMPLE_FLIGHTS_FILE,
+    SAMPLES_FILE,
+    SCORES_FILE,
+    SCREENING_FILE,
+    SUMMARY_FILE,
+)
 
 # Beds and landings are known by the hash of the engine and of all that they follow from; this is how they are chosen
 # and written down.
@@ -91,10 +101,11 @@ SIDE_RUNS = Stage(
 TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
 
 
-FLIGHT_FILES = ("flights.csv", "flights.json", "body.obj", PATHS_FILE)
+FLIGHT_FILES = (SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE, BODY_FILE, PATHS_FILE)
 FLIGHT_PARTS = (
     "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
-    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/quantities.py",
+    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
+    "vocabulary/known_bodies.py", "vocabulary/quantities.py",
 )  # fmt: skip
 
 # After the side runs, since pairs and twins fly with the runs that they belong to.
@@ -126,7 +137,7 @@ EMULATOR = Stage(
 SAMPLE = Stage(
     "sample",
     "samples",
-    same_files("samples.h5"),
+    same_files(SAMPLES_FILE),
     draw_emulator_samples,
     ("emulator",),
     sample_dependencies,
@@ -166,7 +177,7 @@ def _delivery(study: Study) -> list[Any]:
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, "body.obj", PATHS_FILE),
+    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, BODY_FILE, PATHS_FILE),
     make_journeys,
     ("bed",),
     journey_dependencies,
@@ -204,7 +215,7 @@ ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, 
 JOURNEY_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_journey_summary,
     ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
     summary_dependencies,
@@ -213,7 +224,7 @@ JOURNEY_SUMMARY = Stage(
 SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_drawn_summary,
     ("landing", "telling_landing", "estimate", "rest", "aim"),
     summary_dependencies,
@@ -245,7 +256,7 @@ SCREENING_RUNS = Stage(
     PAPER_PARTS,
 )
 SCREEN = Stage(
-    "screen", "screening", same_files("screening.json"), fit_screening, ("screening_runs",), _design("fit"), PAPER_PARTS
+    "screen", "screening", same_files(SCREENING_FILE), fit_screening, ("screening_runs",), _design("fit"), PAPER_PARTS
 )
 REFINED_RUNS = Stage(
     "refined_runs",
@@ -256,7 +267,7 @@ REFINED_RUNS = Stage(
     _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs"),
     PAPER_PARTS,
 )
-REFINE = Stage("refine", "refinement", same_files("refined.json"), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
+REFINE = Stage("refine", "refinement", same_files(REFINED_FILE), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
 TEST_RUNS = Stage(
     "test_runs",
     "test runs",
@@ -266,11 +277,11 @@ TEST_RUNS = Stage(
     _design("test_count"),
     PAPER_PARTS,
 )
-TEST = Stage("test", "scores", same_files("scores.json"), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
+TEST = Stage("test", "scores", same_files(SCORES_FILE), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
-    same_files("samples.h5", EXPLORER_FILE),
+    same_files(SAMPLES_FILE, EXPLORER_FILE),
     sample_expansion,
     ("refine", "test"),
     sample_dependencies,
@@ -297,7 +308,7 @@ FOLLOW_EXPANSION_SAMPLES = Stage(
 PAPER_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files("summary.json"),
+    same_files(SUMMARY_FILE),
     write_summary,
     ("landing", "rest"),
     summary_dependencies,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.files.atomic import locked, write_json, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.study import StudySource
@@ -160,7 +161,7 @@ class StudyFolder:
             notes = Notes()
         place = _path_from(self.path, study) if study else ""
         notes.of_setting({"file": place, "sha256": hashlib.sha256(content).hexdigest()}, stages).write(self.path)
-        write_whole(self / "study.toml", content)
+        write_whole(self / STUDY_FILE, content)
 
     def is_current(self, files: Iterable[str], key: str) -> bool:
         """Whether all these files exist, are whole, and were made from what the key names."""
@@ -241,7 +242,7 @@ def refuse_others_folder(source: "StudySource", out: Path) -> None:
             f"{out} holds {', '.join(strangers[:3])}{more}, and no study made it; {_ANOTHER}, one that is empty or "
             "does not exist"
         )
-    owner, copy = _noted_study(out), out / "study.toml"
+    owner, copy = _noted_study(out), out / STUDY_FILE
     if owner == (study and study.resolve()) or (copy.is_file() and copy.read_bytes() == source.content):
         return
     unknown = f"does not record which study it belongs to, and its study.toml is not that of {source.name}"

@@ -14,16 +14,16 @@ from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.folder_state import grouped, read_state
-from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.outdated_files import make, setting
 from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import Model, function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import stages_until
 from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
-from lithobrake.results import StudyResults
+from lithobrake.report.plotted_study import PlottedStudy
 from lithobrake.study import StudySource
 
 
@@ -34,8 +34,8 @@ def run(
     workers: int | None = None,
     model: Model | None = None,
     report: bool = True,
-    progress: Progress | None = None,
-) -> StudyResults:
+    progress: StudyProgress | None = None,
+) -> PlottedStudy:
     """Run a study to its end and return its results; reuse what its folder already has.
 
     study: path of a study file, the name of a study that comes with the package ("quick"; `lithobrake examples` lists
@@ -73,10 +73,10 @@ def run(
         raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
     until = "report" if report else "summary"
     run_study(source, folder, until=until, worker_count=workers, model=model, shown=progress)
-    return StudyResults(folder)
+    return PlottedStudy(folder)
 
 
-def _say_solver(command: str | None, shown: Progress) -> None:
+def _say_solver(command: str | None, shown: StudyProgress) -> None:
     if command:
         what = "model of a server, which every remaining run calls"
         if not command.startswith(PREFIX):
@@ -92,7 +92,7 @@ def run_study(
     worker_count: int | None = None,
     scheduler: str | None = None,
     model: Model | None = None,
-    shown: Progress | None = None,
+    shown: StudyProgress | None = None,
     keeps_logs: bool = False,
 ) -> None:
     """Run the stages of a study up to and including `until`; reuse what the folder already has.
@@ -108,7 +108,8 @@ def run_study(
     study = with_site_gravity(source.study, source.name)
     # Refuses a stage that the method does not have, before anything is made.
     stages_until(study, until)
-    Soils(Site(study)).refuse(source.name)
+    drawn = DrawnDesign(study)
+    Soils(drawn.site).refuse(source.name)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)
     folder = StudyFolder(out)
@@ -118,15 +119,15 @@ def run_study(
         folder.alone() as note,
         DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor,
     ):
-        site, design = Site(study), grown(DrawnDesign(study), folder)
+        design = grown(drawn, folder)
         folder.begin(source.path, source.content, setting(design.study), shown.say)
         if until == "report":
-            plan = plan_of(design, site, source.stem, folder, worker_count, on_cluster=scheduler is not None)
+            plan = plan_of(design, source.stem, folder, worker_count, on_cluster=scheduler is not None)
             command = f"lithobrake plan {source.path or 'STUDY.toml'} --out {folder.path}"
             for line in brief_lines(plan, command) if plan.stages else ():
                 shown.say(line)
         try:
-            _make_all(Job(design, site, source.tables, folder, executor, shown, model, keeps_logs), source, until, note)
+            _make_all(Job(design, source.tables, folder, executor, shown, model, keeps_logs), source, until, note)
         except BaseException:
             # What is under way would be waited for otherwise; every finished run is in the ledger already.
             executor.shutdown(cancel_futures=True)

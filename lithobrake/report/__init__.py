@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from lithobrake.report.figures.model_figures import write_corner as write_corner
     from lithobrake.report.further_reports import write_comparison as write_comparison
     from lithobrake.report.further_reports import write_sites as write_sites
+    from lithobrake.report.plotted_study import PlottedStudy as PlottedStudy
     from lithobrake.report.study_plots import StudyPlots as StudyPlots
     from lithobrake.report.study_report import write_report as write_report
 else:

@@ -14,6 +14,7 @@ from lithobrake.report.words.numbers import bounded, factor, number, sentence, s
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.run_results import Estimate
 from lithobrake.results.site_results import SiteCell, SiteMap, SiteSpread
+from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.percentages import BoundedShare, percent, with_interval
 
 if TYPE_CHECKING:
@@ -118,7 +119,6 @@ def _settings(comparison: StudyComparison) -> PageTable:
     return PageTable("Differences between the study files", ["key", "A", "B"], rows)
 
 
-HOUR = 3600.0
 # Sites of the short table.
 BEST = 12
 

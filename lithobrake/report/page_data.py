@@ -15,16 +15,31 @@ from lithobrake.results.json_values import from_json
 from lithobrake.results.model_results import EmulatorResults, OutputErrors
 from lithobrake.results.questions import RareLimitState
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
+from lithobrake.vocabulary.study_files import (
+    BODY_FILE,
+    EXPLORER_FILE,
+    JOURNEYS_FILE,
+    LANDING_FILE,
+    REST_FILE,
+    SAMPLE_FLIGHTS_FILE,
+    SAMPLES_FILE,
+    SCORES_FILE,
+    STUDY_FILE,
+    SUMMARY_FILE,
+    TOUCHDOWN_EXPLORER_FILE,
+    TOUCHDOWNS_FILE,
+)
 
-Array = NDArray[np.float64]
-FILES = ("summary.json", "study.toml")
+FILES = (SUMMARY_FILE, STUDY_FILE)
 # What the last stages of either method write before the report.
-OF_ANY_STUDY = ("flight_paths.h5", "body.obj")
-OF_SAMPLES = ("samples.h5", "explorer.h5", "flights.csv", "rest.csv")
-PAPER_FILES = (*FILES, "scores.json", *OF_SAMPLES, *OF_ANY_STUDY)
+OF_ANY_STUDY = ("flight_paths.h5", BODY_FILE)
+OF_SAMPLES = (SAMPLES_FILE, EXPLORER_FILE, SAMPLE_FLIGHTS_FILE, REST_FILE)
+PAPER_FILES = (*FILES, SCORES_FILE, *OF_SAMPLES, *OF_ANY_STUDY)
 DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_SAMPLES, *OF_ANY_STUDY)
-JOURNEY_FILES = (*FILES, "designs/drawn.csv", "journeys.csv", "touchdowns.csv", "touchdown_explorer.h5", *OF_ANY_STUDY)
+JOURNEY_FILES = (*FILES, "designs/drawn.csv", JOURNEYS_FILE, TOUCHDOWNS_FILE, TOUCHDOWN_EXPLORER_FILE, *OF_ANY_STUDY)
 GROUNDS = ("soil", "hard")
 
 
@@ -94,7 +109,7 @@ class PaperPage(SampledPage):
     @property
     def level(self) -> float:
         """That of the limits of outcomes that no run had."""
-        return 0.95
+        return EXPANSION_LEVEL
 
     @property
     def shown_landing(self) -> str:
@@ -199,9 +214,9 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
     # A program or function of the user's own has neither beds nor pictures.
     has_scenes = bool(found.results.beds)
     if has_scenes:
-        _refuse_without(found.folder, ("landing.h5", "beds/bed_0.h5"))
+        _refuse_without(found.folder, (LANDING_FILE, "beds/bed_0.h5"))
     vertices, faces = found.body_shape
-    with reading(found.folder / "summary.json", found.remedy):
+    with reading(found.folder / SUMMARY_FILE, found.remedy):
         provenance = from_json(Provenance, found.summary["provenance"], "provenance")
     return {
         "study": found.study,
@@ -240,7 +255,7 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
 
 def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
     """Latitude, longitude [deg] and facet of each impact."""
-    path = found.folder / "flights.csv"
+    path = found.folder / SAMPLE_FLIGHTS_FILE
     impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
 
@@ -248,7 +263,7 @@ def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
     """Where the landers lie that rest on a ground."""
     chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
-    return _places(found.folder / "rest.csv", found.rest.where(chosen), found.remedy)
+    return _places(found.folder / REST_FILE, found.rest.where(chosen), found.remedy)
 
 
 def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
@@ -261,7 +276,7 @@ def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
 
 def _scores(found: StudyResults) -> dict[str, dict[str, OutputErrors]]:
     """Errors by set of runs and output."""
-    with reading(found.folder / "scores.json", found.remedy):
+    with reading(found.folder / SCORES_FILE, found.remedy):
         return {
             stage: {name: from_json(OutputErrors, errors, f"{stage}.{name}") for name, errors in table.items()}
             for stage, table in found.scores.items()

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.geometry.frames import angles, directions
+from lithobrake.vocabulary.durations import duration_words
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import in_lines, short_repr
 from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 
 if TYPE_CHECKING:
     import numpy as np
@@ -53,8 +55,8 @@ class TouchdownFacts:
             number=int(row["touchdown"]),
             begin=float(row["begin_s"]),
             end=float(row["end_s"]),
-            speed=float(row["impact.speed"]),
-            incidence_deg=float(row["impact.incidence_deg"]),
+            speed=float(row[IMPACT_SPEED]),
+            incidence_deg=float(row[IMPACT_INCIDENCE]),
             outcome=str(row["outcome"]) or _FAILED,
             speed_out=float(row["speed_out"]) if left else None,
             latitude_deg=float(row["latitude_deg"]),
@@ -84,7 +86,7 @@ class TouchdownFacts:
     def cells(self, to_next: str) -> tuple[str, ...]:
         """What stands under HEADS."""
         numbers = f"{self.speed:.3g}", f"{self.incidence_deg:.0f}", self.left, f"{self.end - self.begin:.0f}"
-        return str(self.number), time_words(self.begin), *numbers, to_next
+        return str(self.number), duration_words(self.begin), *numbers, to_next
 
     def line(self, to_next: str) -> str:
         """These as a line under HEADS."""
@@ -96,7 +98,7 @@ class TouchdownFacts:
     def words(self) -> str:
         """A caption: number, time since delivery, impact."""
         impact = f"{self.speed:.3g} m/s at {self.incidence_deg:.0f} deg"
-        return f"touchdown {self.number}, {time_words(self.begin)} after delivery: {impact}"
+        return f"touchdown {self.number}, {duration_words(self.begin)} after delivery: {impact}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +146,7 @@ class JourneyTrack:
     def end_words(self) -> str:
         """How, when and where it ended, after how many contacts, and how the lander lies, in a sentence."""
         contacts, touchdowns = int(self.row["contacts"]), len(self.touchdowns)
-        said = f"{self.end.label.capitalize()} {time_words(self.row['time_s'])} after delivery, after "
+        said = f"{self.end.label.capitalize()} {duration_words(self.row['time_s'])} after delivery, after "
         said += f"{_counted(contacts, 'contact')} in {_counted(touchdowns, 'touchdown')}"
         if self.end_place is not None:
             latitude, longitude = self.end_place
@@ -164,14 +166,6 @@ class JourneyMotion:
 
     track: JourneyTrack
     bodies: "Sequence[MovingBodies]"
-
-
-def time_words(seconds: float) -> str:
-    """A time [s] in the unit that suits it, to three digits."""
-    for limit, unit, size in ((120.0, "s", 1.0), (7200.0, "min", 60.0), (172_800.0, "h", 3600.0)):
-        if seconds < limit:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds / 86_400.0:.3g} days"
 
 
 def _counted(count: int, what: str) -> str:
@@ -235,6 +229,6 @@ def track_of(
     return JourneyTrack(row, tuple(map(TouchdownFacts.of, rows)), aim, math.hypot(*site.place_m), vertices)
 
 
-def _part(progress: Progress, number: int, count: int) -> Callable[[float, str], None]:
+def _part(progress: Progress, number: int, count: int) -> Progress:
     """Progress of one of several touchdowns as a part of all."""
     return lambda done, what: progress((number + done) / count, f"touchdown {number}: {what}")

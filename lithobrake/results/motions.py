@@ -1,7 +1,6 @@
 """Hulls and how they moved: touchdowns of a study made once more, on ground that repeats."""
 
 import shlex
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -14,15 +13,13 @@ from lithobrake.files.reading import read_json, reading
 from lithobrake.study import Study, check_tables, load_tables
 from lithobrake.study.touchdown_model import TouchdownModel, engine_hash, lander, landing, stored_bed, touchdown_version
 from lithobrake.vocabulary.plain_text import short_repr
+from lithobrake.vocabulary.progress import Progress
+from lithobrake.vocabulary.study_files import LANDING_FILE, STUDY_FILE
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from lithobrake.touchdown import Bed, Lander, Landing, Outcome
-
-    Array = NDArray[np.float64]
-    Faces = NDArray[np.int64]
     from lithobrake.campaign import Record
+    from lithobrake.touchdown import Bed, Lander, Landing, Outcome
+    from lithobrake.vocabulary.arrays import Array, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +34,7 @@ class MovingBodies:
     """
 
     vertices: "tuple[Array, ...]"
-    faces: "tuple[Faces, ...]"
+    faces: "tuple[Integers, ...]"
     time: "Array"
     position: "Array"
     orientation: "Array"
@@ -72,7 +69,7 @@ class MovingBodies:
     def of_landing(cls, outcome: "Outcome", bed: "Bed", lander: "Lander", landing: "Landing") -> "MovingBodies":
         """Those of a landing that was recorded, as its file would have them; the lander is the last."""
         with TemporaryDirectory(prefix="lithobrake-") as folder:
-            path = Path(folder) / "landing.h5"
+            path = Path(folder) / LANDING_FILE
             outcome.save_frames(path, bed, lander, landing)
             return cls.read(path, "land again")
 
@@ -87,7 +84,7 @@ OF_FILES = ("body", "name", "unit", "gravity_facets", "partner", "kernels", "ker
 
 
 def land_again(
-    folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
+    folder: Path, record: "Record", frame_count: int, progress: Progress
 ) -> "Outcome":  # fmt: skip
     """Land with the inputs of a run on its bed, and record frame_count frames at least.
 
@@ -116,7 +113,7 @@ def land_again(
 
 
 def bodies_again(
-    folder: Path, record: "Record", frame_count: int, progress: Callable[[float, str], None]
+    folder: Path, record: "Record", frame_count: int, progress: Progress
 ) -> MovingBodies:  # fmt: skip
     """Land as land_again does, and return the hulls with their frames; the lander is the last of them."""
     outcome, study = land_again(folder, record, frame_count, progress), landing_study(folder)
@@ -128,7 +125,7 @@ def landing_study(folder: Path) -> Study:
     """The study of a folder, as far as a landing reads it."""
     # Nothing of a landing follows from the shape of the body, from the states from which landers were flown to the
     # ground, or from the sky; no file of these need be where this folder was taken. Its soil is among its inputs.
-    tables = {key: table for key, table in load_tables(folder / "study.toml").items() if key not in ("sky", "soil")}
+    tables = {key: table for key, table in load_tables(folder / STUDY_FILE).items() if key not in ("sky", "soil")}
     site, delivery = (tables.get(name, {}) for name in ("site", "delivery"))
     tables["site"] = {key: value for key, value in site.items() if key not in OF_FILES}
     if "states" in delivery:

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
+from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.plain_text import html_table, in_lines
-from lithobrake.vocabulary.quantities import OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
+from lithobrake.vocabulary.quantities import IMPACT_SPEED, OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -77,7 +78,7 @@ class NamedEmulator:
     def _repr_html_(self) -> str:
         """The inputs with their distributions, and what the emulator makes of them, for a notebook."""
         rows = [
-            (name, unit or "-", *(float(law.ppf(share)) for share in (0.05, 0.5, 0.95)))
+            (name, unit or "-", *(float(law.ppf(share)) for share in QUANTILES))
             for (name, unit), law in zip(self.inputs.items(), self.model.runs.inputs.values(), strict=True)
         ]
         heads = ("input", "unit", "5 % quantile", "median", "95 % quantile")
@@ -171,7 +172,7 @@ class NamedEmulator:
         power = ratio("lander.mass") ** bound["mass_power"] * ratio("lander.diameter") ** bound["diameter_power"]
         spin = sum(known[f"impact.spin_{axis}"] ** 2 for axis in "xyz")
         fall = bound["height"] + bound["across"] * np.sin(np.radians(known["surface.slope_deg"]))
-        square = known["impact.speed"] ** 2 + bound["largest"] * power * spin
+        square = known[IMPACT_SPEED] ** 2 + bound["largest"] * power * spin
         square = square + 2.0 * np.abs(known["surface.gravity"]) * fall
         return np.column_stack([np.sqrt(square), np.sqrt(square / (bound["smallest"] * power))])
 

@@ -10,14 +10,26 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import DamagedFileError, content_hash, read_json, read_rows, reading
-from lithobrake.vocabulary.quantities import JOURNEY, JOURNEYS_FILE, TOUCHDOWN_COST, TOUCHDOWNS_FILE, Quantity, quantity
+from lithobrake.vocabulary.quantities import JOURNEY, TOUCHDOWN_COST, Quantity, quantity
+from lithobrake.vocabulary.study_files import (
+    EMULATOR_FILE,
+    EXPLORER_FILE,
+    JOURNEYS_FILE,
+    REST_FILE,
+    RUNS_FILE,
+    SAMPLE_FLIGHTS_FILE,
+    SAMPLES_FILE,
+    STUDY_FILE,
+    SUMMARY_FILE,
+    TOUCHDOWNS_FILE,
+)
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record
     from lithobrake.results.table import Table
 
 # What the folder notes about its files, what is held while a study is at work there, and the copy of its file.
-KEYS, LOCK, STUDY_FILE = "keys.json", ".lock", "study.toml"
+KEYS, LOCK = "keys.json", ".lock"
 
 
 def intact_file(folder: Path, name: str, remedy: str) -> Path:
@@ -75,7 +87,7 @@ SUMMARY_FORMAT = 4
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
 # Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
-OF_SAMPLES = ("samples.h5", "flights.csv", "rest.csv", "emulator.json", "explorer.h5")
+OF_SAMPLES = (SAMPLES_FILE, SAMPLE_FLIGHTS_FILE, REST_FILE, EMULATOR_FILE, EXPLORER_FILE)
 
 
 class StudyFiles:
@@ -84,14 +96,14 @@ class StudyFiles:
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         """Look at a study's folder. Raises ValueError when it is none."""
         self.folder = Path(folder)
-        if not any((self.folder / name).is_file() for name in ("summary.json", KEYS, "runs.sqlite")):
+        if not any((self.folder / name).is_file() for name in (SUMMARY_FILE, KEYS, RUNS_FILE)):
             raise ValueError(f"{self.folder} holds no results of a study; name the folder of one that ran")
         self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
 
     @cached_property
     def summary(self) -> dict[str, Any]:
         """summary.json: the tables "study", "results" and "provenance" (docs/summary.md has every key)."""
-        path, tables = self._file("summary.json"), dict.fromkeys(("study", "results", "provenance"), dict)
+        path, tables = self._file(SUMMARY_FILE), dict.fromkeys(("study", "results", "provenance"), dict)
         content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
         if content["format_version"] != SUMMARY_FORMAT:
             raise DamagedFileError(

@@ -2,7 +2,6 @@
 
 import os
 import shlex
-from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +9,30 @@ from lithobrake.files.reading import NUMBER, read_json, reading
 from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
 from lithobrake.results.study_tables import StudyTables
 from lithobrake.vocabulary.plain_text import in_lines
+from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.study_files import (
+    ARCS_FILE,
+    BODY_FILE,
+    EMULATOR_FILE,
+    EXPLORER_FILE,
+    LANDING_FILE,
+    REFINED_FILE,
+    REST_FILE,
+    RUNS_FILE,
+    SAMPLE_FLIGHTS_FILE,
+    SAMPLES_FILE,
+    SCORES_FILE,
+    SUMMARY_FILE,
+    TELLING_LANDING_FILE,
+    TOUCHDOWN_EMULATOR_FILE,
+    TOUCHDOWN_EXPLORER_FILE,
+)
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
-    from lithobrake.report.study_plots import StudyPlots
     from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.journey_track import StudyJourney
     from lithobrake.results.motions import MovingBodies
@@ -29,17 +45,17 @@ _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "r
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
 _ASKED = {
-    "summary": ("summary.json", "every number of the report"),
-    "runs": ("runs.sqlite", "every touchdown: inputs, outcome, outputs"),
-    "samples": ("samples.h5", "samples of the Monte Carlo"),
-    "flights": ("flights.csv", "flights of the samples to their next impact"),
+    "summary": (SUMMARY_FILE, "every number of the report"),
+    "runs": (RUNS_FILE, "every touchdown: inputs, outcome, outputs"),
+    "samples": (SAMPLES_FILE, "samples of the Monte Carlo"),
+    "flights": (SAMPLE_FLIGHTS_FILE, "flights of the samples to their next impact"),
     "journeys": (JOURNEYS, "each lander from delivery to rest: end, time, place, contacts, side down"),
     "touchdowns": (TOUCHDOWNS, "every landing of the journeys: state in, state out, bed, soil, cost"),
-    "rest": ("rest.csv", "where samples end after all bounces"),
-    "arcs": ("arcs.csv", "each flight between impacts"),
+    "rest": (REST_FILE, "where samples end after all bounces"),
+    "arcs": (ARCS_FILE, "each flight between impacts"),
     "emulator": ("*emulator.json", "samples of landings, at any inputs by their names"),
-    "surrogate": ("refined.json", "the refined expansion, by the names of its inputs"),
-    "median_landing": ("landing.h5", "a landing with its frames"),
+    "surrogate": (REFINED_FILE, "the refined expansion, by the names of its inputs"),
+    "median_landing": (LANDING_FILE, "a landing with its frames"),
     "bed_bodies()": ("beds/bed_0.h5", "the grains of a bed, and how they settled"),
 }
 
@@ -60,7 +76,7 @@ class StudyResults(StudyTables):
         from lithobrake.results.json_values import from_json
         from lithobrake.results.summary import DrawnResults, PaperResults
 
-        with reading(self.folder / "summary.json", self.remedy):
+        with reading(self.folder / SUMMARY_FILE, self.remedy):
             if self.study["design"]["method"] == "paper":
                 return from_json(PaperResults, self.summary["results"], "results")
             return from_json(DrawnResults, self.summary["results"], "results")
@@ -68,7 +84,7 @@ class StudyResults(StudyTables):
     @property
     def headline(self) -> list[str]:
         """The answer, and the most telling numbers behind it, each in a sentence."""
-        with reading(self.folder / "summary.json", self.remedy):
+        with reading(self.folder / SUMMARY_FILE, self.remedy):
             return [str(sentence) for sentence in self.summary["results"]["headline"]]
 
     @cached_property
@@ -78,7 +94,7 @@ class StudyResults(StudyTables):
         A drawn study has those of its emulator in `emulator.model.scores`.
         """
         self._refuse_drawn("scores", "errors of expansions")
-        content: dict[str, Any] = read_json(self._file("scores.json"), {str: {str: _SCORE}}, self.remedy)
+        content: dict[str, Any] = read_json(self._file(SCORES_FILE), {str: {str: _SCORE}}, self.remedy)
         return content
 
     @cached_property
@@ -120,15 +136,15 @@ class StudyResults(StudyTables):
 
         Until all runs of a drawn study have ended, its first. Grains and, as the last body, the lander.
         """
-        told = (self.folder / "telling_landing.h5").is_file()
-        return self._bodies("telling_landing.h5" if told else "landing.h5")
+        told = (self.folder / TELLING_LANDING_FILE).is_file()
+        return self._bodies(TELLING_LANDING_FILE if told else LANDING_FILE)
 
     def landing(
         self,
         run: str | int,
         *,
         frame_count: int = 120,
-        progress: Callable[[float, str], None] = lambda fraction, what: None,
+        progress: Progress = silent,
     ) -> "Outcome":
         """A touchdown of the study made once more, with its frames; nothing is written.
 
@@ -146,7 +162,7 @@ class StudyResults(StudyTables):
         run: str | int,
         *,
         frame_count: int = 120,
-        progress: Callable[[float, str], None] = lambda fraction, what: None,
+        progress: Progress = silent,
     ) -> "MovingBodies":
         """The hulls of a touchdown made once more, and how they moved, the lander last; see landing()."""
         from lithobrake.results.motions import bodies_again
@@ -166,7 +182,7 @@ class StudyResults(StudyTables):
         """Vertices of the body [m], shape [vertex_count, 3], body-fixed, and its faces, from 0, [face_count, 3]."""
         import numpy as np
 
-        path = self._file("body.obj")
+        path = self._file(BODY_FILE)
         with reading(path, self.remedy):
             lines = [words for line in path.read_text(encoding="utf-8").splitlines() if (words := line.split())]
             vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
@@ -181,7 +197,7 @@ class StudyResults(StudyTables):
         from lithobrake.results.named_emulator import NamedSurrogate
 
         self._refuse_drawn("surrogate", "an expansion")
-        path = self._file("refined.json")
+        path = self._file(REFINED_FILE)
         with reading(path, self.remedy):
             return NamedSurrogate.read(path)
 
@@ -195,7 +211,7 @@ class StudyResults(StudyTables):
         from lithobrake.results.named_emulator import NamedEmulator
 
         is_of_journeys = (self.folder / JOURNEYS).is_file()
-        path = self._file("touchdown_emulator.json" if is_of_journeys else "emulator.json")
+        path = self._file(TOUCHDOWN_EMULATOR_FILE if is_of_journeys else EMULATOR_FILE)
         explorer = self.touchdown_explorer if is_of_journeys else None
         if is_of_journeys and explorer is None:
             raise ValueError(f"{self.folder} has no emulator: {self.summary['results']['emulated']['why']}")
@@ -209,7 +225,7 @@ class StudyResults(StudyTables):
         """The refits of the emulator or expansion as plain tables, for programs in other languages."""
         from lithobrake.results.explorer_tables import ExplorerTables
 
-        return ExplorerTables.read(self._file("explorer.h5"), self.remedy)
+        return ExplorerTables.read(self._file(EXPLORER_FILE), self.remedy)
 
     @cached_property
     def touchdown_explorer(self) -> "ExplorerTables | None":
@@ -220,21 +236,11 @@ class StudyResults(StudyTables):
         emulated = self.results.emulated if isinstance(self.results, DrawnResults) else None
         if emulated is not None and emulated.why is not None:
             return None
-        return ExplorerTables.read(self._file("touchdown_explorer.h5"), self.remedy)
-
-    @cached_property
-    def plot(self) -> "StudyPlots":
-        """Figures one by one, on axes of matplotlib: `plot.map()`, `plot.ends(ax=axes)`, `plot.variance()` and others.
-
-        Needs a study that has run to its end.
-        """
-        from lithobrake.report.study_plots import StudyPlots
-
-        return StudyPlots(self)
+        return ExplorerTables.read(self._file(TOUCHDOWN_EXPLORER_FILE), self.remedy)
 
     def _refuse_drawn(self, name: str, what: str) -> None:
         """Say that a study whose runs were drawn has no such thing, where this is one."""
-        if (self.folder / "emulator.json").is_file() and not (self.folder / "refined.json").is_file():
+        if (self.folder / EMULATOR_FILE).is_file() and not (self.folder / REFINED_FILE).is_file():
             raise ValueError(f"{self.folder} is of a drawn study, without {what}: ask for emulator, not {name}")
 
     def _key(self, run: str | int) -> str:
@@ -265,7 +271,7 @@ class StudyResults(StudyTables):
     def __repr__(self) -> str:
         """Say where they are, and the answer."""
         answer = "not at its end"
-        if (self.folder / "summary.json").is_file():
+        if (self.folder / SUMMARY_FILE).is_file():
             # A notebook shows this unasked, whatever has become of the summary.
             given = self.summary.get("results")
             sentences = given.get("answer") if isinstance(given, dict) else None
@@ -285,7 +291,7 @@ def _html(results: StudyResults) -> str:
 
     rows = [(name, what) for name, (file, what) in _ASKED.items() if any(results.folder.glob(file))]
     table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)
-    if not (results.folder / "summary.json").is_file():
+    if not (results.folder / SUMMARY_FILE).is_file():
         return f"{table}<p>Not at its end: lithobrake status {escape(shlex.quote(str(results.folder)))}</p>"
     sentences = "".join(f"<li>{escape(sentence)}</li>" for sentence in results.headline)
     return f"<ul>{sentences}</ul>{table}"

@@ -2,7 +2,7 @@
 
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds, RestitutionTable
-from lithobrake.smallbody.built_in_bodies import didymos, dimorphos
+from lithobrake.smallbody.built_in_bodies import built_in_body, didymos, dimorphos
 from lithobrake.smallbody.flight import fly
 from lithobrake.smallbody.flight_results import Arcs, Flights
 from lithobrake.smallbody.hopping import Journeys, Launch, hop
@@ -42,6 +42,7 @@ __all__ = [
     "Screen",
     "Shape",
     "SpinState",
+    "built_in_body",
     "circle_places",
     "day_directions",
     "didymos",

@@ -9,7 +9,8 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.smallbody.attraction import Gravity, Workspace, attract
 from lithobrake.smallbody.polyhedron_gravity import PULL_X
 from lithobrake.smallbody.rotation import Turning, block_into_body, into_body, pull_out_of_body
-from lithobrake.smallbody.simd import LANES, Floats, Integers
+from lithobrake.smallbody.simd import LANES
+from lithobrake.vocabulary.arrays import Floats, Integers
 
 Entry = TypeVar("Entry", float, Floats)
 

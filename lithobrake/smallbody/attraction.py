@@ -9,7 +9,8 @@ from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.smallbody.gravity_table import GravityTable, level_of, read_table
 from lithobrake.smallbody.multipole import SCRATCH, Multipole, series_block
 from lithobrake.smallbody.polyhedron_gravity import ROWS, PolyhedronTerms, field_block
-from lithobrake.smallbody.simd import LANES, WIDTH, Floats, Integers, angle, log_ratio
+from lithobrake.smallbody.simd import LANES, WIDTH, angle, log_ratio
+from lithobrake.vocabulary.arrays import Floats, Integers
 
 
 class Gravity(NamedTuple):

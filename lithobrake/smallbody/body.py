@@ -10,10 +10,10 @@ from lithobrake.smallbody import attraction
 from lithobrake.smallbody.acceleration import Entry, Orbit
 from lithobrake.smallbody.attraction import gradient
 from lithobrake.smallbody.rotation import AttitudeHistory
-from lithobrake.smallbody.shape import Shape, delivered_directions
+from lithobrake.smallbody.shape import Shape, checked_points, delivered_directions
+from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
-GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 # Each takes the error of an orbit's distance down by the part that flattening has in the attraction, a few percent.
 ORBIT_ITERATIONS = 10
 
@@ -85,14 +85,8 @@ class Body:
         """Angular velocity about +z [rad/s]."""
         return 2.0 * math.pi / self.spin_period
 
-    def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
-        p = numbers("points", points)
-        if p.shape[-1:] != (3,):
-            raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
-        return p
-
     def _field(self, points: ArrayLike) -> NDArray[np.float64]:
-        p = self._checked(points)
+        p = checked_points(self.name, points)
         rows = p.reshape(-1, 3)
         field = attraction.field(rows, self.shape.gravity_at(rows)) * (GRAVITATIONAL_CONSTANT * self.density)
         return field.reshape(*p.shape[:-1], 5)
@@ -116,7 +110,7 @@ class Body:
 
         Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
         """
-        p = self._checked(points)
+        p = checked_points(self.name, points)
         sums = gradient(p.reshape(-1, 3), *self.shape.gravity[:2])
         return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
@@ -134,7 +128,7 @@ class Body:
         push is that of the body's history of rotation then, centrifugal and of the change of its spin; without one, or
         where time is None, that of the uniform spin.
         """
-        p = self._checked(points)
+        p = checked_points(self.name, points)
         # The shape stays, so that gravity goes with the mass.
         ratio = numbers("mass", self.mass if mass is None else mass)[..., None] / self.mass
         periods = numbers("spin_period", self.spin_period if spin_period is None else spin_period)
@@ -163,7 +157,7 @@ class Body:
 
         It is `v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential`, kept in a flight.
         """
-        p, v = self._checked(position), self._checked(velocity)
+        p, v = checked_points(self.name, position), checked_points(self.name, velocity)
         turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
         constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
         return constant

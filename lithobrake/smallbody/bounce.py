@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import read_rows
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import CAPTURED
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,6 @@ DRAWN = ("normal_restitution", "tangential_restitution", "azimuth_deg")
 # Follows from the two restitutions and the direction; for tools that ask for it.
 FRICTION = "friction"
 EDGES = ("speed_from [m/s]", "speed_to [m/s]", "incidence_from_deg", "incidence_to_deg")
-CAPTURED = TouchdownOutcome.CAPTURED.value
 COUNTS = ("samples", "runs", CAPTURED, "correlation")
 
 

@@ -8,13 +8,12 @@ from numpy.typing import NDArray
 
 from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.shape import Shape
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES, KnownBody
 
 # Ecliptic longitude and latitude of the pole [deg], of spin and mutual orbit: right ascension 69.327 and declination
 # -72.725 deg (J2000) in the frames kernel of the Didymos system, version 007 (Nair 2023, JHU/APL; orbit solution 542,
 # before the impact of DART). No flight depends on it.
 DIDYMOS_POLE = (310.0, -80.6)
-MUTUAL_PERIOD = 11.3674 * 3600.0  # [s], since the impact of DART; [Naidu-2024]
-DIDYMOS_EXTENTS, DIMORPHOS_EXTENTS = (851.0, 849.0, 620.0), (177.0, 174.0, 116.0)  # m, [Daly-2023]
 RINGS = 15  # between a pole and the band along the equator: 8 * 15 * 16 = 1920 facets
 
 
@@ -31,8 +30,7 @@ def didymos(*, partner: bool = True, extents: Sequence[float] | None = None) -> 
     the published 5.4 +- 0.4 e11 kg of the system less Dimorphos; the density follows as 2396 kg/m3, published is
     2400 +- 300.
     """
-    other = Partner(_dimorphos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
-    return replace(_didymos(extents), partner=other)
+    return built_in_body("didymos", partner=partner, extents=extents)
 
 
 def dimorphos(*, partner: bool = True, extents: Sequence[float] | None = None) -> Body:
@@ -50,19 +48,23 @@ def dimorphos(*, partner: bool = True, extents: Sequence[float] | None = None) -
     eccentricity).
     """
     # From Dimorphos, which always shows the same face, Didymos never moves; it turns once in its own period.
-    other = Partner(_didymos(), period=MUTUAL_PERIOD, longitude_deg=0.0) if partner else None
-    return replace(_dimorphos(extents), partner=other)
+    return built_in_body("dimorphos", partner=partner, extents=extents)
 
 
-def _didymos(extents: Sequence[float] | None = None) -> Body:
-    return Body(
-        top_shape(extents or DIDYMOS_EXTENTS, ridge_height=20.0, name="didymos"), 5.32e11, 2.26 * 3600.0, "didymos"
-    )
+def built_in_body(name: str, *, partner: bool = True, extents: Sequence[float] | None = None) -> Body:
+    """The built-in body of a name in lower case, as the functions of these names make it."""
+    known = BUILT_IN_BODIES[name]
+    if not partner:
+        return _alone(known, extents)
+    assert known.partner is not None
+    assert known.orbit_period is not None
+    other = Partner(_alone(BUILT_IN_BODIES[known.partner]), period=known.orbit_period, longitude_deg=0.0)
+    return replace(_alone(known, extents), partner=other)
 
 
-def _dimorphos(extents: Sequence[float] | None = None) -> Body:
-    shape = top_shape(extents or DIMORPHOS_EXTENTS, ridge_height=0.0, name="dimorphos")
-    return Body(shape, 4.3e9, MUTUAL_PERIOD, "dimorphos")
+def _alone(known: KnownBody, extents: Sequence[float] | None = None) -> Body:
+    shape = top_shape(extents or known.extents or (), known.ridge_height, name=known.key)
+    return Body(shape, known.mass, known.spin_period, known.key)
 
 
 def top_shape(extents: Sequence[float], ridge_height: float, *, name: str = "top") -> Shape:

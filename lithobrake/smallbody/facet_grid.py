@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt
 
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
-from lithobrake.smallbody.simd import Floats, Indices, Integers
+from lithobrake.vocabulary.arrays import Floats, Integers, ShortIntegers
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
@@ -61,7 +61,9 @@ class Grid(NamedTuple):
 
 
 @compiled
-def _sort(first: Integers, last: Integers, plane: Floats, size: Integers, start: Indices, facets: Indices) -> None:
+def _sort(
+    first: Integers, last: Integers, plane: Floats, size: Integers, start: ShortIntegers, facets: ShortIntegers
+) -> None:
     """Count the facets of each cell c in start[c + 1]; or, given room in facets, place them and move start[c] on.
 
     first, last: cells that a facet's box spans, [facet_count, 3]; plane: normal and offset in cells, [facet_count, 4].

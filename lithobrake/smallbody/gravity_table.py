@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.smallbody.simd import Floats
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.
 # Of 1920 facets the table takes 8 s of CPU time to build and 37 MB; that of a partner, without the two finest grids,
@@ -21,7 +21,6 @@ from lithobrake.smallbody.simd import Floats
 LEVELS = ((1 / 40, 0.0), (1 / 20, 1.6), (1 / 10, 3.0), (1 / 3, 8.0), (1.0, 24.0), (4.0, 80.0))
 MARGIN = 8
 CORE = 0.3  # of the radius of a sphere of the same volume: inside it the point mass is a homogeneous sphere
-Vector = tuple[float, float, float]
 RIM = 2  # nodes along the sides of a grid that only serve the cells within
 
 

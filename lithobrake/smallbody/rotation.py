@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.compilation.compiled import kernel
 from lithobrake.geometry.attitude import quaternion_products, rotation_matrices
 from lithobrake.smallbody.polyhedron_gravity import PULL_X
-from lithobrake.smallbody.simd import LANES, Floats
+from lithobrake.smallbody.simd import LANES
+from lithobrake.vocabulary.arrays import Array, Floats, Vector
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
-
-Vector = tuple[float, float, float]
 
 
 class Turning(NamedTuple):
@@ -99,7 +98,6 @@ def pull_out_of_body(lane: Floats, count: int, turn: Floats) -> None:
             lane[(PULL_X + k) * LANES + j] = turn[k, j] * x + turn[3 + k, j] * y + turn[6 + k, j] * z
 
 
-Array = NDArray[np.float64]
 # Between two states a quaternion is a cubic; the bounds of its rates are those at so many places, and a little more.
 PLACES, SAFETY = 4, 1.1
 # The angle [rad] between two states, above which a cubic is no good curve between them.

@@ -14,9 +14,10 @@ from lithobrake.geometry.attitude import quaternion_products, rotation_matrices
 from lithobrake.geometry.naif_kernels import Reply, read_apart
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.rotation import AttitudeHistory
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
-Array = NDArray[np.float64]
+Rates = tuple[float, ...]
 # Between two attitudes the body turns, and its torque swings, by at most this angle [rad]: cubics are then good to
 # some 1e-9 rad.
 STEP_ANGLE = 0.02

@@ -11,13 +11,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.smallbody.bounce import Bounce, Impacts, Rebounds
 from lithobrake.smallbody.hopping import impact_frame
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number
 
-Array = NDArray[np.float64]
 # Standard deviations within which a gradient lies, and halvings of their width down to the last bit.
 FARTHEST, HALVINGS = 9.0, 60
 # How often a lander meets ground before it leaves that about it; then it is held where it is.

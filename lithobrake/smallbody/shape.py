@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
-from lithobrake.geometry.mesh_files import labelled_mesh, read_mesh
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_units import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
 from lithobrake.smallbody.facet_grid import Grid, heights, outermost_hit, pseudonormals
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
@@ -180,12 +181,6 @@ class Shape:
         """The facets sorted into cells."""
         return Grid.of(self.vertices, self.faces)
 
-    def _checked(self, points: ArrayLike) -> NDArray[np.float64]:
-        p = numbers("points", points)
-        if p.shape[-1:] != (3,):
-            raise ValueError(f"{self.name}: points have shape {p.shape}; the last axis must hold x, y, z.")
-        return p
-
     @property
     def radius(self) -> float:
         """Distance of the farthest vertex from the origin [m]."""
@@ -193,7 +188,7 @@ class Shape:
 
     def latitude_longitude(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Planetocentric latitude and east longitude in (-180, 180] [deg] of body-fixed points [m], shape [..., 3]."""
-        p = self._checked(points)
+        p = checked_points(self.name, points)
         # No arc sine, which loses half of its digits towards the poles.
         latitude = np.degrees(np.arctan2(p[..., 2], np.hypot(p[..., 0], p[..., 1])))
         longitude = np.degrees(np.arctan2(p[..., 1], p[..., 0]))
@@ -247,17 +242,25 @@ class Shape:
 
     def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Signed distance to the surface [m] and nearest facet of body-fixed points [m], shape [..., 3]."""
-        p = np.ascontiguousarray(self._checked(points))
+        p = np.ascontiguousarray(checked_points(self.name, points))
         height, facet = np.empty(p.size // 3), np.empty(p.size // 3, dtype=np.int64)
         heights(self.corners, self.pseudonormals, p.reshape(-1, 3), height, facet)
         return height.reshape(p.shape[:-1]), facet.reshape(p.shape[:-1])
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
-        p = self._checked(points)
+        p = checked_points(self.name, points)
         # Halfway between 0 outside and 4 pi inside, far above the rounding of the sum.
         inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
         return inside.reshape(p.shape[:-1])
+
+
+def checked_points(name: str, points: ArrayLike) -> NDArray[np.float64]:
+    """Points [..., 3] about the body of a name. Raises ValueError for what is none."""
+    found = numbers("points", points)
+    if found.shape[-1:] != (3,):
+        raise ValueError(f"{name}: points have shape {found.shape}; the last axis must hold x, y, z.")
+    return found
 
 
 def delivered_directions(

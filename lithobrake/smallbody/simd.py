@@ -2,11 +2,9 @@
 
 from typing import Any
 
-import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled
 
@@ -107,8 +105,3 @@ def angle(y: float, x: float) -> float:
     result = _HALF_PI - result if up > along else result
     result = 2.0 * _HALF_PI - result if x < 0.0 else result
     return -result if y < 0.0 else result
-
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Indices = NDArray[np.int32]

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.compilation.compiled import compiled
-from lithobrake.geometry.naif_kernels import DAY, spice
+from lithobrake.geometry.naif_kernels import spice
 from lithobrake.smallbody.facet_grid import intersect_facet
 from lithobrake.smallbody.shape import Shape
-from lithobrake.smallbody.simd import Floats
+from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.given_numbers import numbers
 

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.rotation import ground_spin
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.arrays import Array, Integers
 
-Whole = NDArray[np.int64]
 CROSSINGS = 8  # edges that one way may go over
 
 
@@ -21,8 +20,8 @@ def unit(vectors: Array) -> Array:
 
 
 def over_edges(
-    shape: Shape, facet: Whole, position: Array, way: Array, velocity: Array, press: Array, braking: Array
-) -> tuple[Array, Array, Whole, NDArray[np.bool_]]:
+    shape: Shape, facet: Integers, position: Array, way: Array, velocity: Array, press: Array, braking: Array
+) -> tuple[Array, Array, Integers, NDArray[np.bool_]]:
     """Fold ways [m] and velocities that leave their facets over the edges: position, velocity, facet, and who leaves.
 
     Round an outward edge the lander's own motion takes some of its weight off, which saves friction, or all of it, and
@@ -56,7 +55,7 @@ def over_edges(
     return start + way, velocity, facet, lifted
 
 
-def first_edge(shape: Shape, facet: Whole, start: Array, way: Array) -> tuple[Whole, Array]:
+def first_edge(shape: Shape, facet: Integers, start: Array, way: Array) -> tuple[Integers, Array]:
     """Number of the edge through which each way leaves its facet, -1: none, and the part of the way before it."""
     corner, inward = shape.corners[facet], shape.inward[facet]
     # A start that rounding has put beyond an edge counts as on it.
@@ -82,10 +81,10 @@ class Fold:
     onward: Array
     angle: Array
     spread: Array
-    beyond: Whole
+    beyond: Integers
 
     @classmethod
-    def of(cls, shape: Shape, facet: Whole, edge: Whole) -> "Fold":
+    def of(cls, shape: Shape, facet: Integers, edge: Integers) -> "Fold":
         row, beyond = np.arange(len(facet)), shape.neighbours[facet, edge]
         corner, up, next_up = shape.corners[facet], shape.normals[facet], shape.normals[beyond]
         side = corner[row, (edge + 1) % 3] - corner[row, edge]

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake.geometry.attitude import quaternion_products
 from lithobrake.geometry.frames import about_z, quaternion
 from lithobrake.smallbody.rotation import AttitudeHistory
-from lithobrake.smallbody.simd import Floats
+from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Principal moments nearer than this part of the largest differ by the rounding of eigenvalues.

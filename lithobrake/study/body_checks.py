@@ -7,10 +7,12 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.geometry.mesh_files import labelled_mesh
-from lithobrake.study.impact_sections import BUILT_IN_BODIES, SiteSection, kernel_problems
+from lithobrake.geometry.mesh_units import labelled_mesh
+from lithobrake.study.impact_sections import SiteSection, kernel_problems
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.constants import DAY
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES, KNOWN_BODIES
 from lithobrake.vocabulary.plain_text import closest, show
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
@@ -106,7 +108,8 @@ def _volume(study: Study) -> float:
     if site.body in BUILT_IN_BODIES:
         from lithobrake import smallbody
 
-        return float(getattr(smallbody, site.body)(partner=False, extents=site.extents).shape.volume)
+        return float(smallbody.built_in_body(site.body, partner=False, extents=site.extents).shape.volume)
+    # Only a mesh needs arrays: whatever else is refused is refused before they are imported.
     from lithobrake.geometry.mesh import closed_faces, holds_origin, volume_of
     from lithobrake.geometry.mesh_files import read_mesh
 
@@ -127,7 +130,7 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
-    from lithobrake.geometry.mesh_files import UNITS, mesh_unit
+    from lithobrake.geometry.mesh_units import UNITS, mesh_unit
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES
@@ -177,9 +180,7 @@ def _ball_radius(volume: float) -> float:
     return (0.75 * volume / math.pi) ** (1.0 / 3.0)
 
 
-# Built-in bodies that turn once an orbit of their partner.
-SYNCHRONOUS = ("dimorphos",)
-DAY = 86_400.0
+SYNCHRONOUS = [key for key, body in KNOWN_BODIES.items() if body.is_synchronous]
 
 
 def rotation_problems(study: Study) -> Iterator[str]:

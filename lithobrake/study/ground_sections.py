@@ -1,22 +1,25 @@
 """The tables of the study file that say what the lander touches: bed, grains, and soils by region."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from lithobrake.geometry.grain_limits import LARGEST_COVERAGE
+from lithobrake.geometry.limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES, MaterialProperty
 from lithobrake.vocabulary.plain_text import show
 
 Metres = Annotated[float, Number("m", above=0)]
 # Runs on each bed with which an interval is narrowest for the time, by what a bed costs and how alike runs on it are
-# (docs/estimates.md). An interval needs a dozen beds.
+# (docs/estimates.md).
 LANDINGS_A_BED, JOURNEYS_A_BED = 20, 4
-FEWEST_BEDS, MOST_BEDS = 12, 1000
+MOST_BEDS = 1000
 
 
 class Constant(Section):
@@ -118,66 +121,67 @@ def default_bed_count(run_count: int, runs_a_bed: int) -> int:
     Source: [Cochran-1977], section 10.6.
     """
     # Rounded up: to the nearest, the newest bed would be half full at each further 20 landings or 4 journeys.
-    return min(run_count, MOST_BEDS, max(FEWEST_BEDS, -(-run_count // runs_a_bed)))
+    return min(run_count, MOST_BEDS, max(FEWEST_BEDS_OF_INTERVAL, -(-run_count // runs_a_bed)))
 
 
-Density = Annotated[Scalar, MaybeUncertain("kg/m3", above=0)]
-YoungModulus = Annotated[Scalar, MaybeUncertain("Pa", above=0)]
-PoissonRatio = Annotated[Scalar, MaybeUncertain("", at_least=0, below=0.5)]
-Restitution = Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)]
-Friction = Annotated[Scalar, MaybeUncertain("", at_least=0)]
-Cohesion = Annotated[Scalar, MaybeUncertain("N", at_least=0)]
-SurfaceEnergy = Annotated[Scalar, MaybeUncertain("J/m2", at_least=0)]
+# As a table has them that gives the density too.
+ALL_PROPERTIES = ("density", *SURFACE_PROPERTIES)
 
 
-class GrainSection(Section):
+def allowed(name: str, kind: type[Number] = MaybeUncertain) -> Number:
+    """The unit and the range of a property."""
+    known = PROPERTIES[name]
+    return kind(known.unit, known.above, known.at_least, known.below, known.at_most)
+
+
+def meaning(known: MaterialProperty) -> str:
+    """What a property of the grains is."""
+    return known.meaning
+
+
+def with_properties(
+    base: type[Section],
+    names: Collection[str],
+    words: Callable[[MaterialProperty], str] = meaning,
+    *,
+    needed: bool = False,
+    fixed: Collection[str] = (),
+    examples: Mapping[str, str] = MappingProxyType({}),
+) -> Any:
+    """A table with these properties behind its own keys.
+
+    words: what a key means; needed: those without a default must be given, where else any may be left out; fixed:
+    properties that cannot be uncertain there.
+    """
+    fields: dict[str, Any] = {}
+    for name in names:
+        known = PROPERTIES[name]
+        kind: Any = Annotated[float, allowed(name, Number)] if name in fixed else Annotated[Scalar, allowed(name)]
+        default: Any = (... if known.default is None else known.default) if needed else None
+        shown = known.example if needed else examples.get(name)
+        field = Field(default=default, description=words(known), examples=None if shown is None else [shown])
+        fields[name] = (kind if needed else kind | None, field)
+    return create_model(base.__name__, __base__=base, __module__=__name__, **fields)
+
+
+_GrainProperties: Any = with_properties(Section, ALL_PROPERTIES, needed=True)
+
+
+class GrainSection(_GrainProperties):
     """The rock of the grains."""
-
-    density: Density = Field(examples=["2500.0"])
-    """Density of the rock."""
-    young_modulus: YoungModulus = Field(examples=['{ distribution = "log_uniform", lower = 1e6, upper = 1e8 }'])
-    """Young's modulus; over decades use log_uniform."""
-    poisson_ratio: PoissonRatio = Field(examples=['{ distribution = "uniform", lower = 0.15, upper = 0.35 }'])
-    """Poisson's ratio."""
-    restitution: Restitution = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.8 }'])
-    """Coefficient of restitution between grains."""
-    friction: Friction = Field(examples=['{ distribution = "uniform", lower = 0.3, upper = 0.9 }'])
-    """Coefficient of friction."""
-    rolling_friction: Friction = 0.0
-    """Resistance to rolling: the largest couple of a contact divided by normal force and contact radius."""
-    spinning_friction: Friction = 0.0
-    """Resistance to spinning about the contact normal, defined in the same way."""
-    cohesion_force: Cohesion = 0.0
-    """Pull of every contact, whatever its size."""
-    surface_energy: SurfaceEnergy = 0.0
-    """Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*. For clean grains of lunar soil it is
-    0.0029."""
 
 
 Ends = tuple[float, float]
 
 
-class SoilGrainSection(Section):
-    """Material of the grains of a region where it differs from [grain]; the sizes are those of [bed] everywhere."""
+_SoilProperties: Any = with_properties(
+    Section, ALL_PROPERTIES, examples={"friction": '{ distribution = "uniform", lower = 0.2, upper = 0.4 }'}
+)
 
-    density: Density | None = None
-    """Density of the rock. If this or a property below is absent, it is that of [grain]."""
-    young_modulus: YoungModulus | None = None
-    """Young's modulus."""
-    poisson_ratio: PoissonRatio | None = None
-    """Poisson's ratio."""
-    restitution: Restitution | None = None
-    """Coefficient of restitution between grains."""
-    friction: Friction | None = Field(default=None, examples=['{ distribution = "uniform", lower = 0.2, upper = 0.4 }'])
-    """Coefficient of friction."""
-    rolling_friction: Friction | None = None
-    """Resistance to rolling."""
-    spinning_friction: Friction | None = None
-    """Resistance to spinning about the contact normal."""
-    cohesion_force: Cohesion | None = None
-    """Pull of every contact, whatever its size."""
-    surface_energy: SurfaceEnergy | None = None
-    """Pull of a contact in proportion to its radius."""
+
+class SoilGrainSection(_SoilProperties):
+    """Material of the grains of a region where it differs from [grain]; the sizes are those of [bed] everywhere. A
+    property that is absent is that of [grain]."""
 
     def values(self) -> dict[str, Scalar]:
         """The numbers that differ, by their names in [grain]."""

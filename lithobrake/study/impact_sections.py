@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field, Strict
 
 from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import PartnerPlace, SpinState
@@ -107,9 +108,6 @@ class LandingSection(Section):
 
     time_limit: Annotated[float, Number("s", above=0)] = 60.0
     """Longest simulated time of one touchdown."""
-
-
-BUILT_IN_BODIES = ("didymos", "dimorphos")
 
 
 class RotationSection(Section):
@@ -246,8 +244,9 @@ def kernel_partner(site: SiteSection) -> "PartnerPlace | None":
         return None
     from lithobrake.smallbody import read_partner
 
-    (other,) = (name for name in BUILT_IN_BODIES if name != site.body)
-    return read_partner(site.kernels, _name(site), other, site.epoch)
+    partner = BUILT_IN_BODIES[site.body].partner
+    assert partner is not None
+    return read_partner(site.kernels, _name(site), partner, site.epoch)
 
 
 def kernel_values(site: SiteSection) -> dict[str, float]:

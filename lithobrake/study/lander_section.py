@@ -1,12 +1,17 @@
 """The table of the study file of the lander: its shape, its mass, its sides, and parts fixed to it."""
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from lithobrake.geometry.attitude import alike
-from lithobrake.study.ground_sections import Cohesion, Friction, PoissonRatio, Restitution, SurfaceEnergy, YoungModulus
+from lithobrake.geometry.limits import alike
+from lithobrake.study.ground_sections import (
+    allowed,
+    with_properties,
+)
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
+from lithobrake.vocabulary.material import SURFACE_PROPERTIES, MaterialProperty
+from lithobrake.vocabulary.quantities import SIDES
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,12 +30,7 @@ class CentreSection(Section):
     """Along z."""
 
 
-class PartSection(Section):
-    """A convex part that is fixed to the lander, such as a leg, a panel or a boom. There may be any number of parts,
-    each in a table [lander.part.NAME] of its own. Parts may overlap, have no contact with each other and do not bend.
-    Lengths and directions are along the axes of the lander, from the centre of a box or sphere, or from the origin of
-    the file of a mesh."""
-
+class _PartBody(Section):
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
     edges: Annotated[tuple[float, float, float], Numbers("m", count=3, above=0)] | None = Field(
@@ -51,30 +51,33 @@ class PartSection(Section):
     """Rotation of the part about that point: a quaternion w, x, y, z."""
     mass: Annotated[float, Number("kg", above=0)] | None = Field(default=None, examples=["0.05"])
     """Its mass, which is part of lander.mass; or give density."""
-    density: Annotated[float, Number("kg/m3", above=0)] | None = None
+    density: Annotated[float, allowed("density", Number)] | None = None
     """Its mass divided by its volume; or give mass."""
-    young_modulus: Annotated[float, Number("Pa", above=0)] | None = None
-    """Young's modulus of the part; absent: that of the lander."""
-    poisson_ratio: Annotated[float, Number("", at_least=0, below=0.5)] | None = None
-    """Poisson's ratio of the part; absent: that of the lander."""
-    restitution: Restitution | None = None
-    """Restitution of the part, low for a foot that is crushed or damped, high for one on a spring; absent: that of the
-    lander."""
-    friction: Friction | None = None
-    """Friction of the part; absent: that of the lander."""
-    rolling_friction: Friction | None = None
-    """Rolling friction of the part; absent: that of the lander."""
-    spinning_friction: Friction | None = None
-    """Spinning friction of the part; absent: that of the lander."""
-    cohesion_force: Annotated[float, Number("N", at_least=0)] | None = None
-    """Cohesion of the part; absent: that of the lander."""
-    surface_energy: Annotated[float, Number("J/m2", at_least=0)] | None = None
-    """Surface energy of the part; absent: that of the lander."""
 
 
-class LanderSection(Section):
-    """The lander: a rigid convex body, to which parts may be fixed."""
+def _of_part(known: MaterialProperty) -> str:
+    """What a property of a part is."""
+    foot = ", low for a foot that is crushed or damped, high for one on a spring"
+    more = foot if known.words == "restitution" else ""
+    return f"{known.title} of the part{more}; absent: that of the lander."
 
+
+_PartProperties: Any = with_properties(
+    _PartBody,
+    SURFACE_PROPERTIES,
+    _of_part,
+    fixed=("young_modulus", "poisson_ratio", "cohesion_force", "surface_energy"),
+)
+
+
+class PartSection(_PartProperties, _PartBody):
+    """A convex part that is fixed to the lander, such as a leg, a panel or a boom. There may be any number of parts,
+    each in a table [lander.part.NAME] of its own. Parts may overlap, have no contact with each other and do not bend.
+    Lengths and directions are along the axes of the lander, from the centre of a box or sphere, or from the origin of
+    the file of a mesh."""
+
+
+class _LanderBody(Section):
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] = Field(examples=["2.6"])
@@ -95,24 +98,24 @@ class LanderSection(Section):
     """Inertia about the centre of mass, in the axes of the lander. Either three moments, each at most the sum of the
     other two, or six elements of the tensor: Ixx, Iyy, Izz, Ixy, Ixz, Iyz, where Ixy is minus the sum of mass x y.
     Absent: that of homogeneous shape and parts."""
-    young_modulus: YoungModulus | None = None
-    """Young's modulus of the lander; absent: that of the grains."""
-    poisson_ratio: PoissonRatio | None = None
-    """Poisson's ratio of the lander; absent: that of the grains."""
-    restitution: Restitution | None = Field(
-        default=None, examples=['{ distribution = "uniform", lower = 0.4, upper = 0.9 }']
-    )
-    """Restitution of the lander's hull; absent: that of the grains."""
-    friction: Friction | None = None
-    """Friction of the lander's hull; absent: that of the grains."""
-    rolling_friction: Friction | None = None
-    """Rolling friction of the lander's hull; absent: that of the grains."""
-    spinning_friction: Friction | None = None
-    """Spinning friction of the lander's hull; absent: that of the grains."""
-    cohesion_force: Cohesion | None = None
-    """Cohesion of the lander's hull; absent: that of the grains."""
-    surface_energy: SurfaceEnergy | None = None
-    """Surface energy of the lander's hull; absent: that of the grains."""
+
+
+def _of_hull(known: MaterialProperty) -> str:
+    """What a property of the lander is."""
+    return f"{known.title} of the lander's hull; absent: that of the grains."
+
+
+_LanderProperties: Any = with_properties(
+    _LanderBody,
+    SURFACE_PROPERTIES,
+    _of_hull,
+    examples={"restitution": '{ distribution = "uniform", lower = 0.4, upper = 0.9 }'},
+)
+
+
+class LanderSection(_LanderProperties, _LanderBody):
+    """The lander: a rigid convex body, to which parts may be fixed."""
+
     part: dict[str, PartSection] = Field(default={})
     """Parts that are fixed to the lander."""
 
@@ -129,7 +132,20 @@ class LanderSection(Section):
         return self.edges is not None and not self.part and self.centre_of_mass is None and len(self.inertia or ()) < 6
 
 
-SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
+# Outward, by the lander's own axes, in the order of SIDES.
+OUTWARD = tuple(tuple((1.0 if side[0] == "+" else -1.0) * (axis == side[1]) for axis in "xyz") for side in SIDES)
+
+
+def side_toward(direction: "np.ndarray") -> "np.ndarray":
+    """Which side of the lander, as its place among SIDES, faces a direction most; [count], of directions [count, 3] in
+    the lander's own axes.
+    """
+    import numpy as np
+
+    axis = np.abs(direction).argmax(axis=1)
+    along = np.take_along_axis(direction, axis[:, None], axis=1)[:, 0]
+    found: np.ndarray = 2 * axis + (along < 0.0)
+    return found
 
 
 def sides_down(lander: "LanderSection", normal: "np.ndarray") -> "np.ndarray":
@@ -140,26 +156,17 @@ def sides_down(lander: "LanderSection", normal: "np.ndarray") -> "np.ndarray":
     """
     import numpy as np
 
-    axis = np.abs(normal).argmax(axis=1)
-    if lander.edges is not None:
-        words = np.array([_alike(lander.edges, one) for one in range(3)])
-        found: np.ndarray = words[axis]
-        return found
     if lander.shape == "sphere":
         return np.full(len(normal), "")
-    upward = np.take_along_axis(normal, axis[:, None], axis=1)[:, 0] > 0.0
-    sides: np.ndarray = np.array(SIDES)[2 * axis + upward]
-    return sides
+    found: np.ndarray = np.array([_named(lander, side) for side in SIDES])[side_toward(-normal)]
+    return found
 
 
 def directions_of_sides(lander: "LanderSection") -> dict[str, list[list[float]]]:
     """The sides of the lander, named as by `sides_down`, each with the directions of it that may face the ground."""
     found: dict[str, list[list[float]]] = {}
-    for side in SIDES if lander.shape != "sphere" else ():
-        axis = "xyz".index(side[1])
-        name = side if lander.edges is None else _alike(lander.edges, axis)
-        down = [(1.0 if side[0] == "+" else -1.0) * (one == axis) for one in range(3)]
-        found.setdefault(name, []).append(down)
+    for side, outward in zip(SIDES, OUTWARD, strict=True) if lander.shape != "sphere" else ():
+        found.setdefault(_named(lander, side), []).append(list(outward))
     return found
 
 
@@ -171,7 +178,10 @@ def side_words(lander: "LanderSection", side: str) -> str:
     return f"{side}, {first:g} m x {second:g} m"
 
 
-def _alike(edges: tuple[float, float, float], axis: int) -> str:
-    """The axes of a box whose faces are like those of one."""
-    names = [name for name, edge in zip("xyz", edges, strict=True) if alike(edge, edges[axis])]
+def _named(lander: "LanderSection", side: str) -> str:
+    """A side as results have it: of a box the axes whose faces are like it."""
+    if lander.edges is None:
+        return side
+    own = lander.edges["xyz".index(side[1])]
+    names = [name for name, edge in zip("xyz", lander.edges, strict=True) if alike(edge, own)]
     return " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)

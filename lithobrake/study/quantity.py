@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
+from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
@@ -35,8 +36,6 @@ ALWAYS_SAMPLED = ("uniform", "log_uniform")
 # A normal law is unbounded, and an error of delivery is not: plausibility checks take the quantiles of one in a
 # thousand on either side as its ends (docs/decisions/smallbody.md).
 RARE = 1e-3
-# Probability as near to 0, or to 1, as a sample comes.
-LEAST = 2.0**-53
 _POSITIVE_PARAMETERS = ("std", "alpha", "beta", "shape", "scale", "rate")
 
 
@@ -217,7 +216,7 @@ class MaybeUncertain(Number):
 
         try:
             with np.errstate(all="ignore"):
-                ends = [float(uncertain.to_chaos().ppf(u)) for u in (LEAST, 0.5, 1.0 - LEAST)]
+                ends = [float(uncertain.to_chaos().ppf(u)) for u in (LEAST_PROBABILITY, 0.5, 1.0 - LEAST_PROBABILITY)]
         except ValueError as error:
             raise refuse(table, self, str(error)) from error
         if not all(math.isfinite(end) and self.allow(end, end) for end in ends):

@@ -12,12 +12,11 @@ from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.question_sections import AimLimit, aim_results
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
+from lithobrake.vocabulary.quantities import ARRIVAL
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
 PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
-# Landers go on from bounce to bounce, so the emulator has to know other impacts than the first.
-NEEDED = ("impact.speed", "impact.incidence_deg")
 
 
 def aim_problems(study: Study) -> Iterator[str]:
@@ -31,7 +30,8 @@ def aim_problems(study: Study) -> Iterator[str]:
     inputs = uncertain(study.touchdown_values())
     if study.design.method == "paper":
         yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
-    absent = [name for name in NEEDED if name not in inputs and study.journey is None]
+    # Landers go on from bounce to bounce, so the emulator has to know other impacts than the first.
+    absent = [name for name in ARRIVAL if name not in inputs and study.journey is None]
     if absent:
         yield (
             f"aim.grid follows landers from bounce to bounce, and {' and '.join(absent)} "

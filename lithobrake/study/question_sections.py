@@ -9,10 +9,10 @@ from pydantic import BeforeValidator, ConfigDict, Field
 
 from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole, refuse
 from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
-from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus
+from lithobrake.vocabulary.outcomes import SETTLED, JourneyEnd
 
 # What comes of an aim, and may be limited as the aim itself is.
-SETTLED, AT_REST = JourneyStatus.SETTLED.value, JourneyEnd.AT_REST.value
+AT_REST = JourneyEnd.AT_REST.value
 # The side that faces the ground, among the names of what is chosen.
 SIDE = "aim.sides"
 AIM_RESULTS = ("missing", "distance_p95", "time_p95")

@@ -12,10 +12,11 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 
 from lithobrake.study.checks import problems
-from lithobrake.study.impact_sections import BUILT_IN_BODIES
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 STUDIES, EXAMPLES = "scenarios", "examples"
 # What an example needs beside itself, in the same folder.
@@ -165,9 +166,7 @@ def parse_tables(path: Path, content: bytes) -> dict[str, Any]:
         ) from error
 
 
-def check_tables(
-    tables: Mapping[str, Any], folder: Path, name: str = "study.toml", function: str | None = None
-) -> Study:
+def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE, function: str | None = None) -> Study:
     """Make a study of the tables; `folder` is where relative paths in it count from.
 
     function: identity of a Python function that makes the touchdowns in place of the soil.

@@ -16,6 +16,7 @@ from lithobrake.study.reader import StudyError, check_tables, known_keys, parse_
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
+from lithobrake.vocabulary.quantities import ORIENTATION
 
 # What a study of tables is called in messages, and the stem of its folder.
 TABLES = "study"
@@ -121,8 +122,6 @@ def _dotted(key: str, inner: str) -> str:
     return f"{key}.{inner}" if key else inner
 
 
-# An attitude stands in the study file as one list.
-ATTITUDE = tuple(f"impact.orientation.{part}" for part in "wxyz")
 INPUTS, SITE = "solver.inputs.", "site."
 
 
@@ -152,7 +151,7 @@ def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
         raise StudyError(loose)
     # A landing reads nothing of the site, and a flight nothing else.
     of_site = all(key.startswith(SITE) for key in values)
-    read = list(fixed.site_values()) if of_site else [*fixed.touchdown_values(), *ATTITUDE]
+    read = list(fixed.site_values()) if of_site else [*fixed.touchdown_values(), *ORIENTATION]
     between = body_problems if of_site else landing_problems
     found = [_unread(key, read) for key in values if key not in read] or list(between(fixed))
     if found:
@@ -171,10 +170,10 @@ def _put(tables: dict[str, Any], key: str, value: Any) -> None:
     table = tables.setdefault(section, {})
     if not isinstance(table, dict):
         raise StudyError([_unread(key, [])])
-    if key in ATTITUDE:
+    if key in ORIENTATION:
         given = table["orientation"]
         attitude = [1.0, 0.0, 0.0, 0.0] if isinstance(given, str) else list(given)
-        attitude[ATTITUDE.index(key)] = value
+        attitude[ORIENTATION.index(key)] = value
         # What is given is the attitude that was drawn with the error.
         table |= {"orientation": attitude, "pointing_error_deg": None}
     elif name.startswith("place."):

@@ -54,7 +54,7 @@ def _section(name: str, model: type[BaseModel]) -> str:
     lines = f"{_comment(model.__doc__ or '')}[{name}]\n"
     # model_fields holds inherited keys too; the last class of the order of inheritance that has a key is the one that
     # declares it.
-    owners = {key: base for base in model.__mro__ for key in getattr(base, "model_fields", ())}
+    owners = {key: base for base in model.__mro__ if base.__doc__ for key in getattr(base, "model_fields", ())}
     plain = [key for key, field in model.model_fields.items() if not (is_named(field) and table(field))]
     for owner, keys in groupby(plain, key=owners.__getitem__):
         heading = "" if owner is model else f"\n{_comment(owner.__doc__ or '')}\n"

@@ -17,8 +17,9 @@ from lithobrake.study import Study
 from lithobrake.study.ground_sections import Constant, PowerLaw
 from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
 from lithobrake.study.quantity import median
+from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.progress import Progress, silent
-from lithobrake.vocabulary.quantities import ORIENTATION
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.dem import Material
@@ -26,11 +27,6 @@ if TYPE_CHECKING:
     from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
 
 Values = Mapping[str, float]
-# What a material is to a contact, by the names of the study file and of dem.Material.
-SURFACE = (
-    "young_modulus", "poisson_ratio", "restitution", "friction", "rolling_friction", "spinning_friction",
-    "cohesion_force", "surface_energy",
-)  # fmt: skip
 PLACE = ("impact.place.x", "impact.place.y")
 # Height of the lowest hop that leaves the bed, in largest diameters of the lander, where the study says nothing.
 HOP_PER_LANDER = 3.0
@@ -114,11 +110,12 @@ def in_words_of_the_study() -> Iterator[None]:
 ENGINE_PARTS = (
     "dem",
     "touchdown",
-    "geometry/grain_limits.py",
+    "geometry/limits.py",
     "geometry/mesh.py",
     "geometry/mesh_files.py",
     "study/lander_shapes.py",
     "study/touchdown_model.py",
+    "vocabulary/material.py",
 )
 
 
@@ -181,7 +178,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
     else:
         ends = (impact.region.x, impact.region.y)
         place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
-    azimuth = 360 * turn if impact.azimuth_deg == "random" else values["impact.azimuth_deg"]
+    azimuth = 360 * turn if impact.azimuth_deg == "random" else values[IMPACT_AZIMUTH]
     if impact.orientation != "random":
         quaternion = given_attitude(study, *generator.random(2).tolist())
     orientation = (quaternion / np.linalg.norm(quaternion)).tolist()
@@ -189,7 +186,7 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
         **values,
         "bed": float(bed),
         **dict(zip(PLACE, place, strict=True)),
-        "impact.azimuth_deg": float(azimuth),
+        IMPACT_AZIMUTH: float(azimuth),
         **dict(zip(ORIENTATION, orientation, strict=True)),
     }
 
@@ -235,7 +232,7 @@ def sizes_of(sizes: "Constant | Between | Bell | PowerLaw") -> "GrainSizes":
 def grain(values: Values) -> "Material":
     from lithobrake.dem import Material
 
-    properties: dict[str, Any] = {name: values[f"grain.{name}"] for name in ("density", *SURFACE)}
+    properties: dict[str, Any] = {name: values[f"grain.{name}"] for name in PROPERTIES}
     return Material(**properties)
 
 
@@ -246,7 +243,9 @@ def lander(study: Study, values: Values) -> "Lander":
 
     section = study.lander
     shape = main_shape(section, values)
-    properties: dict[str, Any] = {name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE}
+    properties: dict[str, Any] = {
+        name: values.get(f"lander.{name}", values[f"grain.{name}"]) for name in SURFACE_PROPERTIES
+    }
     # The density of the material plays no part: the mass is given.
     material = Material(density=values["lander.mass"] / shape.volume, **properties)
     return Lander(
@@ -262,9 +261,9 @@ def landing(study: Study, values: Values) -> "Landing":
     w, x, y, z = (values[name] for name in ORIENTATION)
     return Landing(
         grain=grain(values),
-        speed=values["impact.speed"],
-        incidence=math.radians(values["impact.incidence_deg"]),
-        azimuth=math.radians(values["impact.azimuth_deg"]),
+        speed=values[IMPACT_SPEED],
+        incidence=math.radians(values[IMPACT_INCIDENCE]),
+        azimuth=math.radians(values[IMPACT_AZIMUTH]),
         place=(values[PLACE[0]], values[PLACE[1]]),
         orientation=(w, x, y, z),
         spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),

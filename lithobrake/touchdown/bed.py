@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from lithobrake.dem import ConvexHull, Material, World, folded, pair_law, period_of, rotation_matrices
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import reading
+from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.quantities import describe
 
-Floats = NDArray[np.float64]
 RAYS_PER_DIAMETER = 4
 
 

@@ -74,7 +74,11 @@ def bed_key(recipe: BedRecipe) -> str:
 @cache
 def _code() -> list[str]:
     # All of both parts: which of their files a pour calls changes more often than anyone would note it here.
-    return [source_hash("dem", "touchdown"), platform.machine(), *(version(name) for name in _LIBRARIES)]
+    return [
+        source_hash("dem", "touchdown", "vocabulary/material.py"),
+        platform.machine(),
+        *(version(name) for name in _LIBRARIES),
+    ]
 
 
 @cache

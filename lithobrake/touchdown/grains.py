@@ -4,12 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.dem import ConvexHull, folded, period_of
-from lithobrake.geometry.grain_limits import BOULDER_REACH, LARGEST_COVERAGE
+from lithobrake.geometry.limits import BOULDER_REACH, LARGEST_COVERAGE
+from lithobrake.vocabulary.arrays import Floats
 
-Floats = NDArray[np.float64]
 SIZE_DISTRIBUTIONS = ("constant", "uniform", "normal", "power_law")
 
 

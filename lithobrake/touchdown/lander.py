@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.dem import (
     Box,
@@ -23,8 +22,8 @@ from lithobrake.dem import (
 )
 from lithobrake.geometry.mesh import refuse_malformed
 from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.vocabulary.arrays import Floats
 
-Floats = NDArray[np.float64]
 # Points at which a part is looked for above the ground: so many steps from its centroid to each of its vertices.
 FOOTPRINT_STEPS = 4
 

@@ -3,12 +3,12 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.dem import BodyMotion, World
 from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import LEAVING, Landing, Outcome, outgoing, turned, turned_attitude
+from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, PERIODS_TRAVELLED, TO_REST
 
@@ -48,7 +48,6 @@ def rest_time(lander: Lander, inward_gravity: float) -> float:
     return TOPPLING_TIMES * math.sqrt(lander.smallest_edge / inward_gravity)
 
 
-Floats = NDArray[np.float64]
 CAPTURED_ENERGY = 1e-4  # of the energy of impact
 CAPTURED_APEX = 0.5  # of the lander's smallest edge; the apex if all of its energy lifted it
 # A lander that turns round passes through rest: only rest that lasts for so many of the shortest contacts is capture.

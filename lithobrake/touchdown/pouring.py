@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
-from lithobrake.geometry.grain_limits import longest_reach
+from lithobrake.geometry.limits import longest_reach
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world, height_map
 from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation
+from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.progress import Progress, silent
 
-Progress = Callable[[float, str], None]
-Vector = tuple[float, float, float]
 RAIN_PLACES = 100  # tried for each grain
 RAIN_DEPTH = 4.0  # of the largest bounding radius, below which no place is looked for at first
 FALL_STEPS = 6.0  # at most, in each contact: the bed does not remember how its grains bounced
@@ -89,21 +89,20 @@ class Recorder:
         return self.rows[-1][1] < settling.KINETIC_RATIO and self.rows[-1][2] < settling.UNBALANCED_FORCE
 
 
-def pour_bed(recipe: BedRecipe, progress: Progress | None = None) -> Bed:
+def pour_bed(recipe: BedRecipe, progress: Progress = silent) -> Bed:
     """Pour grains on a floor and let them settle under the local gravity; pour others where one of them creeps on.
 
     Raises ValueError where the bed does not come to rest.
     """
-    tell = progress or (lambda fraction, what: None)
     pour = 0
     while True:
         try:
-            return _poured(recipe, np.random.default_rng([recipe.seed, pour] if pour else recipe.seed), tell)
+            return _poured(recipe, np.random.default_rng([recipe.seed, pour] if pour else recipe.seed), progress)
         except settling.CreepingBedError:
             pour += 1
             if pour == POURS:
                 raise
-            tell(0.0, "pouring grains anew")
+            progress(0.0, "pouring grains anew")
 
 
 def _poured(recipe: BedRecipe, generator: np.random.Generator, tell: Progress) -> Bed:

@@ -4,11 +4,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lithobrake.dem import Material, StepTooLargeError, World
-
-Floats = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Floats
 
 CONTACT_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another gravity or material
 FREE_FALL_DAMPING = 0.5  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)

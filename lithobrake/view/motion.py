@@ -12,12 +12,8 @@ from lithobrake.results.motions import with_images
 from lithobrake.vocabulary.extra_library import extra_library
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from lithobrake.results.motions import MovingBodies
-
-    Floats = NDArray[np.float64]
-    Faces = NDArray[np.int64]
+    from lithobrake.vocabulary.arrays import Floats, Integers
 
 # Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
 COLOURS = "YlGnBu"
@@ -101,7 +97,7 @@ def placed(bodies: "MovingBodies", frame: int) -> "Floats":
     return np.concatenate([hull @ turn[body].T + place[body] for body, hull in enumerate(bodies.vertices)])
 
 
-def triangles(bodies: "MovingBodies") -> "tuple[Faces, Faces]":
+def triangles(bodies: "MovingBodies") -> "tuple[Integers, Integers]":
     """Return all triangles, counted over all vertices as `placed` has them, [face_count, 3], and the body of each."""
     counts = [len(hull) for hull in bodies.vertices]
     start = np.concatenate([[0], np.cumsum(counts)[:-1]])

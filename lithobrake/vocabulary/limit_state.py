@@ -10,15 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import FATES
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
-RETURNS = "returns"
-# Of a captured lander: whether gravity and rotation together hold it where it lies, or lift it off.
-SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
-# What becomes of a lander in the first flight, as a word that is true or false.
-FATES = (RETURNS, TouchdownOutcome.CAPTURED.value, SETTLED, LOFTED, *(status.value for status in FlightStatus))
 # A condition that a person wrote; a longer one would overflow the parser.
 LONGEST = 500
 SIGNS: dict[type, str] = {ast.Gt: ">", ast.GtE: ">=", ast.Lt: "<", ast.LtE: "<="}

@@ -76,6 +76,14 @@ class JourneyEnd(_Ending):
     FAILED = "failed", "A landing or flight of the journey failed.", "failed"
 
 
+RETURNS = "returns"
+# Of a captured lander also whether gravity and rotation together hold it where it lies, or lift it off.
+CAPTURED = TouchdownOutcome.CAPTURED.value
+SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
+# What becomes of a lander in the first flight, as a word that is true or false.
+FATES = (RETURNS, CAPTURED, SETTLED, LOFTED, *(status.value for status in FlightStatus))
+
+
 # One outcome, one colour, in every figure and file; a test holds that colour-blind readers tell them apart.
 FATE_COLOURS: dict[str, str] = {
     FlightStatus.IMPACT: "#4a90d9",

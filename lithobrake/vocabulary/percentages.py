@@ -5,6 +5,11 @@ from typing import Protocol
 
 # Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
 LEVEL = 0.9
+# Of the intervals and limits of an expansion and its runs.
+EXPANSION_LEVEL = 0.95
+# Probabilities of the quantiles that tables show, and their words.
+QUANTILES = LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
+QUANTILE_WORDS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 # Of an interval narrower than this tenths of a per cent say something.
 NARROW = 0.02
 # More digits than these say nothing of a share next to 0 or 1.

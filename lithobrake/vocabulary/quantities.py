@@ -43,6 +43,9 @@ BED = "of the bed: origin in the middle of the floor, x and y along its sides, z
 HULL = "of each hull: origin at its centroid, turning with it"
 
 VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
+# How a lander arrives at a touchdown, by the keys of the study file.
+IMPACT_SPEED, IMPACT_INCIDENCE, IMPACT_AZIMUTH = "impact.speed", "impact.incidence_deg", "impact.azimuth_deg"
+ARRIVAL = (IMPACT_SPEED, IMPACT_INCIDENCE)
 # Attitude and spin of a lander as a touchdown begins, in the frame of the bed.
 ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
@@ -127,8 +130,6 @@ ARC = {
     "site_mass": Quantity("kg", "mass of the body of the sample"),
     "site_spin_period": Quantity("s", "spin period of the body of the sample"),
 }
-# The files with one row a journey of landings, a touchdown, and a flight.
-JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE = "journeys.csv", "touchdowns.csv", "arcs.csv"
 # Of a journey of landings, and of each of its touchdowns.
 JOURNEY = {
     "journey": Quantity("", "number of the journey, from 0"),
@@ -151,7 +152,8 @@ JOURNEY = {
     "reason": Quantity("", "why the journey failed"),
 }
 # Of a body in the sky as a lander at rest sees it.
-SKY_FILE = "sky.csv"
+# Sides of a lander by its own axes.
+SIDES = ("+x", "-x", "+y", "-y", "+z", "-z")
 SKY_WORDS = {"sun": "the Sun", "earth": "Earth", "orbiter": "the orbiter"}
 SKY = {
     "journey": JOURNEY["journey"],
@@ -161,7 +163,7 @@ SKY = {
     "least_day_fraction": Quantity("", "the same over the worst day of a span"),
     **{
         f"side_{side}": Quantity("", f"fraction of the time in which it is seen and the side {side} faces it")
-        for side in ("+x", "-x", "+y", "-y", "+z", "-z")
+        for side in SIDES
     },
 }
 JOURNEY_TOUCHDOWN = {
@@ -181,7 +183,7 @@ JOURNEY_TOUCHDOWN = {
 SOIL = {"soil": Quantity("", "region of the study file whose soil the lander meets; elsewhere: that of [grain]")}
 ELSEWHERE = "elsewhere"
 # Of the landers at delivery options (docs/aiming.md).
-AIM_FILE, AIM_COLUMNS = "aim.csv", ("ground", "aim", "refit", "status", "time_s", "distance")
+AIM_COLUMNS = ("ground", "aim", "refit", "status", "time_s", "distance")
 # The end of a lander whose impact the emulator does not know, and for which no landing is made.
 UNKNOWN_END = "unknown"
 # Of a journey by the emulator of the touchdowns.

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis.limit_states import FAR, NEAR, limit_state_margin, limit_state_met
-from lithobrake.vocabulary.limit_state import FATES, LimitState
+from lithobrake.vocabulary.limit_state import LimitState
+from lithobrake.vocabulary.outcomes import FATES
 
 NAN = np.nan
 # Four landings: fast and gone, slow and down again, captured, and one of which nobody knows.

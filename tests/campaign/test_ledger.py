@@ -45,9 +45,8 @@ def test_a_row_has_all_that_is_known_of_a_run(tmp_path: Path) -> None:
     assert (one.status, one.outcome, one.outputs, one.version, one.attempts) == (
         "done", "clear", {"height": 1.5}, "7", 1,
     )  # fmt: skip
-    assert (two.status, two.outcome, two.reason) == (
-        "failed", None, "FloatingPointError: the overlap grew without bound"
-    )  # fmt: skip
+    assert (two.status, two.outcome, two.reason) == ("failed", None,
+        "FloatingPointError: the overlap grew without bound")  # fmt: skip
     assert one.wall_s is not None
     assert one.cpu_s is not None
     assert one.host
@@ -142,9 +141,8 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
     database.close()
     assert [(entry.status, entry.attempts, entry.started) for entry in read_records(path)] == [("done", 1, None)] * 3
     with Ledger(path) as ledger, LocalExecutor(1) as executor:
-        runs = run(
-            models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"}
-        )  # fmt: skip
+        runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor,
+            context={"version": "7"})  # fmt: skip
     assert runs.reused_count == 3
     assert [entry.attempts for entry in runs.records] == [1, 1, 1]
 
@@ -339,9 +337,8 @@ def test_names_without_a_unit_stand_alone_in_csv(records: list[Record]) -> None:
     text = io.StringIO()
     write_csv(records, text, UNITS)
     titles = next(csv.reader(io.StringIO(text.getvalue())))
-    assert titles[-4:] == [
-        "input:grain.young_modulus [Pa]", "input:grain.density", "input:grain.friction [-]", "output:height [m]",
-    ]  # fmt: skip
+    assert titles[-4:] == ["input:grain.young_modulus [Pa]", "input:grain.density", "input:grain.friction [-]",
+        "output:height [m]"]  # fmt: skip
 
 
 def test_names_and_draws_of_a_program_enter_the_csv_as_plain_text(tmp_path: Path) -> None:

@@ -166,10 +166,9 @@ def test_the_order_of_the_inputs_does_not_matter() -> None:
 
 
 def test_whatever_determines_a_run_changes_its_key() -> None:
-    keys = {
-        run_key({"a": 1.0}, 1, 0, {}), run_key({"a": 1.0 + 2**-52}, 1, 0, {}), run_key({"b": 1.0}, 1, 0, {}),
-        run_key({"a": 1.0}, 2, 0, {}), run_key({"a": 1.0}, 1, 1, {}), run_key({"a": 1.0}, 1, 0, {"version": "2"}),
-    }  # fmt: skip
+    keys = {run_key({"a": 1.0}, 1, 0, {}), run_key({"a": 1.0 + 2**-52}, 1, 0, {}), run_key({"b": 1.0}, 1, 0, {}),
+        run_key({"a": 1.0}, 2, 0, {}), run_key({"a": 1.0}, 1, 1, {}),
+        run_key({"a": 1.0}, 1, 0, {"version": "2"})}  # fmt: skip
     assert len(keys) == 6
 
 

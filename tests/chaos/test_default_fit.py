@@ -106,9 +106,8 @@ def test_selection_on_pure_noise_promises_nothing():
 
 
 def test_default_works_on_every_kind_of_input_and_on_a_grid():
-    inputs = {
-        "a": Normal(0.0, 1.0), "b": Empirical(np.random.default_rng(0).gamma(2.0, size=30)), "c": Exponential(2.0),
-    }  # fmt: skip
+    inputs = {"a": Normal(0.0, 1.0), "b": Empirical(np.random.default_rng(0).gamma(2.0, size=30)),
+        "c": Exponential(2.0)}  # fmt: skip
     x = sobol(inputs, 60, seed=3)
     y = np.column_stack([np.tanh(x[:, 0]) + x[:, 1], x[:, 2] ** 2, np.full(60, 3.0)])
     surrogate = fit(inputs, x, y, output_names=["p", "q", "constant"])
@@ -222,10 +221,9 @@ def test_default_on_few_runs(inputs, model, count, limit):
     assert 0.3 < surrogate.report["rrmse_estimate"][0] / score["rrmse"] < 3.0
 
 
-INPUTS = {
-    "young_modulus": LogUniform(1e6, 1e8), "poisson_ratio": Uniform(0.1, 0.4), "grain_restitution": Uniform(0.3, 0.9),
-    "lander_restitution": Uniform(0.3, 0.9), "friction": Uniform(0.2, 0.9),
-}  # fmt: skip
+INPUTS = {"young_modulus": LogUniform(1e6, 1e8), "poisson_ratio": Uniform(0.1, 0.4),
+    "grain_restitution": Uniform(0.3, 0.9), "lander_restitution": Uniform(0.3, 0.9),
+    "friction": Uniform(0.2, 0.9)}  # fmt: skip
 # First-order shares of the explained variance, and chaotic shares of all of it, as 320 landings of a sphere on one bed
 # gave them with another engine:
 # E, nu, e of the grains, e of the lander, mu for V+, theta+, omega+.

@@ -277,10 +277,9 @@ def test_an_output_whose_mean_is_off_it_by_rounding_is_constant(method):
 
 
 def test_sum_of_independent_inputs_adds_cumulants():
-    inputs = {
-        "n": Normal(3.0, 0.5), "e": Exponential(2.0), "g": Gamma(2.5, 0.4), "b": Beta(2.0, 5.0, 0.0, 3.0),
-        "u": Uniform(-1.0, 2.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0), "m": Empirical([1.0, 2.0, 2.5, 4.0]),
-    }  # fmt: skip
+    inputs = {"n": Normal(3.0, 0.5), "e": Exponential(2.0), "g": Gamma(2.5, 0.4), "b": Beta(2.0, 5.0, 0.0, 3.0),
+        "u": Uniform(-1.0, 2.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
+        "m": Empirical([1.0, 2.0, 2.5, 4.0])}  # fmt: skip
     oracles = [stats.norm(3.0, 0.5), stats.expon(scale=0.5), stats.gamma(2.5, scale=0.4),
         stats.beta(2.0, 5.0, 0.0, 3.0), stats.uniform(-1.0, 3.0), stats.truncnorm(-1.0, 2.0)]  # fmt: skip
     rows = [[float(one) for one in oracle.stats(moments="vsk")] for oracle in oracles]
@@ -327,10 +326,9 @@ def test_many_inputs_stay_exact_by_products_of_terms():
 
 
 def test_products_and_gauss_nodes_agree_in_every_family():
-    inputs = {
-        "n": Normal(0.0, 1.0), "g": Gamma(2.5, 0.4), "b": Beta(2.0, 5.0), "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0),
-        "idle": Uniform(0.0, 1.0), "m": Empirical(np.random.default_rng(1).normal(size=80)),
-    }  # fmt: skip
+    inputs = {"n": Normal(0.0, 1.0), "g": Gamma(2.5, 0.4), "b": Beta(2.0, 5.0),
+        "t": TruncatedNormal(0.0, 1.0, -1.0, 2.0), "idle": Uniform(0.0, 1.0),
+        "m": Empirical(np.random.default_rng(1).normal(size=80))}  # fmt: skip
     indices = multi_index_set(6, 4, max_degrees=[4, 3, 4, 2, 0, 4])
     coefficients = np.random.default_rng(0).normal(size=(len(indices), 2)) / (1.0 + indices.sum(axis=1))[:, None] ** 2
     degrees = indices.max(axis=0)
@@ -458,10 +456,9 @@ def test_openturns_gives_the_same_coefficients(fitted):
     enumeration = openturns.LinearEnumerateFunction(3)
     families = [openturns.StandardDistributionPolynomialFactory(joint.getMarginal(k)) for k in range(3)]
     basis = openturns.OrthogonalProductPolynomialFactory(families, enumeration)
-    algorithm = openturns.FunctionalChaosAlgorithm(
-        openturns.Sample(x.tolist()), openturns.Sample(y[:, None].tolist()), joint,
-        openturns.FixedStrategy(basis, len(multi_index_set(3, 4))), openturns.LeastSquaresStrategy(),
-    )  # fmt: skip
+    algorithm = openturns.FunctionalChaosAlgorithm(openturns.Sample(x.tolist()), openturns.Sample(y[:, None].tolist()),
+        joint, openturns.FixedStrategy(basis, len(multi_index_set(3, 4))),
+        openturns.LeastSquaresStrategy())  # fmt: skip
     algorithm.run()
     result = algorithm.getResult()
     theirs = {tuple(enumeration(index)): result.getCoefficients()[k, 0] for k, index in enumerate(result.getIndices())}

@@ -236,10 +236,9 @@ def stored_emulator(bounds_follow_inputs: bool = False) -> emulator.Emulator:
     outcome = np.where(rng.random(90) < 0.1, "stuck", "free")
     y[outcome == "stuck"] = np.nan
     upper = np.column_stack([limit, np.full((90, 2), np.inf)])
-    return emulator.fit(
-        STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome, outcomes=("free", "stuck", "lost"),
-        lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",), output_names=("speed", "spin", "label"),
-    )  # fmt: skip
+    return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
+        outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
+        output_names=("speed", "spin", "label"))  # fmt: skip
 
 
 @pytest.mark.parametrize("bounds_follow_inputs", [False, True])

@@ -35,7 +35,6 @@ def delivered_tables(folder: Path) -> dict[str, Any]:
     path = folder / "states.csv"
     np.savetxt(path, delivered_states(), fmt="%.17g", delimiter=",", header=TITLES, comments="")
     tables = journey_tables(site=POLE, journey={"count": COUNT, "emulated_count": 0})
-    tables["delivery"] = {
-        "latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "icrf", "epoch": EPOCH, "states": str(path)
-    }  # fmt: skip
+    tables["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "icrf", "epoch": EPOCH,
+        "states": str(path)}  # fmt: skip
     return tables

@@ -55,9 +55,8 @@ def test_what_is_not_of_the_form_is_named_by_its_keys() -> None:
 
 
 def test_numbers_are_what_they_were() -> None:
-    assert parsed('{"seed": 9007199254740993, "x": 0.1, "y": -1e-300}', {str: NUMBER}) == {
-        "seed": 9007199254740993, "x": 0.1, "y": -1e-300
-    }  # fmt: skip
+    assert parsed('{"seed": 9007199254740993, "x": 0.1, "y": -1e-300}', {str: NUMBER}) == {"seed": 9007199254740993,
+        "x": 0.1, "y": -1e-300}  # fmt: skip
 
 
 def test_a_truncated_hdf5_file_and_one_without_a_dataset_are_one_sentence(tmp_path: Path) -> None:

@@ -10,7 +10,8 @@ from scipy.stats import kstest, qmc
 
 from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, pointed, seen_from_lander, uniform_attitude
 from lithobrake.geometry.mesh import closed_faces, holds_origin, mass_properties, volume_of
-from lithobrake.geometry.mesh_files import labelled_mesh, product_id, read_mesh
+from lithobrake.geometry.mesh_files import read_mesh
+from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.smallbody import Shape
 
 OCTAHEDRON = "\n".join(

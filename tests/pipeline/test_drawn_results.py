@@ -44,7 +44,7 @@ def flown_share(count: int) -> float:
     left = np.flatnonzero(landings.outcome == "clear")
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
     site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
-    job = Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    job = Job(DrawnDesign(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
     return float((fly_starts(job, Starts(left, velocity, site), "").status == "impact").sum()) / count
 
 
@@ -114,8 +114,7 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     whole = ("soil", "bed", "place", "chaos")
     assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
     assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
-        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",
-    }  # fmt: skip
+        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction"}  # fmt: skip
     # Another seed is another place to these landings, so a twin is as unlike its run as any other.
     assert parts["chaos"]["upper"] > 0.5
     side = found["runs"]["side_runs"]

@@ -16,7 +16,6 @@ from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
@@ -107,7 +106,7 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     design = grown(DrawnDesign(study), only_read)
     assert (len(design.rows), design.keys) == (runs.run_count, runs.keys)
     assert design.study.with_run_count(24) == study.with_run_count(24)
-    plan = plan_of(design, Site(study), "ball", only_read, 2)
+    plan = plan_of(design, "ball", only_read, 2)
     # What follows the runs was not asked for.
     assert (plan.stages[0], len(plan.runs), plan.runs[0].drawn) == ("estimates", 1, runs.run_count)
     answered = sum(outcome in ("clear", "captured") for outcome in runs.outcomes)
@@ -155,9 +154,6 @@ def test_a_damaged_table_of_flights_is_made_again(asked: dict[str, float], tmp_p
     table, study, only_read = tmp_path / "run_flights.csv", source(**asked).study, StudyFolder.only_read(tmp_path)
     whole = table.read_bytes()
     table.write_text("nothing that could be read")
-    assert (
-        plan_of(grown(DrawnDesign(study), only_read), Site(study), "ball", only_read, 2).stages[0]
-        == "flights of the runs"
-    )
+    assert plan_of(grown(DrawnDesign(study), only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
     run(tmp_path, Said(), **asked)
     assert table.read_bytes() == whole

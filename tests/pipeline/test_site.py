@@ -149,7 +149,7 @@ def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
     _, y, outcome, bed = WEAK.study(60, 12, 3)
     left, drawn = np.flatnonzero(outcome == "clear"), study()
     velocity = np.array([[outputs_of(y[run])[name] for name in VELOCITY] for run in left])
-    job = Job(DrawnDesign(drawn), Site(drawn), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    job = Job(DrawnDesign(drawn), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
     width = []
     for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
         sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}

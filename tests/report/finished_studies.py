@@ -20,7 +20,6 @@ from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.paper_summary import write_summary
-from lithobrake.pipeline.site import Site
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
@@ -83,7 +82,7 @@ def _finish(folder: Path, changes: Mapping[str, Any], model: Callable[..., Any],
     write_landing(folder / "landing.h5")
     made = StudyFolder(folder)
     key = made.key_of("summary.json") or ""
-    write(Job(DrawnDesign(study), Site(study), tables, made, None, Silent()))  # type: ignore[arg-type]
+    write(Job(DrawnDesign(study), tables, made, None, Silent()))  # type: ignore[arg-type]
     made.note("summary", ["summary.json"], key, made.wall_times()["summary"])
 
 

@@ -233,9 +233,8 @@ def test_effective_acceleration_by_latitude(shapes):
 
 
 def test_effective_acceleration_with_a_mass_and_a_spin_for_each_point(block):
-    points, mass, period = (
-        np.array([[3.0, 1.0, 0.0], [0.0, 2.0, 2.0]]), np.array([1e6, 3e6]), np.array([40.0, math.inf]),
-    )  # fmt: skip
+    points, mass, period = (np.array([[3.0, 1.0, 0.0], [0.0, 2.0, 2.0]]), np.array([1e6, 3e6]),
+        np.array([40.0, math.inf]))  # fmt: skip
     together = block.effective_acceleration(points, mass=mass, spin_period=period)
     for i in range(2):
         alone = replace(block, mass=mass[i], spin_period=period[i]).effective_acceleration(points[i])

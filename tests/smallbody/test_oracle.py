@@ -12,10 +12,9 @@ oracle = pytest.importorskip("polyhedral_gravity", reason="polyhedral-gravity is
 
 def asked(body: Body, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Potential, acceleration and its derivatives xx, yy, zz, xy, xz, yz of the library."""
-    polyhedron = oracle.Polyhedron(
-        polyhedral_source=(body.shape.vertices, body.shape.faces), density=body.density,
-        normal_orientation=oracle.NormalOrientation.OUTWARDS, integrity_check=oracle.PolyhedronIntegrity.DISABLE,
-    )  # fmt: skip
+    polyhedron = oracle.Polyhedron(polyhedral_source=(body.shape.vertices, body.shape.faces), density=body.density,
+        normal_orientation=oracle.NormalOrientation.OUTWARDS,
+        integrity_check=oracle.PolyhedronIntegrity.DISABLE)  # fmt: skip
     answers = oracle.evaluate(polyhedron, points, parallel=False)
     potential, acceleration, gradient = (np.array([answer[i] for answer in answers]) for i in range(3))
     return potential, acceleration, gradient

@@ -150,9 +150,8 @@ def test_latitude_and_longitude_both_ways():
 
 def test_height_along_the_radius_both_ways(shapes):
     shape = Shape.read(shapes / "eros_7624.obj")
-    latitude, longitude, height = (
-        np.array([-70.0, 3.0, 41.0]), np.array([10.0, 180.0, -123.0]), np.array([0.0, 9.0, 1e5]),
-    )  # fmt: skip
+    latitude, longitude, height = (np.array([-70.0, 3.0, 41.0]), np.array([10.0, 180.0, -123.0]),
+        np.array([0.0, 9.0, 1e5]))  # fmt: skip
     points = shape.surface_point(latitude, longitude, height)
     radius = np.linalg.norm(points, axis=-1)
     ground = np.linalg.norm(shape.surface_point(*shape.latitude_longitude(points)), axis=-1)

@@ -13,18 +13,10 @@ from lithobrake.pipeline.design.dependencies import bed_setting
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.study import Study, StudyError, check_tables, known_keys, read_study
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.short_study import (
-    BODIES,
-    LANDERS,
-    KnownBody,
-    all_keys,
-    escape_speed,
-    known_body,
-    known_lander,
-    short_study,
-)
+from lithobrake.study.short_study import LANDERS, all_keys, escape_speed, known_body, known_lander, short_study
 from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import boulders
+from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody
 
 from ..paper_tables import paper_tables
 
@@ -56,9 +48,8 @@ def table(kind: str, **parameters: float) -> dict[str, Any]:
 
 def test_the_template_is_a_study_with_the_papers_five_inputs() -> None:
     study = check_tables(TABLES, Path())
-    assert list(uncertain(study.touchdown_values())) == [
-        "grain.young_modulus", "grain.poisson_ratio", "grain.restitution", "grain.friction", "lander.restitution",
-    ]  # fmt: skip
+    assert list(uncertain(study.touchdown_values())) == ["grain.young_modulus", "grain.poisson_ratio",
+        "grain.restitution", "grain.friction", "lander.restitution"]  # fmt: skip
 
 
 SHORT = short_study(known_body("Dimorphos"), known_lander("2U"), (10.0, -60.0))
@@ -86,14 +77,15 @@ def tetrahedron(radius: float) -> str:
     return "\n".join([*lines, "f 1 2 3", "f 1 4 2", "f 1 3 4", "f 2 4 3", ""])
 
 
-@pytest.mark.parametrize("body", [body for body in BODIES.values() if not body.is_built_in], ids=lambda body: body.name)
+@pytest.mark.parametrize(
+    "body", [body for body in KNOWN_BODIES.values() if not body.is_built_in], ids=lambda body: body.name
+)
 def test_every_body_by_name_takes_a_mesh(body: KnownBody, tmp_path: Path) -> None:
     (tmp_path / "ball.obj").write_text(tetrahedron(body.mean_radius))
     (tmp_path / "study.toml").write_text(short_study(body, known_lander("3u"), (0.0, 0.0), "ball.obj"))
     study = read_study(tmp_path / "study.toml")
-    assert (study.site.name, study.site.mass, study.site.spin_period) == (
-        body.name, body.mass, pytest.approx(body.spin_period, rel=1e-7),
-    )  # fmt: skip
+    assert (study.site.name, study.site.mass, study.site.spin_period) == (body.name, body.mass,
+        pytest.approx(body.spin_period, rel=1e-7))  # fmt: skip
 
 
 def test_escape_speed_of_bennu_is_that_of_its_mass_and_radius() -> None:
@@ -383,10 +375,9 @@ def test_a_broken_file_and_a_missing_file_are_one_sentence(tmp_path: Path) -> No
     (tmp_path / "deep.toml").write_text(f"seed = {'[' * 3000}{']' * 3000}")
     (tmp_path / "long.toml").write_text(f"seed = {'1' * 5000}")
     (tmp_path / "latin.toml").write_bytes(b'title = "caf\xe9"')
-    said = {
-        "broken": "not TOML", "missing": "cannot be read", "deep": "nested too deeply", "long": "thousands of digits",
-        "latin": "not text in UTF-8, byte 13 is 0xe9; save it in that encoding",
-    }  # fmt: skip
+    said = {"broken": "not TOML", "missing": "cannot be read", "deep": "nested too deeply",
+        "long": "thousands of digits",
+        "latin": "not text in UTF-8, byte 13 is 0xe9; save it in that encoding"}  # fmt: skip
     for name, word in ((f"{stem}.toml", word) for stem, word in said.items()):
         with pytest.raises(StudyError, match=word) as caught:
             read_study(tmp_path / name)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
-from lithobrake.geometry.grain_limits import BOULDER_REACH
+from lithobrake.geometry.limits import BOULDER_REACH
 from lithobrake.touchdown import (
     Bed,
     Boulders,
@@ -150,9 +150,8 @@ def test_grains_fill_what_a_boulder_leaves() -> None:
 
 def test_rain_stays_clear_of_boulders(ground: Bed) -> None:
     grains = ground.grains[1:40]
-    position, turned = rain(
-        np.random.default_rng(1), grains, WIDTH, WIDTH, ground.grains[:1], ground.position[:1]
-    )  # fmt: skip
+    position, turned = rain(np.random.default_rng(1), grains, WIDTH, WIDTH, ground.grains[:1],
+        ground.position[:1])  # fmt: skip
     assert (turned[0] == (1.0, 0.0, 0.0, 0.0)).all()
     way = position[1:] - position[0]
     way[:, :2] -= 0.8 * np.rint(way[:, :2] / 0.8)

@@ -2,13 +2,9 @@
 
     python validation/ballistic_descent/ballistic_descent.py --work FOLDER [--out FOLDER]
 
-Every site is met along its local vertical, at speeds from SPEEDS; the lander is released at a distance from the moon's
-centre, with errors of 90 m and 2 cm/s (3 sigma) in each direction, and flies on in the gravity of both bodies as balls.
-It lands on hard ground of a restitution, or on soil as recorded in the touchdowns of scenarios/mission.toml, which the
-script runs in FOLDER where it is not there. A row for each site has the speed with which most landers come to rest.
-
-Writes ballistic_descent.csv, a row for each distance, ground and site, as each distance and ground ends; what stands
-there is not made again. Then ballistic_descent.json.
+docs/validation/ballistic_descent.md has the set-up. On soil, landers repeat touchdowns of scenarios/mission.toml, which
+the script runs in FOLDER where it is not there. Writes ballistic_descent.csv, a row for each distance, ground and site,
+as each distance and ground ends; what stands there is not made again. Then ballistic_descent.json.
 """
 
 import sys
@@ -98,7 +94,6 @@ def soil(work: Path) -> RecordedSoil:
 
 
 def main() -> None:
-    """Fly what is missing."""
     given = command_line(__doc__, work=Path, out=HERE).parse_args()
     table, body = given.out / TABLE, balls()
     there = {(row["distance_m"], row["ground"], row["latitude_deg"]) for row in read_rows(table, KINDS)}

@@ -3,25 +3,20 @@
 python validation/ballistic_descent/write_page.py
 """
 
-import json
 import sys
+from itertools import product
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from ballistic_descent import DISTANCES, HERE, KINDS, LATITUDES, LONGITUDES, MAP_DISTANCE, RESTITUTIONS, SPEEDS, TABLE
 from bands import Band, band_of
-from page_words import TEXT
 
-from lithobrake.report.figures.style import INK, STYLE
+from lithobrake.report.figures.style import INK
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-sys.path.append(str(Path(__file__).parents[1]))
-from harness import PAGES, Row, read_rows
-from page_text import broken
+from drawing import figure, plt
+from harness import PAGES, Row, read_document, read_rows
+from page import made, table, write_page
 
 LEVELS = (0.5, 0.7, 0.8, 0.9)  # shares at rest from which a site counts as reliable
 PUBLISHED = Band(320.0, 380.0)  # deg east of the meridian that looks away from the primary
@@ -46,39 +41,29 @@ def bands(rows: list[Row], ground: str) -> dict[float, list[Band]]:
     }
 
 
-def band_table(rows: list[Row], ground: str) -> list[str]:
-    """Lines of the bands on the equator of a ground."""
-    lines = [
-        "| release [m] | "
-        + " | ".join(f"fraction ≥ {level:g}" for level in LEVELS)
-        + " | highest fraction | at longitude [deg] |",
-        "|---|" + "---|" * (len(LEVELS) + 2),
-    ]
+def band_table(rows: list[Row], ground: str) -> str:
+    lines = []
     for distance, found in bands(rows, ground).items():
         cells = [f"**{band}**" if band.agrees(PUBLISHED, BAR) else str(band) for band in found]
         highest = shares(rows, ground, distance, 0.0)
         place = LONGITUDES[int(highest.argmax())]
-        lines.append(f"| {distance:g} | " + " | ".join(cells) + f" | {highest.max():.2f} | {place:g} |")
-    return lines
+        lines.append([f"{distance:g}", *cells, f"{highest.max():.2f}", f"{place:g}"])
+    levels = (f"fraction ≥ {level:g}" for level in LEVELS)
+    return table(["release [m]", *levels, "highest fraction", "at longitude [deg]"], lines)
 
 
-def latitude_table(rows: list[Row]) -> list[str]:
-    """Lines of the shares at rest by latitude and ground, mean over all longitudes and over the published band."""
-    turned = inside()
-    lines = ["| ground | latitude [deg] | longitudes 320 to 20 | other longitudes |", "|---|---|---|---|"]
-    for ground in GROUNDS:
-        for latitude in LATITUDES:
-            found = shares(rows, ground, MAP_DISTANCE, latitude)
-            lines.append(
-                f"| {title(ground)} | {latitude:g} | {found[turned].mean():.2f} | {found[~turned].mean():.2f} |"
-            )
-    return lines
+def latitude_table(rows: list[Row]) -> str:
+    """Shares at rest by latitude and ground, mean over the published band and over all other longitudes."""
+    lines = []
+    for ground, latitude in product(GROUNDS, LATITUDES):
+        found = shares(rows, ground, MAP_DISTANCE, latitude)
+        lines.append((title(ground), f"{latitude:g}", *(f"{found[one].mean():.2f}" for one in (inside(), ~inside()))))
+    return table(("ground", "latitude [deg]", "longitudes 320 to 20", "other longitudes"), lines)
 
 
 def draw(rows: list[Row], to: Path) -> None:
     """Shares at rest over longitude: a curve for each distance, a panel for each ground."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(2, 2, figsize=(9.2, 6.4), sharex=True, sharey=True, constrained_layout=True)
+    with figure(to, 2, 2, (9.2, 6.4), dpi=110, sharex=True, sharey=True) as (drawn, axes):
         colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(DISTANCES)))
         shown = (LONGITUDES + 180.0) % 360.0 - 180.0
         order = np.argsort(shown)
@@ -94,9 +79,7 @@ def draw(rows: list[Row], to: Path) -> None:
             axis.set_xlabel("longitude from the side away from Didymos [deg east]")
         for axis in axes[:, 0]:
             axis.set_ylabel("fraction at rest on Dimorphos")
-        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(DISTANCES))
-        figure.savefig(to, dpi=110)
-        plt.close(figure)
+        drawn.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(DISTANCES))
 
 
 def inside() -> np.ndarray:
@@ -113,19 +96,15 @@ def mean_shares(rows: list[Row], ground: str, distance: float) -> list[float]:
     return found
 
 
-def mean_table(rows: list[Row]) -> list[str]:
-    """Lines of the mean shares of every ground and distance."""
-    head = "| ground | release [m] | lowest speed: 320 to 20 | others | best speed: 320 to 20 | others |"
-    lines = [head, "|---|---|---|---|---|---|"]
-    for ground in GROUNDS:
-        for distance in DISTANCES:
-            cells = " | ".join(f"{one:.2f}" for one in mean_shares(rows, ground, distance))
-            lines.append(f"| {title(ground)} | {distance:g} | {cells} |")
-    return lines
+def mean_table(rows: list[Row]) -> str:
+    heads = ("ground", "release [m]", "lowest speed: 320 to 20", "others", "best speed: 320 to 20", "others")
+    return table(heads, (
+        (title(ground), f"{distance:g}", *(f"{one:.2f}" for one in mean_shares(rows, ground, distance)))
+        for ground, distance in product(GROUNDS, DISTANCES)
+    ))  # fmt: skip
 
 
 def numbers(rows: list[Row]) -> dict[str, str | int]:
-    """Return the numbers of the page's sentences."""
     hard = [ground for ground in GROUNDS if ground != "soil"]
     real = [
         band for ground in hard for found in bands(rows, ground).values() for band in found
@@ -151,23 +130,19 @@ def numbers(rows: list[Row]) -> dict[str, str | int]:
 
 
 def title(ground: str) -> str:
-    """A ground in words."""
     return "soil" if ground == "soil" else f"hard ground, {ground}"
 
 
 def main() -> None:
-    """Write page and figure."""
     rows = read_rows(HERE / TABLE, KINDS)
-    made = json.loads((HERE / TABLE).with_suffix(".json").read_text(encoding="utf-8"))
+    kept = read_document((HERE / TABLE).with_suffix(".json"))
     draw(rows, PAGES / "ballistic_descent.png")
-    tables = [f"### {title(ground).capitalize()}\n\n" + "\n".join(band_table(rows, ground)) for ground in GROUNDS]
-    page = TEXT.format(
-        **numbers(rows), radius=f"{made['moon_radius_m']:.1f}", apart=f"{made['apart_m']:.0f}",
-        means="\n".join(mean_table(rows)), bands="\n\n".join(tables), map=f"{MAP_DISTANCE:g}",
-        latitudes="\n".join(latitude_table(rows)),
-        made=f"`{made['command']}`, {made['date']}, {made['machine']}, {made['cpu_s_of_rows']} s of CPU time",
+    tables = [f"### {title(ground).capitalize()}\n\n{band_table(rows, ground)}" for ground in GROUNDS]
+    write_page(
+        "ballistic_descent", **numbers(rows), radius=f"{kept['moon_radius_m']:.1f}", apart=f"{kept['apart_m']:.0f}",
+        means=mean_table(rows), bands="\n\n".join(tables), map=f"{MAP_DISTANCE:g}", latitudes=latitude_table(rows),
+        made=made(kept, f"{kept['cpu_s_of_rows']} s of CPU time"),
     )  # fmt: skip
-    (PAGES / "ballistic_descent.md").write_text(broken(page) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -2,22 +2,19 @@
 
     python validation/experiments/ball_into_beads.py --work FOLDER --out FOLDER [--series NAME ...]
 
-Series: drops and diameters are held against the experiment, in loose beads of 3 mm, as in its demonstration, on ground
-that repeats; walls are the same drops in a box; causes drops a light and a heavy ball into beds that differ from these
-step by step; sizes drops balls of other diameters into some of them; repose is the slope of a heap.
-Rows that stand in the tables are not run again.
-
-Source: [Uehara-2003]; [Ambroso-2005]; [Ambroso-2005b]; for the set-up DEM-Engine's DEMdemo_BallDrop.cpp.
+Series: drops and diameters are held against the experiment; walls are the same drops in a box; causes drops a light and
+a heavy ball into beds that differ step by step; sizes drops other balls into some of them; repose is the slope of a
+heap. Rows that stand in the tables are not run again. Sources: [Uehara-2003]; [Ambroso-2005]; [Ambroso-2005b]; for the
+set-up DEM-Engine's DEMdemo_BallDrop.cpp.
 """
 
 import time
 from dataclasses import replace
 from pathlib import Path
 
-from ball_drop import DROP_STEPS, Ball, dropped
 from repose import angle_of_repose
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import Beads, bulk_density, kept
+from sphere_bed import DROP_STEPS, Ball, Beads, bulk_density, dropped, kept
 
 from lithobrake.dem import Material
 
@@ -115,7 +112,6 @@ def twelve(name: str, bed: Beads) -> list[tuple[str, Beads, Ball, float]]:
 
 
 def drop_row(work: Path, name: str, beads: Beads, ball: Ball, fall: float) -> Row:
-    """Drop one ball into a bed."""
     start = time.process_time()
     world = kept(beads, work)
     bulk = bulk_density(world, beads)
@@ -130,7 +126,6 @@ def drop_row(work: Path, name: str, beads: Beads, ball: Ball, fall: float) -> Ro
 
 
 def run_drops(series: str, work: Path, out: Path) -> None:
-    """Run the drops of a series that have no row."""
     ran = {(row["bed"], row["density"], row["diameter"], row["fall"]) for row in read_rows(out / NAME)}
     for name, beads, ball, fall in drops()[series]:
         if (name, ball.density, ball.diameter, fall) not in ran:
@@ -138,7 +133,6 @@ def run_drops(series: str, work: Path, out: Path) -> None:
 
 
 def main() -> None:
-    """Run the series asked for."""
     given = options_of(__doc__, series=SERIES)
     for series in given.series:
         if series == "repose":

@@ -2,13 +2,9 @@
 
     python validation/experiments/ball_under_gravities.py --work FOLDER --out FOLDER [--kinds NAME ...]
 
-The beads are of one modulus under every gravity and settle anew under each, so that no similarity makes the answer.
-Stiffer beads repeat the fast drops under Earth's gravity. Beads that pull on each other settle under Earth's gravity,
-most of which is then taken off; balls at two speeds meet them under two gravities. Froude number: speed at the first
-touch over sqrt(g D), D the ball's diameter. Rows that stand in ball_under_gravities.csv are not run again.
-
-Sources: [Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the
-speed and no gravity).
+Beads settle anew under each gravity, so that no similarity makes the answer; those that pull on each other settle under
+Earth's, most of which is then taken off. Rows that stand in ball_under_gravities.csv are not run again. Sources:
+[Sunday-2021], [Sunday-2022] (depth and duration follow the Froude number), [Murdoch-2017] (depth follows the speed).
 """
 
 import itertools
@@ -19,10 +15,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from ball_drop import Ball, dropped
 from ball_into_beads import SPREAD
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import Beads, bulk_density, kept
+from sphere_bed import Ball, Beads, bulk_density, dropped, kept
 
 from lithobrake.dem import Material, World
 from lithobrake.touchdown import settling
@@ -113,7 +108,6 @@ def drop(work: Path, kind: str, share: float, froude: float) -> Row:
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__, kinds=tuple(KINDS))
     table = given.out / NAME
     ran = {(row["kind"], row["share"], row["froude"]) for row in read_rows(table)}

@@ -1,13 +1,20 @@
-"""What the rows of the three experiments say: exponents, prefactor, times and shares, each with its 95 % interval."""
+"""What the rows of the experiments say: exponents, prefactor, times and shares, each with its 95 % interval.
+
+And the rows of the table in which the page holds them against what was measured.
+"""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from result_rows import Row
 from scipy.stats import t as student
 from sphere_bed import Floats
+
+NOT_SHOWN = "not shown"
+SHARE = 0.25  # of a measured value: the tolerance of prefactors, coefficients, times, depths, speeds and densities
 
 
 @dataclass(frozen=True)
@@ -41,7 +48,6 @@ def powers(target: Floats, *factors: Floats) -> list[Estimate]:
 
 
 def column(rows: list[Row], name: str) -> Floats:
-    """Return a column of numbers."""
     return np.array([row[name] for row in rows], dtype=np.float64)
 
 
@@ -89,7 +95,6 @@ def stopping(rows: list[Row]) -> list[float]:
 
 
 def gravity_exponents(rows: list[Row]) -> dict[str, Estimate]:
-    """Exponents of depth and times over gravity."""
     return {
         name: powers(column(rows, name), column(rows, "share"))[0]
         for name in ("depth", "stopping_time", "time_to_90")
@@ -104,3 +109,38 @@ def leaving(rows: list[Row]) -> list[float]:
 def speeds(rows: list[Row]) -> list[float]:
     """Speeds out over in of all grains, 0 where one stays or falls back at its last look."""
     return [row["speed_ratio"] if row["vertical_ratio"] > 0.0 else 0.0 for row in rows]
+
+
+class Line(NamedTuple):
+    """One quantity, as it was measured and as ours has it; cause: the row that shows why the two disagree."""
+
+    quantity: str
+    measured: str
+    ours: str
+    rows: int
+    ratio: str
+    agrees: bool
+    cause: str = NOT_SHOWN
+
+    def cells(self) -> list[str]:
+        cells = [self.quantity, self.measured, self.ours, str(self.rows), self.ratio, "yes" if self.agrees else "no"]
+        return [*cells, "" if self.agrees else self.cause]
+
+
+Lines = list[Line]
+
+
+def said(estimate: Estimate) -> str:
+    """Return a value with its interval, to a thousandth, or to three digits where it is 10 or more."""
+    digits = max(0, 3 - len(f"{abs(estimate.value):.0f}")) if abs(estimate.value) >= 10.0 else 3
+    value = f"{estimate.value:.{digits}f}"
+    return f"{value} +- {estimate.half:.{digits}f}" if math.isfinite(estimate.half) else value
+
+
+def line(
+    quantity: str, measured: float, ours: Estimate, bar: float, text: str = "", cause: str = NOT_SHOWN
+) -> Line:  # fmt: skip
+    """Return a row of the table: it agrees where our value is within a bar of the measured one."""
+    ratio = f"{ours.value / measured:.2f}" if measured else "-"
+    agrees = abs(ours.value - measured) <= bar
+    return Line(quantity, text or f"{measured:.3g}", said(ours), ours.rows, ratio, agrees, cause)

@@ -3,9 +3,7 @@
     python validation/experiments/grain_on_its_own_kind.py --work FOLDER --out FOLDER
 
 Basalt spheres of 150 um, at random points of several beds. Rows that stand in grain_on_its_own_kind.csv are not run
-again.
-
-Source: [Bogdan-2020].
+again. Source: [Bogdan-2020].
 """
 
 import time
@@ -13,10 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from ball_drop import Ball, touch_height
 from ball_into_beads import SLOW
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import Beads, kept, steps_for
+from sphere_bed import Ball, Beads, kept, steps_for, touch_height
 
 from lithobrake.dem import Material, Sphere, World
 
@@ -93,7 +90,6 @@ def impact(work: Path, name: str, beads: Beads, number: int) -> Row:
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__)
     table = given.out / NAME
     ran = {(row["kind"], row["seed"], row["impact"]) for row in read_rows(table)}

@@ -69,7 +69,6 @@ def lofted(field: float) -> float:
 
 
 def contact_lines() -> list[str]:
-    """Return the table of peak values of a Hertz impact."""
     mass, radius = pair()
     lines = [
         "| grains and lander | Young's modulus [Pa] | speed [m/s] | duration [s] | overlap [mm] | force [N] | "
@@ -103,7 +102,6 @@ def yield_lines() -> list[str]:
 
 
 def cohesion_lines() -> list[str]:
-    """Return the table of pull over weight."""
     lines = ["| grains | pull / weight, S = 1 | S = 0.1 |", "|---|---|---|"]
     for diameter, name in ((0.001, "1 mm"), (0.01, "1 cm"), (0.09, "9 cm"), (0.5, "50 cm")):
         lines.append(f"| {name} | {bond(diameter, 1.0):.2g} | {bond(diameter, 0.1):.2g} |")

@@ -17,13 +17,13 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from oblique_map_figure import draw
 
 from lithobrake.analysis import wilson_interval
 from lithobrake.dem import Box, Material, Sphere
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, Outcome, land, pour_bed
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from drawing import figure
 from harness import PAGES, Row, add_row, command_line, origin, read_rows, write_document
 
 GRAVITY, GRAIN_DIAMETER, WIDTH = 5e-5, 0.09, 0.7  # m/s2, m, m
@@ -42,6 +42,12 @@ FRAMES = 200
 DEFLECTED = 1e-5
 HERE = Path(__file__).parent
 FIGURES = PAGES / "experiments"
+PANELS = {
+    "stop": "stops on the bed",
+    "along": "goes along the ground farther than its length",
+    "bounce": "bounces off where it came down",
+    "speed": "rebound / impact speed (median, quartiles)",
+}
 CLASSES = ("stop", "along", "bounce", "lost")
 KEYS = {"shape": str, "speed": float, "incidence_deg": float, "bed": int, "placement": int, "status": str}
 
@@ -122,7 +128,6 @@ def run(shape: str, speed: float, incidence_deg: float, number: int, placement: 
 
 
 def noted(table: Path) -> list[Row]:
-    """Return the lines of the table on disk."""
     return read_rows(table, KEYS)
 
 
@@ -156,7 +161,6 @@ def cell(rows: list[Row]) -> Row:
 
 
 def cells(rows: list[Row]) -> list[Row]:
-    """Return all cells that have landings."""
     found = []
     for shape, speed, angle in itertools.product(SHAPES, SPEEDS, INCIDENCES):
         of = [row for row in rows if (row["shape"], row["speed"], row["incidence_deg"]) == (shape, speed, angle)]
@@ -165,8 +169,41 @@ def cells(rows: list[Row]) -> list[Row]:
     return found
 
 
+def value_and_text(entry: Row, panel: str) -> tuple[float, str]:
+    """Return what colours a cell, and what is written in it."""
+    if panel == "speed" and entry["speed_ratio_quartiles"] is None:
+        return float("nan"), "none\nleft"
+    if panel == "speed":
+        low, middle, high = entry["speed_ratio_quartiles"]
+        return middle, f"{middle:.2f}\n{low:.2f}-{high:.2f}"
+    share = entry["shares"][panel]
+    low, high = share["interval"]
+    return share["share"], f"{share['count']} of {entry['landings']}\n{low:.2f}-{high:.2f}"
+
+
+def draw(found: list[Row], path: Path) -> None:
+    shapes = list(dict.fromkeys(entry["shape"] for entry in found))
+    speeds = sorted({entry["speed"] for entry in found})
+    angles = sorted({entry["incidence_deg"] for entry in found})
+    size = (4.6 * len(shapes), 9.4)
+    with figure(path, len(PANELS), len(shapes), size, squeeze=False, sharex=True, sharey=True) as (drawn, axes):
+        for column, shape in enumerate(shapes):
+            for axis, (panel, title) in zip(axes[:, column], PANELS.items(), strict=True):
+                shown = np.full((len(speeds), len(angles)), np.nan)
+                for entry in (entry for entry in found if entry["shape"] == shape):
+                    place = speeds.index(entry["speed"]), angles.index(entry["incidence_deg"])
+                    shown[place], text = value_and_text(entry, panel)
+                    colour = "white" if shown[place] > 0.55 else "black"
+                    axis.text(place[1], place[0], text, ha="center", va="center", fontsize=8, color=colour)
+                axis.imshow(shown, origin="lower", aspect="auto", cmap="Blues", vmin=0.0, vmax=1.0)
+                axis.set_xticks(range(len(angles)), [f"{angle:g}" for angle in angles])
+                axis.set_yticks(range(len(speeds)), [f"{speed:g}" for speed in speeds])
+                axis.set_title(f"{shape}: {title}", fontsize=8.5)
+        drawn.supxlabel("angle from the normal [deg]", fontsize=9)
+        drawn.supylabel("speed [m/s]", fontsize=9)
+
+
 def main() -> None:
-    """Run the landings that are not noted yet, and write what came of all."""
     chosen = command_line(__doc__, work=Path, placements=3, speeds=SPEEDS, out=HERE).parse_args()
     chosen.work.mkdir(parents=True, exist_ok=True)
     table = chosen.out / "oblique_map.csv"

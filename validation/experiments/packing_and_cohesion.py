@@ -2,11 +2,8 @@
 
     python validation/experiments/packing_and_cohesion.py --work FOLDER --out FOLDER [--kinds NAME ...]
 
-By similarity only the pull of a contact over a grain's weight tells beds of one kind apart, as long as they are stiff:
-so one curve of volume against that ratio stands for every gravity, and gives the pull that a measured volume asks for.
-Rows that stand in packing_and_cohesion.csv are not run again.
-
-Source: [Keulen-2026].
+By similarity one curve of volume against pull over weight stands for every gravity. Rows that stand in
+packing_and_cohesion.csv are not run again. Source: [Keulen-2026].
 """
 
 import itertools
@@ -72,7 +69,6 @@ def material_of(kind: Kind, pull: float) -> Material:
 
 
 def shapes(kind: Kind, generator: np.random.Generator) -> list[Shape]:
-    """Return the grains of a bed."""
     count = round(0.58 * WIDTH**2 * DEPTH / (math.pi / 6.0))
     sizes = generator.uniform(*kind.diameters, count)
     if kind.hulls:
@@ -133,14 +129,12 @@ def solid_fraction(world: World, volumes: Floats, kind: Kind) -> float:
 
 
 def missing(kinds: list[str], table: Path) -> Iterator[tuple[str, float, int]]:
-    """Yield kind, pull and seed of what has no row."""
     ran = {(row["kind"], row["pull"], row["seed"]) for row in read_rows(table)}
     for seed, name in itertools.product(SEEDS, kinds):
         yield from ((name, pull, seed) for pull in KINDS[name].pulls if (name, pull, seed) not in ran)
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__, kinds=tuple(KINDS))
     for name, pull, seed in missing(given.kinds, given.out / NAME):
         start = time.process_time()

@@ -2,11 +2,9 @@
 
     python validation/experiments/plate_into_loose_grains.py --work FOLDER --out FOLDER [--series NAME ...]
 
-1300 kg on a round plate of 32 cm come down at 10 cm/s on grains that fill a given share of space. Six seconds later
-OSIRIS-REx still went down at about 4 cm/s [Walsh-2022]. Bennu's gravity moves nothing by more than a millimetre in that
-time, so none acts here, and a bed may be as loose as one likes. Series: flight; corners, the eight combinations of
-packing, friction and cohesion [Ballouz-2021]; speeds, the force on the plate against its speed; slopes, of heaps of
-the grains of the corners. Rows that stand in the tables are not run again.
+Series: flight, as [Walsh-2022]; corners, the eight combinations of packing, friction and cohesion [Ballouz-2021];
+speeds, the force on the plate against its speed; slopes, of heaps of the grains of the corners. Rows that stand in the
+tables are not run again.
 """
 
 import math
@@ -51,7 +49,6 @@ class Soil:
 
     @property
     def material(self) -> Material:
-        """The grains."""
         return Material(
             young_modulus=self.young_modulus, poisson_ratio=0.25, restitution=0.5, friction=self.friction,
             density=self.density, rolling_friction=self.rolling_friction,
@@ -182,7 +179,6 @@ def slopes(out: Path) -> None:
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__, series=SERIES)
     ran = {row["name"] for row in read_rows(given.out / NAME)}
     for series in given.series:

@@ -1,17 +1,14 @@
-"""What the table of the ball on coarse grains says: rows of the page's table, a table of its own, and its figure."""
+"""What the table of the ball on coarse grains says: rows of the page's table, and a table of its own."""
 
 import math
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from draw import INK, MEASURED
-from fits import column, mean_of
-from result_rows import Row, read_rows
-from table_lines import FIGURES, HERE, NOT_SHOWN, Line, Lines, line, table
+from drawing import figure
+from fits import NOT_SHOWN, Line, Lines, column, line, mean_of
+from page import table, two_digits
+from result_rows import FIGURES, HERE, Row, read_rows
 
 from lithobrake.analysis import wilson_interval
 
@@ -57,7 +54,6 @@ def between(rows: list[Row], kind: str, share: float, slow: float, fast: float) 
 
 
 def rebounds_part() -> tuple[Lines, str]:
-    """Return rows of the table, and the section's table."""
     every = read_rows(HERE / "who_rebounds.csv")
     causes = {
         "1e-3 g, 25-100 cm/s (COLLIDE-2)": "6 mm; lunar, 4 mm, 1e-3 g", LOWEST: PULLING,
@@ -87,13 +83,7 @@ def rebounds_part() -> tuple[Lines, str]:
     return lines, cells(every)
 
 
-def two_digits(value: float) -> str:
-    """Return a number to two digits, never in powers of ten."""
-    return f"{float(f'{value:.2g}'):g}"
-
-
 def cells(rows: list[Row]) -> str:
-    """Return a table of all cells."""
     heads = ("grains", "Froude number", "speed at 1e-4, 1e-3, 1e-2 g [cm/s]", "drops", "fraction that rebounds (95 %)",
              "speed ratio, mean +- standard deviation", "depth [mm]", "drops with ejecta",
              "ejecta speed / impact speed")  # fmt: skip
@@ -115,34 +105,34 @@ def cells(rows: list[Row]) -> str:
 
 def of_rebounds(rows: list[Row], to: Path) -> None:
     """Share that rebounds and speed out over in, over the Froude number."""
-    figure, axes = plt.subplots(1, 2, figsize=(8.6, 4.8), layout="constrained")
-    beyond = {0.0: -0.07, 1.0: 1.07}
-    for text, (share, slow, fast, expected) in SAID.items():
-        level = beyond[expected]
-        beyond[expected] += 0.1 * (1.0 if expected else -1.0)
-        ends = [froude(share, slow), froude(share, fast)]
-        axes[0].plot(ends, [level, level], "|-", color=MEASURED, lw=2)
-        axes[0].text(ends[0], level + (0.025 if expected else -0.06), text.split(" (")[0], fontsize=7.5, color=MEASURED)
-    marks = dict(zip(SHOWN, ("o", "s", "^", "D", "v", "P"), strict=True))
-    for k, kind in enumerate(name for name in SHOWN if any(row["kind"] == name for row in rows)):
-        numbers = sorted({row["froude"] for row in rows if row["kind"] == kind})
-        parts = [[row for row in rows if row["kind"] == kind and row["froude"] == number] for number in numbers]
-        share = np.array([rebounds(part) / len(part) for part in parts])
-        ends = np.array([wilson_interval(rebounds(part), len(part)) for part in parts]).T
-        at, ink = np.array(numbers) * 1.06 ** (k - 2), (*INK, "0.2", "#c98a1b")[k]
-        axes[0].errorbar(at, share, np.abs(ends - share), fmt=marks[kind] + "-", color=ink, lw=1, capsize=2,
-                         label=kind)  # fmt: skip
-        out = [column(part, "upward_out") for part in parts]
-        axes[1].errorbar(at, [o.mean() for o in out], [o.std() for o in out], fmt=marks[kind], color=ink, capsize=2)
-    needed = np.geomspace(0.8, 400.0, 50)
-    axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
-    axes[1].text(12.0, 0.2, "above the dotted line\nit rises by 0.5 mm", fontsize=7.5, color=MEASURED)
-    axes[1].axhline(0.05, color=MEASURED, lw=2)
-    axes[1].text(480.0, 0.053, "COLLIDE-1", fontsize=7.5, color=MEASURED, ha="right")
-    for axis in axes:
-        axis.set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$")
-    axes[0].set(ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
-    axes[1].set(ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4))
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    figure.savefig(to)
-    plt.close(figure)
+    with figure(to, 1, 2, (8.6, 4.8)) as (drawn, axes):
+        beyond = {0.0: -0.07, 1.0: 1.07}
+        for text, (share, slow, fast, expected) in SAID.items():
+            level = beyond[expected]
+            beyond[expected] += 0.1 * (1.0 if expected else -1.0)
+            ends = [froude(share, slow), froude(share, fast)]
+            axes[0].plot(ends, [level, level], "|-", color=MEASURED, lw=2)
+            axes[0].text(
+                ends[0], level + (0.025 if expected else -0.06), text.split(" (")[0], fontsize=7.5, color=MEASURED
+            )
+        marks = dict(zip(SHOWN, ("o", "s", "^", "D", "v", "P"), strict=True))
+        for k, kind in enumerate(name for name in SHOWN if any(row["kind"] == name for row in rows)):
+            numbers = sorted({row["froude"] for row in rows if row["kind"] == kind})
+            parts = [[row for row in rows if row["kind"] == kind and row["froude"] == number] for number in numbers]
+            share = np.array([rebounds(part) / len(part) for part in parts])
+            ends = np.array([wilson_interval(rebounds(part), len(part)) for part in parts]).T
+            at, ink = np.array(numbers) * 1.06 ** (k - 2), (*INK, "0.2", "#c98a1b")[k]
+            axes[0].errorbar(at, share, np.abs(ends - share), fmt=marks[kind] + "-", color=ink, lw=1, capsize=2,
+                             label=kind)  # fmt: skip
+            out = [column(part, "upward_out") for part in parts]
+            axes[1].errorbar(at, [o.mean() for o in out], [o.std() for o in out], fmt=marks[kind], color=ink, capsize=2)
+        needed = np.geomspace(0.8, 400.0, 50)
+        axes[1].plot(needed, math.sqrt(2.0 * RISEN / DIAMETER) / needed, ":", color=MEASURED)
+        axes[1].text(12.0, 0.2, "above the dotted line\nit rises by 0.5 mm", fontsize=7.5, color=MEASURED)
+        axes[1].axhline(0.05, color=MEASURED, lw=2)
+        axes[1].text(480.0, 0.053, "COLLIDE-1", fontsize=7.5, color=MEASURED, ha="right")
+        for axis in axes:
+            axis.set(xscale="log", xlabel=r"Froude number $v / \sqrt{g D}$")
+        axes[0].set(ylabel="fraction that rebounds", ylim=(-0.3, 1.3))
+        axes[1].set(ylabel="rebound speed / impact speed", ylim=(-0.01, 0.4))
+        drawn.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)

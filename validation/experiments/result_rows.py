@@ -11,9 +11,10 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import harness
-from harness import Row, origin, write_document
+from harness import PAGES, Row, origin, write_document
 
 HERE = Path(__file__).parent
+FIGURES = PAGES / "experiments"
 
 
 def options_of(doc: str | None, **options: Any) -> argparse.Namespace:
@@ -33,7 +34,6 @@ def read_rows(path: Path) -> list[Row]:
 
 
 def number(text: str) -> float | str:
-    """Return a number where the text is one."""
     try:
         return float(text)
     except ValueError:

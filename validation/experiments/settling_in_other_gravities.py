@@ -3,9 +3,7 @@
     python validation/experiments/settling_in_other_gravities.py --work FOLDER --out FOLDER
 
 The bed falls and settles anew under each gravity, of the same modulus: no similarity makes the answer. Rows that stand
-in settling_in_other_gravities.csv are not run again.
-
-Source: [Altshuler-2014].
+in settling_in_other_gravities.csv are not run again. Source: [Altshuler-2014].
 """
 
 import math
@@ -14,10 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from ball_drop import Ball, dropped
 from ball_into_beads import SLOW, SPREAD
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import Beads, bulk_density, kept
+from sphere_bed import Ball, Beads, bulk_density, dropped, kept
 
 from lithobrake.dem import Material
 
@@ -39,7 +36,6 @@ PACE = 0.02  # sqrt(D / g) between looks
 
 
 def settled(work: Path, bed: Beads, share: float, place: int) -> Row:
-    """Release the sphere at a place of a bed under a share of Earth's gravity."""
     start = time.process_time()
     beads = replace(bed, gravity=EARTH * share)
     world = kept(beads, work)
@@ -66,7 +62,6 @@ def cases() -> list[tuple[Beads, float, int]]:
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__)
     table = given.out / NAME
     ran = {(row["young_modulus"], row["share"], row["seed"], row["place"]) for row in read_rows(table)}

@@ -1,4 +1,4 @@
-"""Beads poured on ground that repeats, or into a box: the beds of the experiments.
+"""Beads poured on ground that repeats, or into a box, the beds of the experiments, and a ball that falls into one.
 
 A bed is settled once and kept with the springs of its contacts (World.save) in a work folder, so that every drop
 starts from the same rest.
@@ -8,9 +8,11 @@ import hashlib
 import math
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from result_rows import Row
 from scipy.spatial import cKDTree
 
 from lithobrake.dem import Material, Sphere, World, folded, period_of
@@ -20,6 +22,8 @@ Floats = NDArray[np.float64]
 
 POUR_STEPS = 18.0  # in the shortest contact while beads fall and settle
 DAMPED, DAMPED_STEPS = 0.6, 30.0  # below such a restitution damping asks for more steps: up to 25 at 0.5
+DROP_STEPS = 15.0  # in the shortest contact while the ball comes down
+FOLLOWED = 1.05  # times the stopping time
 LOOKS = 12  # a time of free fall through the whole column
 PATIENCE = 40  # times of fall
 
@@ -46,7 +50,6 @@ class Beads:
 
     @property
     def count(self) -> int:
-        """Number of beads."""
         volume = math.pi / 6.0 * float(np.mean(np.array(self.diameters) ** 3))
         return round(0.58 * (self.width / self.tiles) ** 2 * self.depth / volume) * self.tiles**2
 
@@ -198,3 +201,70 @@ def bulk_density(world: World, beads: Beads) -> float:
     for near in tree.query_ball_point(places_of(world), radii_of(world)):
         inside[near] = True
     return float(inside.mean()) * beads.material.density
+
+
+class Ball(NamedTuple):
+    """A ball and how it meets the bed: diameter [m], density [kg/m3], place [m] over the bed."""
+
+    diameter: float
+    density: float
+    place: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return self.density * math.pi / 6.0 * self.diameter**3
+
+
+def touch_height(world: World, ball: Ball) -> float:
+    """Return the height [m] of a ball's lowest point where it first touches a bead on its way down."""
+    reach = 0.5 * ball.diameter + radii_of(world)
+    places = places_of(world, ball.place)
+    span = reach**2 - (places[:, :2] ** 2).sum(axis=1)
+    centre = float((places[:, 2] + np.sqrt(np.maximum(span, 0.0)))[span > 0.0].max()) * (1.0 + 1e-9)
+    return centre - 0.5 * ball.diameter
+
+
+def dropped(
+    world: World, ball: Ball, material: Material, fall: float, pace: float, *, touch_speed: float | None = None,
+    steps: float = DROP_STEPS,
+) -> tuple[Row, Floats]:  # fmt: skip
+    """Let a ball fall from a height [m] of its lowest point above the mean surface, and follow it until it stops.
+
+    touch_speed [m/s]: with which it first touches a bead, instead of what the fall gives. pace [s] is the time between
+    two looks. steps: in the shortest contact.
+    Returns the row of results and the path: time since the first touch [s], depth of the lowest point below the mean
+    surface [m], speed downwards [m/s], deceleration [m/s2], shape [looks, 4].
+    """
+    gravity, radius = -float(world.gravity[2]), 0.5 * ball.diameter
+    level = float(column_tops(world, 1.2 * radius, 0.1 * radius, ball.place).mean())
+    start = touch_height(world, ball)
+    speed = math.sqrt(max(2.0 * gravity * (fall - (start - level)), 0.0)) if touch_speed is None else touch_speed
+    body = world.add_body(
+        Sphere(radius), material, (*ball.place, start + radius), velocity=(0.0, 0.0, -speed), mass=ball.mass,
+        inertia=0.4 * ball.mass * radius**2 * np.eye(3),
+    )  # fmt: skip
+    # Ball and beads are of about the same modulus: the lightest pair of beads has the shortest contact.
+    fastest = max(speed, math.sqrt(gravity * radius))
+    world.time_step = world.shortest_contact(fastest) / steps_for(material, steps)
+    looks = followed(world, body, level + radius, max(round(pace / world.time_step), 1) * world.time_step)
+    stopped = float(looks[np.argmax(looks[:, 2] <= 0.0), 0])
+    return {
+        "impact_speed": math.sqrt(2.0 * gravity * fall), "level": level, "touch_height": start - level,
+        "deepest": float(looks[:, 1].max()), "depth": float(looks[-1, 1]), "stopping_time": stopped,
+        "peak_deceleration": float(looks[:, 3].max()),
+    }, looks  # fmt: skip
+
+
+def followed(world: World, body: int, zero: float, pace: float) -> Floats:
+    """Return the path of a body, a look every pace [s], until it has stood still; depth counts from zero [m]."""
+    begun, stopped = world.time, math.inf
+    path: list[tuple[float, float, float, float]] = []
+    while world.time - begun < FOLLOWED * stopped:
+        before = float(world.velocity[body, 2])
+        world.run(duration=pace)
+        now = float(world.velocity[body, 2])
+        path.append((world.time - begun, zero - float(world.position[body, 2]), -now, (now - before) / pace))
+        if stopped == math.inf and now >= 0.0:
+            stopped = world.time - begun
+    return np.array(path)

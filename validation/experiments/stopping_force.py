@@ -12,12 +12,11 @@ Source: [Katsuragi-2007].
 import time
 from pathlib import Path
 
-from ball_drop import Ball, dropped
 from ball_into_beads import BALL, FINE, HEAVY, LIGHT, LOOSE, PACE, causes, grains
 from ball_into_beads import STIFF as STIFF_BEADS
 from harness import write_rows
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import bulk_density, kept
+from sphere_bed import Ball, bulk_density, dropped, kept
 
 NAME, PATHS = "stopping_force.csv", "stopping_force_paths.csv"
 STEEL = 8070.0  # kg/m3
@@ -37,7 +36,6 @@ LOOK = ("time", "depth", "speed", "deceleration")
 
 
 def drop(work: Path, out: Path, bed: str, density: float, fall: float) -> Row:
-    """Drop a ball, keep its path, and return its row."""
     start, beads = time.process_time(), BEDS[bed]
     world = kept(beads, work)
     bulk = bulk_density(world, beads)
@@ -54,7 +52,6 @@ def drop(work: Path, out: Path, bed: str, density: float, fall: float) -> Row:
 
 
 def main() -> None:
-    """Drop what has no row."""
     given = options_of(__doc__, beds=tuple(BEDS))
     ran = {(row["bed"], row["density"], row["fall"]) for row in read_rows(given.out / NAME)}
     for (bed, density), falls in DROPS.items():

@@ -2,15 +2,16 @@
 
 import math
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from ball_into_beads import BALL
-from draw_stopping import of_forces
-from fits import Estimate, mean_of, scale
-from result_rows import Row, read_rows
+from draw import of_forces
+from fits import SHARE, Estimate, Line, Lines, line, mean_of, said, scale
+from page import table
+from result_rows import FIGURES, HERE, Row, read_rows
 from stopping_force import BEDS, COMPARED, FALLS, NAME, PATHS, STEEL
 from stopping_law import Law, along_paths, at_depths, law_depth, law_time, with_intervals
-from table_lines import FIGURES, HERE, SHARE, Line, Lines, line, said, table
 
 MEASURED = Law(0.087, 1040.0)  # of a steel ball of 25.4 mm in glass beads [Katsuragi-2007]
 BULK = 1520.0  # kg/m3, of these beads
@@ -21,13 +22,11 @@ DEPTHS = partial(at_depths, first=0.5 * BALL, step=BEDS[COMPARED].mean_diameter)
 
 
 def source_law(looks: list[Row]) -> Law:
-    """Return the law as the source finds it."""
     return DEPTHS(looks)[0]
 
 
 @cache
 def rows_of(name: str) -> list[Row]:
-    """Return the rows of a table, read once."""
     return read_rows(HERE / name)
 
 
@@ -58,7 +57,6 @@ def in_mm(length: Estimate) -> Estimate:
 
 
 def stopping_part() -> tuple[Lines, str]:
-    """Return rows of the table, and the section's tables."""
     length, friction = with_intervals(looks(STEEL), source_law)
     deep = mean_of([row["deepest"] / law_depth(row["fall"], MEASURED) for row in steel()])
     lines = [
@@ -97,7 +95,6 @@ def forces() -> np.ndarray:
 
 
 def law_table() -> str:
-    """Return the table of drag and friction along the paths, by density."""
     heads = ("density [kg/m3]", "drag m/d1 [kg/m]", "friction k [N/m]")
     return table(heads, (
         (f"{density:g}", f"{drag:.2f}", f"{rub:.1f}")
@@ -118,7 +115,6 @@ def bed_table() -> str:
 
 
 def depth_table() -> str:
-    """Return the table of the depths of steel balls, and of what the measured force law gives."""
     heads = ("fall [m]", "impact speed [m/s]", "depth here [cm]", "by the measured force", "ratio",
              "stopping time here [ms]", "by the measured force", "prefactor by the measured force")  # fmt: skip
     cells = []
@@ -142,23 +138,12 @@ def measured_prefactor() -> Estimate:
     return mean_of([law_prefactor(row, law_depth(row["fall"], MEASURED)) for row in steel() if row["fall"] in FALLS])
 
 
-def stopping_words() -> str:
-    """Say what the paths show."""
+def stopping_numbers() -> dict[str, Any]:
+    """The numbers of the sentences about the paths."""
     here, reach = DEPTHS(looks(STEEL))
-    whole = with_intervals(looks(STEEL), along_paths)
+    length, friction = with_intervals(looks(STEEL), along_paths)
     short = [100.0 * (1.0 - law_depth(row["fall"], here) / row["deepest"]) for row in steel()]
-    return (
-        "The agreement in depth holds for beads of 3 mm: in finer ones balls sink deeper (section before).\n\n"
-        f"The two coefficients hold down to {100.0 * reach[-1, 0]:.1f} cm, below which fewer than three drops move. By "
-        f"them alone the balls would stop {min(short):.0f} to {max(short):.0f} % less deep than they do: friction does "
-        "not grow evenly with depth (figure). Fitted along whole paths instead, where each instant counts alike, d1 is "
-        f"{said(in_mm(whole[0]))} mm and k/m {said(whole[1])} 1/s2.\n\n"
-        "The inertial length is too short. It is longer in finer and in stiffer beads (table), and in none within the "
-        "tolerance. Balls also take longer to stop than by the measured force, and faster balls not always less long: "
-        "after a strong deceleration they move on at nearly constant speed for a centimetre (figure). In beads seven "
-        "times as stiff (70 MPa) they do so less. There the times decrease, but which time is the last depends on the "
-        "speed below which a ball counts as stopped.\n\n"
-        "[Katsuragi-2013] found that the drag of balls of several densities does not depend on the density of the "
-        "ball, and that the friction grows with its square root. Fitted along whole paths the drag is alike here and "
-        "the friction grows (last table); three densities do not determine an exponent."
-    )
+    return {
+        "lowest": 100.0 * reach[-1, 0], "least": min(short), "most": max(short), "length": said(in_mm(length)),
+        "friction": said(friction),
+    }  # fmt: skip

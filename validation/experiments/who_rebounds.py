@@ -2,13 +2,9 @@
 
     python validation/experiments/who_rebounds.py --work FOLDER --out FOLDER [--drops 6] [--kinds NAME ...]
 
-Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. By similarity it alone tells drops on
-stiff grains without cohesion apart, so one drop stands for every gravity and the speed that goes with it; where grains
-pull on each other, gravity is a second number. Beds are poured under Earth's gravity, as those of the experiments were,
-and brought slowly to their own; they repeat after three balls. Drops draw bed and place, the same in every cell. Rows
-that stand in who_rebounds.csv are not run again.
-
-Sources: [Brisset-2018], [Colwell-2003] (a quartz ball on sand), [Brisset-2020] (a ball on irregular grains of mm, cm).
+Froude number: speed at the first touch over sqrt(g D), D the ball's diameter. Where grains pull on each other, gravity
+is a second number. Drops draw bed and place, the same in every cell. Rows that stand in who_rebounds.csv are not run
+again. Sources: [Brisset-2018], [Colwell-2003], [Brisset-2020].
 """
 
 import itertools
@@ -19,8 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from ball_drop import Ball, touch_height
 from result_rows import Row, note, options_of, read_rows
+from sphere_bed import Ball, touch_height
 
 from lithobrake.dem import Material, Shape, Sphere, World
 from lithobrake.touchdown import settling
@@ -54,8 +50,6 @@ FLOWN = 5e-4  # m that a ball has risen freely where it is let go
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """Grains, the box they fill, and the ball."""
-
     grain: float = 0.004  # m, mean diameter; from .85 to 1.15 of it
     hulls: bool = False
     width: float = 0.06  # m, after which the ground repeats
@@ -273,7 +267,6 @@ def missing(names: list[str], drops: int, table: Path) -> Iterator[tuple[str, fl
 
 
 def main() -> None:
-    """Run what has no row yet."""
     given = options_of(__doc__, drops=6, kinds=tuple(KINDS))
     for cell in missing(given.kinds, given.drops, given.out / NAME):
         note(given.out / NAME, drop(given.work, *cell))

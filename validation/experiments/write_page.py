@@ -3,22 +3,29 @@
 python validation/experiments/write_page.py
 """
 
-import json
+import sys
 import textwrap
 
 import verdicts
 from beads_part import beads_part
-from grains_part import grains_part
-from low_gravity_parts import balls_part, packing_part
-from mascot_part import mascot_part
-from page_text import TEXT
-from plate_part import plate_part
+from fits import NOT_SHOWN, Line, Lines
+from grains_part import grains_part, settling_part
+from low_gravity_parts import balls_part, packing_part, plate_part
+from page import table, write_page
 from rebounds_part import rebounds_part
-from settling_part import settling_part
+from result_rows import HERE
 from stopping_part import stopping_part
-from table_lines import HERE, NOT_SHOWN, PAGES, Lines, table
 
-PAGE = PAGES / "experiments.md"
+# Behind this folder, which has files of the same names.
+sys.path.append(str(HERE.parent / "mascot"))
+from answers import MEASURED, answer, column, rows_of, said
+from harness import read_document
+
+QUANTITIES = {
+    "contacts": "contacts from the first to rest",
+    "time_s": "time from the first contact to rest [s]",
+    "path_m": "distance along the ground [m]",
+}
 HEADS = ("quantity", "measured", "here", "simulations", "here / measured", "agrees", "cause shown by")
 SUMMARY = ("experiment", "quantities", "agree", "disagree, cause shown", "disagree, cause not shown")
 # Sections by their keys in the text: name in the summary, and the table of simulations behind them.
@@ -36,34 +43,40 @@ SECTIONS = {
 
 
 def wrapped(text: str) -> str:
-    """Return paragraphs in lines; tables stay as they are."""
     parts = text.split("\n\n")
     return "\n\n".join(part if part.startswith("|") else "\n".join(textwrap.wrap(part, 98)) for part in parts)
 
 
 def came_from(name: str) -> str:
-    """Return command, date, machine and cost of a table."""
-    kept = json.loads((HERE / f"{name}.json").read_text())
+    kept = read_document(HERE / f"{name}.json")
     cost = f", {kept['cpu_s_of_rows']:.0f} s of CPU time" if "cpu_s_of_rows" in kept else ""
     return f"Simulations: `{kept['command']}`, {kept['date']}, {kept['machine']}{cost}."
 
 
 def summary(lines: dict[str, Lines]) -> str:
-    """Return the table that counts the quantities of each experiment."""
     rows = [(SECTIONS[key][0], own) for key, own in lines.items()]
     rows.append(("**all**", [one for own in lines.values() for one in own]))
     return table(SUMMARY, ((name, *map(str, counts(own))) for name, own in rows))
 
 
 def counts(lines: Lines) -> tuple[int, int, int, int]:
-    """Return how many quantities there are, agree, disagree with a cause shown, and disagree without one."""
     agree = sum(one.agrees for one in lines)
     open_ones = sum(not one.agrees and one.cause == NOT_SHOWN for one in lines)
     return len(lines), agree, len(lines) - agree - open_ones, open_ones
 
 
+def mascot_part() -> Lines:
+    """Return a row for each quantity: it agrees where it lies in the central 80 % of the landers."""
+    rows = rows_of("at the surface")
+    lines = []
+    for name, words in QUANTITIES.items():
+        one, measured = answer(column(rows, name), MEASURED[name]), MEASURED[name]
+        told = f"{said(one.middle)} (80 % of landers: {said(one.low)} to {said(one.high)})"
+        lines.append(Line(words, f"{measured:g}, once", told, len(rows), f"{one.middle / measured:.2f}", one.agrees))
+    return lines
+
+
 def main() -> None:
-    """Write the page."""
     lines: dict[str, Lines] = {}
     lines["beads"], drops = beads_part()
     lines["stopping"], stopping = stopping_part()
@@ -75,15 +88,14 @@ def main() -> None:
     lines["rebounds"], rebound = rebounds_part()
     lines["mascot"] = mascot_part()
     every, agree, *_ = counts([one for own in lines.values() for one in own])
-    page = TEXT.format(
-        first=f"{agree} of {every} quantities agree.", summary=summary(lines),
+    write_page(
+        "experiments", filled=False, first=f"{agree} of {every} quantities agree.", summary=summary(lines),
         **{f"lines_{key}": table(HEADS, (one.cells() for one in own)) for key, own in lines.items()},
         **{f"verdict_{key}": wrapped(text) for key, text in verdicts.every().items()},
         drops=drops, stopping=stopping, settled=settled, impacts=impacts, plate=plate, packing=packing, ball=ball,
         rebound=rebound,
         **{f"from_{key}": wrapped(came_from(name)) for key, (_, name) in SECTIONS.items()},
     )  # fmt: skip
-    PAGE.write_text(page)
     print(summary(lines))
 
 

@@ -11,7 +11,6 @@ within branches.
 """
 
 import hashlib
-import json
 import sys
 import time
 from pathlib import Path
@@ -23,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import hard_ground
 import numpy as np
 from branches import LANDERS, SCENARIOS, branches
-from harness import Row, command_line, origin, read_rows, write_document
+from harness import Row, command_line, origin, read_document, read_rows, write_document
 from landers import FIRST, KINDS, RUNS, TABLE
 from places import regions, semi_axes
 from samples import BINS, CELLS, ENDS, FACES, GROUNDS, Sample, categories, sample, those_down
@@ -89,7 +88,6 @@ def estimate(mean: float, draws: np.ndarray) -> dict[str, float]:
 
 
 def quantiles(values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Weighted quantiles at LEVELS."""
     order = np.argsort(values)
     share = np.cumsum(weight[order]) - 0.5 * weight[order]
     return np.interp(LEVELS, share / weight.sum(), values[order])
@@ -166,7 +164,6 @@ def touched_down(of: Sample) -> dict[str, int]:
 
 
 def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
-    """Ends of each branch."""
     found = []
     for number_, branch in enumerate(branches(lander)):
         only = np.zeros(len(branches(lander)))
@@ -182,7 +179,6 @@ def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
 
 
 def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
-    """All answers of one lander on one ground."""
     of = sample(rows, lander, ground)
     mean, draws = shares(of, "end", branch_weights(of, lander, at_rest=False))
     resting = of.where(of.column("end") == "at_rest")
@@ -218,7 +214,7 @@ def package_files() -> list[Path]:
 def write_answers(out: Path) -> dict[str, Any]:
     """Write the forecast beside its landers, and return it; the code is that by which the landers were made."""
     rows = read_rows(out / TABLE, KINDS)
-    code = json.loads((out / RUNS).read_text(encoding="utf-8"))["code_sha256"]
+    code = read_document(out / RUNS)["code_sha256"]
     document = {
         "made": time.strftime("%Y-%m-%d"),
         "sha256": {
@@ -238,7 +234,6 @@ def write_answers(out: Path) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Write the forecast."""
     write_answers(command_line(__doc__, out=HERE).parse_args().out)
 
 

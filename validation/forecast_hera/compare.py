@@ -47,7 +47,6 @@ def hashes(document: Document) -> Iterator[tuple[str, str]]:
 
 
 def numbers(document: Document) -> Iterator[tuple[str, Number]]:
-    """All numbers that have an interval, by name."""
     for lander, grounds in document["landers"].items():
         for ground, of in grounds.items():
             begin = f"{lander}, {ground}"

@@ -9,7 +9,6 @@ answers; and the page with its figures, which go to docs/ (and showcase/) where 
 the forecast with the one that stood here before.
 """
 
-import json
 import os
 import sys
 import time
@@ -20,9 +19,9 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from answers import FORECAST, HERE, digest, package_files, write_answers
 from branches import LANDERS, Branch, branches
 from compare import comparison
-from harness import Row, command_line, origin, write_document
+from harness import Row, command_line, origin, read_document, write_document
 from landers import COUNTS, RUNS, TABLE, folder_name, follow, write_landers
-from write_page import DOCS, write_page
+from write_page import DOCS, write
 
 import showcase
 from lithobrake.campaign import duration
@@ -37,11 +36,9 @@ class Watch(Silent):
     """Notes whether a study has work to do, and shows now and then how far it is."""
 
     def __init__(self) -> None:
-        """Nothing was done."""
         self.worked, self.shown = False, time.monotonic()
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Show how far a piece of work is."""
         self.worked = True
         if time.monotonic() - self.shown > SHOWN_EVERY:
             self.shown = time.monotonic()
@@ -73,7 +70,7 @@ def run_all(work: Path, workers: int | None) -> tuple[list[Row], list[Row]]:
     """The landers of all branches on both grounds, and what each study cost; the costs stay beside the studies."""
     parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in branches(lander)]
     path = work / RUNS
-    costs: dict[str, Row] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    costs: dict[str, Row] = read_document(path, {})
     landers, spent, fresh, left = [], 0.0, 0.0, sum(expected_cpu(*one) for one in parts)
     for number, (branch, ground) in enumerate(parts, 1):
         name, started = f"{branch.lander}, {branch.name}, {ground}", time.perf_counter()
@@ -92,7 +89,6 @@ def run_all(work: Path, workers: int | None) -> tuple[list[Row], list[Row]]:
 
 
 def in_words(rows: list[Row], cost: Row | None) -> str:
-    """Ends of landers and what they cost."""
     rests = sum(row["end"] == "at_rest" for row in rows)
     words = f"{rests} of {len(rows)} landers at rest"
     if cost is None:
@@ -101,9 +97,8 @@ def in_words(rows: list[Row], cost: Row | None) -> str:
 
 
 def main() -> None:
-    """Run what is missing, and write and compare the forecast."""
     options = command_line(__doc__, work=Path, out=HERE, workers=0).parse_args()
-    before = json.loads((HERE / FORECAST).read_text(encoding="utf-8"))
+    before = read_document(HERE / FORECAST)
     for folder in (options.work, options.out):
         folder.mkdir(parents=True, exist_ok=True)
     landers, costs = run_all(options.work, options.workers or None)
@@ -113,7 +108,7 @@ def main() -> None:
     write_document(options.out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
     after = write_answers(options.out)
     is_kept = options.out.resolve() == HERE
-    write_page(options.out, DOCS if is_kept else options.out)
+    write(options.out, DOCS if is_kept else options.out)
     if is_kept:
         showcase.keep(HERE, DOCS, showcase.FOLDER)
     print("\n".join(comparison(before, after)))

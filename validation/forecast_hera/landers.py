@@ -10,7 +10,7 @@ from grounds import RESTITUTION, DrawnRestitution
 from harness import Row
 
 from lithobrake.pipeline import run_study
-from lithobrake.pipeline.job import Progress
+from lithobrake.pipeline.job import StudyProgress
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults, Table
@@ -34,7 +34,7 @@ OWN = (
 )  # fmt: skip
 
 
-def follow(branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: Progress) -> list[Row]:
+def follow(branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress) -> list[Row]:
     """A row for each lander of a branch on soil or hard ground, with its part of `count` landers of all branches.
 
     They are followed in a folder of work; one that has them by the same code is only read.

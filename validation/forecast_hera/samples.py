@@ -27,7 +27,6 @@ class Sample(NamedTuple):
     weight: np.ndarray
 
     def column(self, name: str) -> np.ndarray:
-        """Values of a column."""
         return np.array([row[name] for row in self.rows])
 
     @property

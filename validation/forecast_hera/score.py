@@ -50,7 +50,6 @@ def scores(forecast: dict[str, list[float]], bins: dict[str, int]) -> dict[str, 
 
 
 def main() -> None:
-    """Print the scores."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     document = json.loads((HERE / "forecast.json").read_text(encoding="utf-8"))
     parser.add_argument("lander", choices=list(document["landers"]))

@@ -3,7 +3,6 @@
 python validation/forecast_hera/showcase.py
 """
 
-import json
 import shutil
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 from answers import FORECAST, HERE
-from harness import ROOT, write_document
+from harness import ROOT, read_document, write_document
 from landers import RUNS
 
 FOLDER = ROOT / "showcase" / "forecast_hera"
@@ -26,8 +25,7 @@ def without_outlines(of: dict[str, Any]) -> dict[str, Any]:
 
 
 def keep(out: Path, docs: Path, folder: Path) -> None:
-    """Copy answers and figures of the forecast of a folder, and note how it was made."""
-    document, runs = (json.loads((out / name).read_text(encoding="utf-8")) for name in (FORECAST, RUNS))
+    document, runs = (read_document(out / name) for name in (FORECAST, RUNS))
     (folder / "figures").mkdir(parents=True, exist_ok=True)
     for name in FIGURES:
         shutil.copy(docs / name, folder / "figures" / name)
@@ -40,7 +38,6 @@ def keep(out: Path, docs: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Keep the forecast that stands here."""
     keep(HERE, ROOT / "docs", FOLDER)
 
 

@@ -88,7 +88,6 @@ def compared(rows: list[Row]) -> list[Row]:
 
 
 def main() -> None:
-    """Follow the landers, and write how they compare."""
     parser = command_line(__doc__, work=Path, out=HERE, workers=0)
     parser.add_argument("--shape", type=Path)
     options = parser.parse_args()

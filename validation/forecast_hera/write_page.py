@@ -5,26 +5,30 @@
 The last step of forecast.py.
 """
 
-import json
 import math
 import sys
 from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 from answers import FORECAST, HERE
-from figures import draw_map, draw_shares
-from harness import command_line, read_rows
+from drawing import figure
+from harness import ROOT, Row, command_line, read_document, read_rows
 from landers import KINDS, RUNS, TABLE
-from page_text import broken, table
-from page_words import ABOUT, LEFT_OUT, METHOD, REPRODUCE, SCORING, VARIANTS_SAY
+from page import broken, table, words_of, write_page
 from samples import BINS, ENDS, FACES, GROUNDS
 
-DOCS = Path(__file__).parents[2] / "docs"
+from lithobrake.report.figures.style import INK, QUIET, RULE, TRAINING
+from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
+
+DOCS = ROOT / "docs"
 UNLIKELY = 0.02
+SOIL, HARD = END_COLOURS[JourneyEnd.AT_REST], QUIET
 Answers = dict[str, Any]
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground, restitution from 0 to 1"}
 END_WORDS = {
@@ -60,7 +64,6 @@ DIGEST_WORDS = {
 
 
 def percent(one: dict[str, float]) -> str:
-    """A share with its interval."""
     return f"{100 * one['share']:.0f} % ({100 * one['lower']:.0f}-{100 * one['upper']:.0f})"
 
 
@@ -73,7 +76,6 @@ def plain(value: float, digits: int = 2) -> str:
 
 
 def ends_table(landers: Answers) -> str:
-    """Ends of each lander on each ground."""
     rows = [
         [name.capitalize(), GROUND_WORDS[ground], *(percent(landers[name][ground]["ends"][end]) for end in ENDS)]
         for name in landers
@@ -95,7 +97,6 @@ def numbers_table(landers: Answers) -> str:
 
 
 def regions_table(landers: Answers) -> str:
-    """Where."""
     rows = []
     for name in landers:
         for one in landers[name]["soil"]["regions"]:
@@ -105,7 +106,7 @@ def regions_table(landers: Answers) -> str:
     return table(("lander", "fraction of the landers", "area [m2]", "fraction of the surface"), rows)
 
 
-def variants_part(compared: list[dict[str, Any]]) -> list[str]:
+def variants_part(compared: list[dict[str, Any]]) -> str:
     """What choices are worth, heading and all; nothing where no variant was followed."""
     rows = [
         [
@@ -118,11 +119,10 @@ def variants_part(compared: list[dict[str, Any]]) -> list[str]:
     ]  # fmt: skip
     changed = "at rest: with and without the change"
     head = ("lander", "variant", changed, "median time to rest [min]", "ratio (90 % interval)")
-    return [broken(METHOD["variants"]), table(head, rows), broken(VARIANTS_SAY)] if rows else []
+    return broken(words_of("forecast_hera_variants").format(table=table(head, rows))) if rows else ""
 
 
 def faces_table(landers: Answers) -> str:
-    """Which side is down."""
     rows = [
         [name.capitalize(), *(f"{100 * one:.0f} %" for one in landers[name]["soil"]["scored"]["face"])]
         for name in landers
@@ -131,7 +131,6 @@ def faces_table(landers: Answers) -> str:
 
 
 def branches_table(landers: Answers) -> str:
-    """Ends by branch."""
     rows = []
     for name in landers:
         hard = {one["branch"]: one for one in landers[name]["hard"]["by_branch"]}
@@ -162,7 +161,6 @@ def decides_table(landers: Answers) -> str:
 
 
 def bin_words(name: str, number: int) -> str:
-    """A bin in words."""
     if name == "end":
         return f"end: {END_WORDS[ENDS[number]]}"
     edges = BINS[name]
@@ -188,20 +186,11 @@ def falsified_table(landers: Answers) -> str:
 
 
 def digests_table(digests: dict[str, Any]) -> str:
-    """What the forecast was made of."""
     rows = [[f"`scenarios/{name}.toml`", f"`{one}`"] for name, one in digests["studies"].items()]
     return table(("what", "SHA-256"), rows + [[words, f"`{digests[key]}`"] for key, words in DIGEST_WORDS.items()])
 
 
-def by_part(text: str) -> str:
-    """Text with its paragraphs filled, and its commands as they are."""
-    before, commands, after = text.partition("```sh")
-    inside, fence, rest = after.partition("```")
-    return f"{broken(before)}\n\n{commands}{inside}{fence}\n\n{broken(rest)}"
-
-
 def first_line(landers: Answers) -> str:
-    """The answer."""
     said = [f"{name.capitalize()} {percent(landers[name]['soil']['ends']['at_rest'])}" for name in landers]
     hits = [
         f"{of['soil']['touched_down']['at_rest']} of {of['soil']['touched_down']['landers']} of {name.capitalize()}"
@@ -213,48 +202,78 @@ def first_line(landers: Answers) -> str:
     )
 
 
-def page(document: dict[str, Any], cost: str) -> str:
-    """The text of the page; cost: what the landers took, in a sentence."""
+def draw_shares(landers: dict[str, Any], path: Path) -> None:
+    """Shares at rest with their intervals, on soil and on hard ground, in all and by branch."""
+    with figure(path, 1, len(landers), (9.6, 3.3), sharex=True) as (drawn, axes):
+        for ax, (name, of) in zip(axes, landers.items(), strict=True):
+            rows = [("all branches", *(of[ground]["ends"]["at_rest"] for ground in ("soil", "hard")))]
+            hard = {one["branch"]: one["at_rest"] for one in of["hard"]["by_branch"]}
+            rows += [(one["branch"], one["at_rest"], hard[one["branch"]]) for one in of["soil"]["by_branch"]]
+            for place, (_, soil, rock) in enumerate(rows):
+                for one, colour, shift in ((soil, SOIL, -0.13), (rock, HARD, 0.13)):
+                    ax.plot([100 * one["lower"], 100 * one["upper"]], [place + shift] * 2, color=colour, lw=2.2)
+                    ax.plot(100 * one["share"], place + shift, "o", color=colour, ms=5)
+            ax.set_yticks(range(len(rows)), [row[0] for row in rows])
+            ax.set_ylim(len(rows) - 0.5, -0.5)
+            ax.axhline(0.5, color=RULE, lw=0.8)
+            ax.set_xlim(0, 100)
+            ax.set_xlabel("at rest on Dimorphos [%]")
+            ax.set_title(name.capitalize())
+        axes[0].plot([], [], "o-", color=SOIL, label="soil")
+        axes[0].plot([], [], "o-", color=HARD, label="hard ground, restitution from 0 to 1")
+        drawn.legend(loc="outside lower center", ncols=2)
+
+
+def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
+    """Places of rest on soil, with the smallest region that holds half of them (cylinder of equal area)."""
+    with figure(path, len(landers), 1, (7.6, 7.4), sharex=True) as (_, axes):
+        for ax, (name, of) in zip(axes, landers.items(), strict=True):
+            for line in of["soil"]["regions"][0]["outlines"]:
+                latitude, longitude = np.array(line).T
+                ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=1.8)
+            own = [row for row in rows if (row["lander"], row["ground"], row["end"]) == (name, "soil", "at_rest")]
+            for rotation, colour in zip(("small", "large", "rolling"), (SOIL, "#e69f00", "#a8659a"), strict=True):
+                here = [row for row in own if row["branch"].startswith(rotation)]
+                ax.plot(
+                    [row["longitude_deg"] for row in here], np.sin(np.radians([row["latitude_deg"] for row in here])),
+                    "o", ms=2.6, color=colour, label=rotation if rotation == "rolling" else f"{rotation} libration",
+                )  # fmt: skip
+            ax.plot([0.0, 180.0, -180.0], [0.0] * 3, "+", ms=11, mew=1.8, color=TRAINING, label="aims")
+            ticks = np.array([-90, -60, -30, 0, 30, 60, 90])
+            ax.set_yticks(np.sin(np.radians(ticks)), [str(one) for one in ticks])
+            ax.set_xticks(range(-180, 181, 45))
+            ax.grid(True)
+            ax.set_xlim(-180, 180)
+            ax.set_ylim(-1, 1)
+            ax.set_ylabel("latitude [deg]")
+            ax.set_title(f"{name.capitalize()}: places of rest, and the smallest region with half of them")
+        axes[-1].set_xlabel("east longitude [deg]; 0 faces Didymos while Dimorphos turns with its orbit")
+        axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.1), ncols=4)
+
+
+def write(out: Path, docs: Path) -> None:
+    """Write page and figures of the forecast in a folder to another."""
+    document, runs = (read_document(out / name) for name in (FORECAST, RUNS))
     landers = document["landers"]
+    draw_shares(landers, docs / "forecast_hera_shares.png")
+    draw_map(read_rows(out / TABLE, KINDS), landers, docs / "forecast_hera_map.png")
     counts = ", ".join(
         f"{name.capitalize()} {of['soil']['landers']} on soil and {of['hard']['landers']} on hard ground"
         for name, of in landers.items()
     )
-    parts = [
-        broken(ABOUT.format(made=document["made"], first=first_line(landers), counts=counts)),
-        ends_table(landers), "![Fraction at rest by branch](forecast_hera_shares.png)",
-        broken(METHOD["numbers"]), numbers_table(landers),
-        broken(METHOD["place"]), regions_table(landers), "![Places of rest](forecast_hera_map.png)",
-        broken(METHOD["faces"]), faces_table(landers),
-        broken(METHOD["decides"]), decides_table(landers),
-        broken(METHOD["branches"]), branches_table(landers),
-        *variants_part(json.loads((HERE / "variants.json").read_text(encoding="utf-8"))["compared"]),
-        broken(METHOD["priors"]), (HERE / "priors.md").read_text(encoding="utf-8").strip(),
-        broken(METHOD["falsified"].format(unlikely=100 * UNLIKELY)), falsified_table(landers),
-        by_part(SCORING), broken(LEFT_OUT), by_part(REPRODUCE.format(cost=cost)), digests_table(document["sha256"]),
-    ]  # fmt: skip
-    return "\n\n".join(parts) + "\n"
-
-
-def cost_words(runs: dict[str, Any]) -> str:
-    """What the landers took, in a sentence; none where it is not noted."""
-    if "cpu_s" not in runs:
-        return ""
-    return f"All studies took {runs['cpu_s'] / 60.0:.0f} minutes of CPU time."
-
-
-def write_page(out: Path, docs: Path) -> None:
-    """Write page and figures of the forecast in a folder to another."""
-    document = json.loads((out / FORECAST).read_text(encoding="utf-8"))
-    draw_shares(document["landers"], docs / "forecast_hera_shares.png")
-    draw_map(read_rows(out / TABLE, KINDS), document["landers"], docs / "forecast_hera_map.png")
-    runs = json.loads((out / RUNS).read_text(encoding="utf-8"))
-    (docs / "forecast_hera.md").write_text(page(document, cost_words(runs)), encoding="utf-8")
+    variants = read_document(HERE / "variants.json")["compared"]
+    cost = f"All studies took {runs['cpu_s'] / 60.0:.0f} minutes of CPU time." if "cpu_s" in runs else ""
+    write_page(
+        "forecast_hera", docs, made=document["made"], first=first_line(landers), counts=counts, cost=cost,
+        ends=ends_table(landers), numbers=numbers_table(landers), regions=regions_table(landers),
+        faces=faces_table(landers), decides=decides_table(landers), branches=branches_table(landers),
+        variants=variants_part(variants), priors=(HERE / "priors.md").read_text(encoding="utf-8").strip(),
+        unlikely=100 * UNLIKELY, falsified=falsified_table(landers), digests=digests_table(document["sha256"]),
+    )  # fmt: skip
 
 
 def main() -> None:
-    """Write them to docs/."""
-    write_page(command_line(__doc__, out=HERE).parse_args().out, DOCS)
+    write(command_line(__doc__, out=HERE).parse_args().out, DOCS)
 
 
 if __name__ == "__main__":

@@ -36,12 +36,10 @@ class Answer:
 
 
 def rows_of(setting: str, table: Path = HERE / "mascot.csv") -> list[Row]:
-    """The landers of a setting."""
     return [row for row in read_rows(table, {"setting": str, "end": str}) if row["setting"] == setting]
 
 
 def column(rows: list[Row], name: str) -> np.ndarray:
-    """The values of a column."""
     return np.array([row[name] for row in rows])
 
 

@@ -146,7 +146,6 @@ def hop(one: Traveller, outcome: Outcome) -> None:
 
 
 def journey(setting: str, number: int, ground: dict[str, list[Ground]]) -> Row:
-    """Follow a lander to rest."""
     first, material = SETTINGS[setting]
     one, index = drawn(number, material == "hard")
     speed, chance = float(np.linalg.norm(one.velocity)), coverage(index)
@@ -198,7 +197,6 @@ def of_bed(kind: str, number: int, one: Ground) -> Row:
 
 
 def main() -> None:
-    """Follow the landers that are not there yet."""
     parser = command_line(__doc__, work=Path, out=HERE, setting="all", count=150)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)

@@ -124,7 +124,6 @@ def measured(path: Path) -> dict[str, float]:
 
 
 def main() -> None:
-    """Make the runs that are not there."""
     options = command_line(
         __doc__, positions=Path, work=Path("nine_codes_work"), out=HERE, only=tuple(one.run for one in RUNS), until=0.1
     ).parse_args()

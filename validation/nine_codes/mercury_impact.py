@@ -46,21 +46,6 @@ CHANGES = (
     ("// turn on gravity", "setHGridDistribution(HGridDistribution::USER); setHGridMaxLevels(2);"),
     ("// Write requested output", "{own}\n// Write requested output"),
 )
-OWN = """
-    Mdouble userHGridCellSize(unsigned int level) override { return level == 0 ? 0.00201 : 0.0201; }
-    double next = 0.0;
-    void actionsBeforeTimeStep() override
-    {
-        const double now = getTime() + 1e-9;
-        setTimeStep(STEPS);
-        if (now < next) return;
-        next += LOOK;
-        const BaseParticle* ball = particleHandler.getLastObject();
-        std::cout << "row " << std::setprecision(12) << getTime() << ' ' << ball->getPosition() << ' '
-                  << ball->getVelocity() << ' ' << ball->getAngularVelocity() << ' '
-                  << double(clock()) / CLOCKS_PER_SEC << std::endl;
-    }
-"""
 
 
 def driver_of(checkout: Path) -> str:
@@ -69,7 +54,8 @@ def driver_of(checkout: Path) -> str:
     steps = f"{STAGES[-1][1]}"
     for (_, step), (end, _) in reversed(list(itertools.pairwise(STAGES))):
         steps = f"now < {end} ? {step} : {steps}"
-    own = OWN.replace("STEPS", steps).replace("LOOK", f"{LOOK}")
+    own = (HERE / "penetration.cpp").read_text(encoding="utf-8")
+    own = own.replace("STEPS", steps).replace("LOOK", f"{LOOK}")
     for old, new in CHANGES:
         if old not in text:
             raise ValueError(f"OSPenetration.cpp of {checkout} has no {old!r}: give the checkout of commit fb0ebf1d")
@@ -115,7 +101,6 @@ def place_files(checkout: Path, work: Path) -> None:
 
 
 def main() -> None:
-    """Build, run, and write the curve."""
     parser = command_line(__doc__, checkout=Path("."), work=Path("mercury_work"), out=HERE, output=Path())
     options = parser.parse_args()
     output = options.output

@@ -60,7 +60,6 @@ def closed_forms() -> dict[str, float]:
 
 
 def main() -> None:
-    """Write the rows that are not there."""
     options = command_line(__doc__, work=Path("."), out=HERE).parse_args()
     out, exact = options.out / "pair_tests.csv", closed_forms()
     if not read_rows(out, {"quantity": str, "mercury": str}):

@@ -7,15 +7,11 @@ docs/validation.
 """
 
 import itertools
-import json
 import statistics
+import sys
+from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("agg")
-import matplotlib.pyplot as plt
 import numpy as np
-from code_differences import after_the_turn, answer, between_codes, within_impacts
 from heights import (
     ADDED,
     ASKED,
@@ -23,21 +19,27 @@ from heights import (
     HERE,
     IMPACTS,
     OURS,
-    PAGES,
     Curve,
+    after_the_turn,
+    answer,
+    between_codes,
     curves,
     height,
     mm,
     named,
     paragraph,
-    read_rows,
+    within_impacts,
 )
 from impact import LATER, RUNS
 from impact_bed import BALL_RADIUS, FLOOR
 from lammps_impact import TIMED_AT
-from page_words import CONDITIONS, FREE_FALL, HEAD, MISSING, PAIRS, PAIRS_AFTER, RUNS_WORDS, SOURCE
 
-from lithobrake.report.figures.style import INPUT_COLOURS, QUIET, SITE, STYLE, TRAINING
+from lithobrake.report.figures.style import INPUT_COLOURS, QUIET, SITE, TRAINING
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from drawing import figure
+from harness import PAGES, read_document, read_rows
+from page import table, write_page
 
 WORDS = {"restitution": "restitution", "v_x": "speed [m/s]", "omega_y": "spin [rad/s]", "x": "path [m]"}
 
@@ -48,7 +50,7 @@ def cell(curve: Curve, time: float) -> str:
     return mm(height(curve, time)) + mark
 
 
-def at_a_time(found: dict[str, Curve], time: float) -> str:
+def at_a_time(found: dict[str, Curve], time: float) -> list[str]:
     """Return the line of a time [s]: both codes, their difference, the range of impacts, and whether they agree."""
     ours, theirs = (height(found[name], time) for name in (OURS, "mercury"))
     verdict, difference = "not run", None if ours is None or theirs is None else ours - theirs
@@ -62,22 +64,19 @@ def at_a_time(found: dict[str, Curve], time: float) -> str:
             inside = "yes" if within_impacts(found, time) else "**no**"
     cells = (*(cell(found[name], time) for name in (OURS, "mercury")), mm(difference), verdict,
              *(cell(found[name], time) for name in (LATER, "published")), spread, inside)  # fmt: skip
-    return f"| {1000.0 * time:g} | " + " | ".join(cells) + " |"
+    return [f"{1000.0 * time:g}", *cells]
 
 
-def comparison(found: dict[str, Curve]) -> list[str]:
-    """Return the table of heights against time."""
-    head = (
-        "| time [ms] | z here [mm] | z MercuryDPM [mm] | difference [mm] | within 1 mm | z here, dashpot until 20.5 ms "
-        "[mm] | z here, with dashpot [mm] | range of impacts here with it [mm] (number) | MercuryDPM in this range |"
-    )
-    return [head, "|---" * 9 + "|", *(at_a_time(found, time) for time in sorted(ASKED + ADDED))]
+def comparison(found: dict[str, Curve]) -> str:
+    heads = ("time [ms]", "z here [mm]", "z MercuryDPM [mm]", "difference [mm]", "within 1 mm",
+             "z here, dashpot until 20.5 ms [mm]", "z here, with dashpot [mm]",
+             "range of impacts here with it [mm] (number)", "MercuryDPM in this range")  # fmt: skip
+    return table(heads, (at_a_time(found, time) for time in sorted(ASKED + ADDED)))
 
 
 def draw(found: dict[str, Curve]) -> None:
     """Height of the ball against time, and what the other runs differ from the compared one."""
-    with plt.rc_context(STYLE):
-        figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.9), constrained_layout=True)
+    with figure(PAGES / "nine_codes.png", 1, 2, (9.2, 3.9), dpi=150) as (drawn, (left, right)):
         drawn = {OURS: ("here", TRAINING, "-"), "mercury": ("MercuryDPM", SITE, "--")}
         for name, (label, colour, line) in drawn.items():
             time, z, _ = found[name]
@@ -100,36 +99,27 @@ def draw(found: dict[str, Curve]) -> None:
         right.set(xlabel="time [ms]", ylabel="height minus that of the compared run [mm]")
         right.set_title("Differences of height")
         right.legend(fontsize=8)
-        figure.savefig(PAGES / "nine_codes.png", dpi=150)
 
 
-def pair_table() -> list[str]:
-    """Return the table of the pair tests, and what it shows."""
-    rows = read_rows(HERE / "pair_tests.csv", {"quantity": str, "mercury": str})
-    lines = [
-        "| quantity | step [s] | closed form | MercuryDPM | here | relative error here |",
-        "|---" * 6 + "|",
-    ]
-    for row in rows:
+def pair_table() -> str:
+    lines = []
+    for row in read_rows(HERE / "pair_tests.csv", {"quantity": str, "mercury": str}):
         off = row["lithobrake"] / row["closed_form"] - 1.0
         theirs = f"{float(row['mercury']):.7g}" if row["mercury"] else ""
-        lines.append(
-            f"| {WORDS[row['quantity']]} | {row['step_s']:g} | {row['closed_form']:.7g} | {theirs} | "
-            f"{row['lithobrake']:.7g} | {f'{off:.1e}' if off else '0'} |"
-        )
-    return lines
+        cells = (f"{row['closed_form']:.7g}", theirs, f"{row['lithobrake']:.7g}", f"{off:.1e}" if off else "0")
+        lines.append((WORDS[row["quantity"]], f"{row['step_s']:g}", *cells))
+    return table(("quantity", "step [s]", "closed form", "MercuryDPM", "here", "relative error here"), lines)
 
 
-def time_table() -> list[str]:
+def time_words() -> str:
     """Return the sentence of CPU times beside LAMMPS."""
     rows = read_rows(HERE / "lammps_times.csv", {})
-    lines = ["\n## CPU time\n"]
     if not rows:
-        return [*lines, "Not measured against LAMMPS."]
+        return "Not measured against LAMMPS."
     theirs, ours = (statistics.median(row[name] for row in rows) for name in ("lammps", "lithobrake"))
     ratios = sorted(row["lithobrake"] / row["lammps"] for row in rows)
-    count, load = int(rows[0]["spheres"]), json.loads((HERE / "lammps.json").read_text())["load"]
-    return [*lines, paragraph(
+    count, load = int(rows[0]["spheres"]), read_document(HERE / "lammps.json")["load"]
+    return paragraph(
         f"A step takes {statistics.median(ratios):.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f}) times the CPU time of "
         f"LAMMPS: in the median {1000.0 * ours:.1f} ms here and {1000.0 * theirs:.1f} ms in LAMMPS, or "
         f"{count / ours / 1e6:.1f} and {count / theirs / 1e6:.1f} million sphere-steps per CPU second. Both codes "
@@ -137,38 +127,32 @@ def time_table() -> list[str]:
         f"{rows[0]['steps']:.0f} steps of 5e-7 s in turn, {len(rows)} times, with one thread each (LAMMPS: pair style "
         f"granular, hertz/material, mindlin, coeff_restitution). The load was {load:.0f} on two cores, so both are "
         "slower than alone."
-    )]  # fmt: skip
+    )
 
 
-def runs_table(found: dict[str, Curve]) -> list[str]:
+def runs_table(found: dict[str, Curve]) -> str:
     """Return what was run, how far, and at what cost."""
-    lines = ["| run | ball at x, y [mm] | longest step until 32 ms [s] | followed to [ms] | CPU time [s] |"]
-    lines.append("|---" * 5 + "|")
-    done = {row["run"]: row for row in read_rows(HERE / "impact.csv", {"run": str})}
+    lines, done = [], {row["run"]: row for row in read_rows(HERE / "impact.csv", {"run": str})}
     for one in RUNS:
         ends = f"{1000.0 * found[one.run][0][-1]:.2f}" if one.run in found else "not run"
         cost = f"{done[one.run]['cpu_s']:.0f}" if one.run in done else ""
         place = f"{1000.0 * one.x:g}, {1000.0 * one.y:g}"
-        lines.append(f"| {one.run.replace('_', ' ')} | {place} | {one.step:g} | {ends} | {cost} |")
-    for row in read_rows(HERE / "lammps.csv", {"run": str}):
-        name = f"LAMMPS {row['run'].replace('_', ' ')}"
-        lines.append(f"| {name} | 0, 0 | {row['step']:g} | {1000.0 * row['until']:.2f} | {row['cpu_s']:.0f} |")
-    mercury = read_rows(HERE / "mercury.csv", {"run": str})
-    if mercury:
-        lines.append(f"| MercuryDPM | 0, 0 | 1e-06 | {1000.0 * mercury[0]['until']:.2f} | {mercury[0]['cpu_s']:.0f} |")
-    return lines
+        lines.append((one.run.replace("_", " "), place, f"{one.step:g}", ends, cost))
+    others = [(f"LAMMPS {row['run'].replace('_', ' ')}", row) for row in read_rows(HERE / "lammps.csv", {"run": str})]
+    others += [("MercuryDPM", row | {"step": 1e-6}) for row in read_rows(HERE / "mercury.csv", {"run": str})[:1]]
+    for name, row in others:
+        lines.append((name, "0, 0", f"{row['step']:g}", f"{1000.0 * row['until']:.2f}", f"{row['cpu_s']:.0f}"))
+    heads = ("run", "ball at x, y [mm]", "longest step until 32 ms [s]", "followed to [ms]", "CPU time [s]")
+    return table(heads, lines)
 
 
 def main() -> None:
-    """Draw and write."""
     found = curves()
     draw(found)
-    parts = [
-        HEAD.rstrip(), answer(found), SOURCE, *comparison(found), FREE_FALL, between_codes(found),
-        *after_the_turn(found), CONDITIONS.rstrip(), RUNS_WORDS, *runs_table(found), PAIRS, *pair_table(),
-        PAIRS_AFTER.rstrip(), *time_table(), MISSING.rstrip(),
-    ]  # fmt: skip
-    (PAGES / "nine_codes.md").write_text("\n".join(parts) + "\n", encoding="utf-8")
+    write_page(
+        "nine_codes", filled=False, answer=answer(found), heights=comparison(found), between=between_codes(found),
+        turn=after_the_turn(found), runs=runs_table(found), pairs=pair_table(), times=time_words(),
+    )  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -2,14 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lithobrake.compilation.compiled import kernel
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from lithobrake.vocabulary.arrays import Flags, Floats, Integers
 
 
 class Cores(NamedTuple):

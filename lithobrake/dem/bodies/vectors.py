@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Period
-
-# Tuples of three numbers, since kernels allocate nothing: a product of arrays would make an array of its result.
-Vector = tuple[float, float, float]
+from lithobrake.dem.bodies.arrays import Bodies, Period
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 
 @kernel

@@ -8,7 +8,7 @@ Source: [Landings-PCE], Eqs 1 to 9, with the shear modulus of [Mindlin-1949].
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, ROLLING, Bodies, Pairs, Reactions, Step
-from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, way_between
+from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, way_between
 from lithobrake.dem.law.contact_motion import relative_motion
 from lithobrake.dem.law.coulomb_friction import friction_force, resist_twisting
 from lithobrake.dem.law.hertz_spring import ContactSprings, contact_springs, normal_force
@@ -18,6 +18,7 @@ from lithobrake.dem.law.tangential_spring import stored
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact
 from lithobrake.dem.narrow_phase.patch_energy import patch_tilt_stiffness
 from lithobrake.dem.narrow_phase.scratch import System
+from lithobrake.vocabulary.arrays import Vector
 
 
 @kernel

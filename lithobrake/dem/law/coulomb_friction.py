@@ -8,7 +8,7 @@ Source: [Mindlin-1949], for the stiffness across the normal.
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import DAMPING, FRICTION, Bodies, Pairs
-from lithobrake.dem.bodies.vectors import Vector, dot, plus, put, row, scaled, tangential_part
+from lithobrake.dem.bodies.vectors import dot, plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_along
 from lithobrake.dem.law.hertz_spring import ContactSprings
 from lithobrake.dem.law.restitution import PairLaw
@@ -16,6 +16,7 @@ from lithobrake.dem.law.tangential_spring import spring_force, stored, turned_sp
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import spin_radii
 from lithobrake.dem.narrow_phase.scratch import Patch
+from lithobrake.vocabulary.arrays import Vector
 
 
 @kernel

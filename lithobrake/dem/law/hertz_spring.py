@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
-from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, row, scaled
+from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, row, scaled
 from lithobrake.dem.law.contact_motion import RelativeMotion, point_velocity
 from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_EDGES
 from lithobrake.dem.narrow_phase.scratch import Patch
+from lithobrake.vocabulary.arrays import Vector
 
 
 class ContactSprings(NamedTuple):

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes
-from lithobrake.dem.bodies.rigid_body import Material
+from lithobrake.vocabulary.material import SHARED_PROPERTIES, Material
 
 
 def restitution_of(damping_ratio: float) -> float:
@@ -96,12 +96,7 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
         shear = 1.0 / sum(2.0 * (2.0 - m.poisson_ratio) * (1.0 + m.poisson_ratio) / m.young_modulus for m in (a, b))
     else:
         shear = 1.0 / sum(2.0 * (2.0 + m.poisson_ratio) * (1.0 - m.poisson_ratio) / m.young_modulus for m in (a, b))
-    shared = {
-        name: pair_value(getattr(a, name), getattr(b, name), pair_rule)
-        for name in (
-            "restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy"
-        )
-    }  # fmt: skip
+    shared = {name: pair_value(getattr(a, name), getattr(b, name), pair_rule) for name in SHARED_PROPERTIES}
     # A rough floor holds a bed on a slope that is steeper than the friction of its grains, against any rule for pairs.
     if a.rough or b.rough:
         shared["friction"] = max(one.friction for one in (a, b) if one.rough)

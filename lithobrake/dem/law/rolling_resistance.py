@@ -2,11 +2,12 @@
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import ROLLING, Bodies, Pairs
-from lithobrake.dem.bodies.vectors import Vector, plus, put, row, scaled, tangential_part
+from lithobrake.dem.bodies.vectors import plus, put, row, scaled, tangential_part
 from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_across
 from lithobrake.dem.law.hertz_spring import ContactSprings
 from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, turned_spring
+from lithobrake.vocabulary.arrays import Vector
 
 # Stiffness of rolling over that of the normal contact times the lever squared.
 ROLLING_STIFFNESS = 2.25

@@ -7,7 +7,8 @@ keep: by sliding, and by changes of its stiffness.
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, scaled
+from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, scaled
+from lithobrake.vocabulary.arrays import Vector
 
 
 class SpringForce(NamedTuple):

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Integers, Pairs
-from lithobrake.dem.bodies.vectors import Vector, arm_to, cross, dot, minus, plus, put, row
+from lithobrake.dem.bodies.arrays import Bodies, Pairs
+from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, put, row
 from lithobrake.dem.local_stepping.cells import Cells
 from lithobrake.dem.local_stepping.free_motion import (
     Approach,
@@ -18,6 +18,7 @@ from lithobrake.dem.local_stepping.free_motion import (
     time_to_close,
     weight,
 )
+from lithobrake.vocabulary.arrays import Floats, Integers, Vector
 
 
 class Agenda(NamedTuple):

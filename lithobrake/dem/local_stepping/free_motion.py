@@ -5,23 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import (
-    Bodies,
-    Cores,
-    Flags,
-    Floats,
-    Integers,
-    Pairs,
-    Planes,
-    both_roundings,
-    both_shapes,
-    first_shape,
-)
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.motion import turn_by
-from lithobrake.dem.bodies.vectors import Vector, add, cross, dot, minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times, way_between
 from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
 from lithobrake.dem.narrow_phase.feature_distance import SPHERES, feature_indices, feature_kind, listed_feature
 from lithobrake.dem.narrow_phase.feature_list import travelled
+from lithobrake.vocabulary.arrays import Flags, Floats, Integers, Vector
 
 # Largest angle [rad] by which a body turns freely at once.
 LARGEST_TURN = 0.2

@@ -9,9 +9,10 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions
-from lithobrake.dem.bodies.vectors import Vector, add, dot, plus, put, row, scaled, times, way_between
+from lithobrake.dem.bodies.vectors import add, dot, plus, put, row, scaled, times, way_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules, surface_speed
+from lithobrake.vocabulary.arrays import Vector
 
 # A body is held when it is slower than this part of the speed at which it would be let go again.
 CALM = 0.5

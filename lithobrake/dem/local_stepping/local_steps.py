@@ -9,8 +9,8 @@ Source: [Lew-2003], asynchronous variational integrators.
 """
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, Reactions, Step, contact_radii
-from lithobrake.dem.bodies.vectors import Vector, minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, Reactions, Step, contact_radii
+from lithobrake.dem.bodies.vectors import minus, plus, put, row, scaled, times, way_between
 from lithobrake.dem.local_stepping.agenda import (
     LONGER,
     SHORTER,
@@ -39,6 +39,7 @@ from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_L
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_loop import add_wrench, contact_force, record_touch
 from lithobrake.dem.stepping.time_step_stability import pair_step
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3

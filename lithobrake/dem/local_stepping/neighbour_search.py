@@ -7,7 +7,7 @@ Every body has a list of its pairs: entries 2 k and 2 k + 1 stand for the first 
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Laws, Pairs, Planes, curvature_of
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, curvature_of
 from lithobrake.dem.bodies.vectors import dot, minus, nearest, row
 from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, plan_search, put_on, take_off
@@ -16,6 +16,7 @@ from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, pla
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
 from lithobrake.dem.stepping.time_step_stability import HERTZ_DURATION
+from lithobrake.vocabulary.arrays import Floats
 
 LISTED, NO_SLOT, LOST = 0, 1, 2
 

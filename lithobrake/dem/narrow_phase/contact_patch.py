@@ -8,18 +8,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
-from lithobrake.dem.bodies.vectors import (
-    Vector,
-    dot,
-    minus,
-    plus,
-    put,
-    row,
-    scaled,
-    times,
-    transposed_times,
-    way_between,
-)
+from lithobrake.dem.bodies.vectors import dot, minus, plus, put, row, scaled, times, transposed_times, way_between
 from lithobrake.dem.narrow_phase.feature_distance import (
     ALL_FEATURES,
     CORNER_OF_FIRST,
@@ -46,6 +35,7 @@ from lithobrake.dem.narrow_phase.patch_energy import (
 )
 from lithobrake.dem.narrow_phase.penetration import add_penetration_point
 from lithobrake.dem.narrow_phase.scratch import Patch, Scratch
+from lithobrake.vocabulary.arrays import Vector
 
 
 class Contact(NamedTuple):

@@ -1,8 +1,9 @@
 """Features of a pair as whole numbers, and closed forms of how far they are from each other."""
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Cores, Floats, Pairs
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, row, scaled
+from lithobrake.dem.bodies.arrays import Cores, Pairs
+from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, row, scaled
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Two edges whose directions differ by less than this angle (squared) have no single closest point.
 PARALLEL = 1e-12

@@ -6,7 +6,6 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import (
     Bodies,
     Cores,
-    Floats,
     Pairs,
     Planes,
     both_roundings,
@@ -15,18 +14,7 @@ from lithobrake.dem.bodies.arrays import (
     first_shape,
 )
 from lithobrake.dem.bodies.motion import surface_speed_bound
-from lithobrake.dem.bodies.vectors import (
-    Vector,
-    dot,
-    minus,
-    plus,
-    put,
-    row,
-    scaled,
-    times,
-    transposed_times,
-    way_between,
-)
+from lithobrake.dem.bodies.vectors import dot, minus, plus, put, row, scaled, times, transposed_times, way_between
 from lithobrake.dem.narrow_phase.feature_distance import (
     ALL_FEATURES,
     CORNER_OF_FIRST,
@@ -45,6 +33,7 @@ from lithobrake.dem.narrow_phase.gjk import APART, CLOSE, PENETRATING, weighted
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_TO
 from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch, Simplex, TurnedFeatures
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 
 class Band(NamedTuple):

@@ -1,9 +1,10 @@
 """Distance of two convex cores by GJK, and the point of a simplex closest to the origin."""
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Cores, Floats
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
+from lithobrake.dem.bodies.arrays import Cores
+from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, put, row, scaled, times, transposed_times
 from lithobrake.dem.narrow_phase.scratch import Simplex
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 Weights = tuple[float, float, float, float]
 

@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Cores, Floats
+from lithobrake.dem.bodies.arrays import Cores
 from lithobrake.dem.bodies.vectors import (
-    Vector,
     cross,
     dot,
     minus,
@@ -19,6 +18,7 @@ from lithobrake.dem.bodies.vectors import (
 )
 from lithobrake.dem.narrow_phase.feature_distance import closest_fractions, edge_of, lowest_height, point_to_core
 from lithobrake.dem.narrow_phase.scratch import Patch
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Families of points: corners, pairs of edges apart, deep pairs of edges (deep_edges.py), and the
 # penetration vector of cores.

@@ -3,12 +3,13 @@
 import math
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, both_roundings
-from lithobrake.dem.bodies.vectors import Vector, cross, dot, minus, plus, put, row, scaled, times, transposed_times
+from lithobrake.dem.bodies.arrays import Bodies, Cores, both_roundings
+from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, put, row, scaled, times, transposed_times
 from lithobrake.dem.narrow_phase.feature_distance import edge_of, lowest_height, point_to_core, write_relative
 from lithobrake.dem.narrow_phase.gjk import APART, CLOSE, PENETRATING, UNSURE, closest_simplex, weighted
 from lithobrake.dem.narrow_phase.patch_energy import PENETRATION, add_point
 from lithobrake.dem.narrow_phase.scratch import Scratch, Simplex, TurnedFeatures
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 # Two edges at a smaller angle (squared) part nowhere farther, to rounding, than faces beside them.
 PARALLEL = 1e-24

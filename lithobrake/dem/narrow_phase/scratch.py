@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Floats, Integers, Laws, Pairs, Planes, Reactions
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, Reactions
+from lithobrake.vocabulary.arrays import Floats, Integers
 
 
 class Simplex(NamedTuple):

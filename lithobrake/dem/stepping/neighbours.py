@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Cores, Flags, Floats, Integers, Pairs, Period, Planes
-from lithobrake.dem.bodies.vectors import Vector, dot, folded, minus, nearest, row, way_between
+from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Period, Planes
+from lithobrake.dem.bodies.vectors import dot, folded, minus, nearest, row, way_between
 from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.gjk import APART
 from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch
+from lithobrake.vocabulary.arrays import Flags, Floats, Integers, Vector
 
 
 @kernel

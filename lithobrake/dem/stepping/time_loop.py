@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Pairs, Partition, Reactions, Step
+from lithobrake.dem.bodies.arrays import Bodies, Pairs, Partition, Reactions, Step
 from lithobrake.dem.bodies.motion import drift, kick
-from lithobrake.dem.bodies.vectors import Vector, dot, plus, row, scaled
+from lithobrake.dem.bodies.vectors import dot, plus, row, scaled
 from lithobrake.dem.law.contact_law import add_wrench, contact_force
 from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_step_stability import step_is_too_large
+from lithobrake.vocabulary.arrays import Floats, Vector
 
 
 @large_kernel

@@ -8,11 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Floats, Laws, Pairs, Planes, Step
-from lithobrake.dem.bodies.rigid_body import Material, Plane, RigidBody
-from lithobrake.dem.bodies.vectors import Vector, arm_to, dot, minus, plus, row, times
+from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes, Step
+from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
+from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
+from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.material import Material
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0

@@ -4,17 +4,16 @@ from collections.abc import Mapping
 
 from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.run_answers import missing_words, scope
-from lithobrake.pipeline.answer.run_estimates import CAPTURED
 from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, SkyResults, SoilResults
 from lithobrake.results.questions import LimitStateResult
 from lithobrake.results.run_results import OutputEstimate, ReturnFraction, RunResults, VarianceParts
 from lithobrake.results.summary import DrawnResults
 from lithobrake.study import Study
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.constants import CENTIMETRES, HOUR
+from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.outcomes import CAPTURED, FlightStatus, JourneyEnd, JourneyStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import interval_digits, percent, rare_percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
-
-HOUR = 3600.0
 
 
 def journey_answer(study: Study, results: DrawnResults) -> list[str]:
@@ -110,7 +109,6 @@ def _rounded(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 10.0 else f"{value:.2g}"
 
 
-CENTIMETRES = 100.0
 # Parts of the variance, as they stand in a sentence; of those in FLOORS only terms of first and second degree are seen.
 PARTS = {
     "soil": "soil",
@@ -172,7 +170,7 @@ def limit_statement(name: str, found: LimitStateResult) -> str:
 def _share(study: Study, results: DrawnResults) -> list[str]:
     """Who comes to rest, as far as that was asked, and the return fraction; why it has no interval, if so."""
     returns, rest = results.returns, _at_rest(study, results)
-    again = f"impact the surface again within {_hours(study.flight.duration)}"
+    again = f"impact the surface again within {hours(study.flight.duration)}"
     again += " or are captured where the ground holds them" if results.site.holds else ""
     # The level of an interval is named once in a sentence.
     share = with_interval(returns, level=None if "interval" in rest else returns.level)
@@ -199,7 +197,7 @@ def _at_rest(study: Study, results: DrawnResults) -> str:
     lost = f" ({percent(unknown)} have an unknown outcome)" if unknown > 0.0 else ""
     return (
         f"{with_interval(settled, level=LEVEL)} of the landings come to rest {GROUNDS[ground]} within "
-        f"{_hours(study.rest.duration)}{lost}; "
+        f"{hours(study.rest.duration)}{lost}; "
     )
 
 
@@ -221,7 +219,7 @@ def _others(study: Study, results: DrawnResults) -> str:
     outcomes = results.shares.outcomes
     ways: dict[str, str] = {
         FlightStatus.ESCAPED: "escape",
-        FlightStatus.FLYING: f"are still flying after {_hours(study.flight.duration)}",
+        FlightStatus.FLYING: f"are still flying after {hours(study.flight.duration)}",
     }
     if outcomes[FlightStatus.PARTNER].count:
         ways[FlightStatus.PARTNER] = "impact the partner"
@@ -267,7 +265,3 @@ def _scatter(record: VarianceParts | None) -> list[str]:
         "Parts of the variance of the rebound speed over the input distributions of the study file: "
         f"{', '.join(listed)} ({percent(LEVEL)} intervals)."
     ]
-
-
-def _hours(seconds: float) -> str:
-    return f"{seconds / 3600:.3g} h"

@@ -8,10 +8,10 @@ import numpy as np
 
 from lithobrake.analysis import highest_density
 from lithobrake.files.reading import read_rows
-from lithobrake.geometry.mesh_files import labelled_mesh, product_id
+from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.pipeline.answer.run_answers import SHARES, place_regions, rest_regions
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
-from lithobrake.pipeline.flights import QUANTILES, flight_numbers, read_table
+from lithobrake.pipeline.flights import flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
@@ -33,7 +33,9 @@ from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
-from lithobrake.vocabulary.quantities import FLIGHTS_FILE, TOUCHDOWNS_FILE
+from lithobrake.vocabulary.percentages import QUANTILES
+from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
+from lithobrake.vocabulary.study_files import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 
 
 def site_results(site: Site) -> SiteResults:
@@ -122,17 +124,17 @@ def impact_numbers(rows: Rows) -> ImpactNumbers:
 
 def flight_checks(job: Job) -> FlightChecks:
     """How exact the flights of a study are."""
-    return from_json(FlightChecks, job.folder.read_json("flights.json"), "flights")
+    return from_json(FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
 
 
-def ellipses(study: Study, rows: Rows, status: str) -> LandingEllipses | None:
+def ellipses(site: Site, rows: Rows, status: str) -> LandingEllipses | None:
     """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none."""
     down = [row for row in rows if row["status"] == status]
     latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
-    return place_ellipses(study, latitude, longitude)
+    return place_ellipses(site, latitude, longitude)
 
 
-def place_ellipses(study: Study, latitude: np.ndarray, longitude: np.ndarray) -> LandingEllipses | None:
+def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> LandingEllipses | None:
     """Ellipses that hold half and 95 % of places [deg], both [count]; None where there are none.
 
     The axes in metres are the angles times the radius at the middle.
@@ -142,7 +144,7 @@ def place_ellipses(study: Study, latitude: np.ndarray, longitude: np.ndarray) ->
     found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None
-    centre = Site(study).body.shape.surface_point(found.latitude_deg, found.longitude_deg)
+    centre = site.body.shape.surface_point(found.latitude_deg, found.longitude_deg)
     radius = float(np.linalg.norm(centre))
     held = []
     for share, (long, short) in found.semi_axes_deg.items():
@@ -153,13 +155,13 @@ def place_ellipses(study: Study, latitude: np.ndarray, longitude: np.ndarray) ->
 
 def rest_results(job: Job) -> RestResults:
     """What became of the samples that were followed, on each ground."""
-    rows, known = read_table(job.folder, "rest.csv"), job.folder.read_json("rest.json")
+    rows, known = read_table(job.folder, REST_FILE), job.folder.read_json(REST_NOTES_FILE)
     site = site_results(job.site)
     ranges = {name: (low, high) for name, (low, high) in known["trained_ranges"].items()}
     found: dict[str, GroundResults | None] = {}
     for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
-        found[ground] = _ends(job.study, site, ground, part, ranges) if part else None
+        found[ground] = _ends(job, site, ground, part, ranges) if part else None
     hard = found["hard"]
     if hard is not None:
         found["hard"] = _with_sampling_intervals(hard)
@@ -190,7 +192,7 @@ def _with_sampling_intervals(found: GroundResults) -> GroundResults:
 
 
 def _ends(
-    study: Study, site: SiteResults, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]
+    job: Job, site: SiteResults, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]
 ) -> GroundResults:
     """Shares of each end, and the numbers of the landers that settled."""
     statuses, total = [row["status"] for row in rows], len(rows)
@@ -199,7 +201,7 @@ def _ends(
     for name in ("time_s", "path_length", "rebounds", "slid_length", "slid_time_s") if settled else ():
         values = np.array([float(row[name]) for row in settled])
         numbers[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-    lowest = ranges["impact.speed"][0] if "impact.speed" in ranges else 0.0
+    lowest = ranges[IMPACT_SPEED][0] if IMPACT_SPEED in ranges else 0.0
     # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
     outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
     return GroundResults(
@@ -207,9 +209,9 @@ def _ends(
         outcomes={str(name): proportion(statuses.count(name), total) for name in JourneyStatus},
         slid=proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), total),
         **numbers,
-        ellipses=ellipses(study, rows, JourneyStatus.SETTLED),
+        ellipses=ellipses(job.site, rows, JourneyStatus.SETTLED),
         outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
-        of=followed_words(study, ground, total),
+        of=followed_words(job.study, ground, total),
         interval=None,
         regions=place_regions(site, rows, JourneyStatus.SETTLED),
     )
@@ -220,7 +222,6 @@ def proportion(count: int, total: int) -> CountedShare:
     return CountedShare(count, count / total, None, None)
 
 
-LEVELS = (0.05, 0.5, 0.95)
 POSITION = tuple(f"position_{axis}" for axis in "xyz")
 
 
@@ -230,20 +231,20 @@ def delivery_results(job: Job, first: DesignRuns, journey_count: int) -> Deliver
     rows = [row for row in read_rows(job.folder / TOUCHDOWNS_FILE, columns, AGAIN) if row["touchdown"] == "0"]
     latitude, longitude = (np.array([float(row[name]) for row in rows]) for name in columns[1:3])
     density = highest_density(np.array([[float(row[name]) for name in POSITION] for row in rows]), SHARES)
-    flights = read_rows(job.folder / FLIGHTS_FILE, ("begin_s",), AGAIN)
+    flights = read_rows(job.folder / ARCS_FILE, ("begin_s",), AGAIN)
     descents = np.array([-float(row["begin_s"]) for row in flights if float(row["begin_s"]) < 0.0])
     return DeliveryResults(
         count=len(rows),
         of=journey_count,
-        speed=_spread(first.inputs["impact.speed"]),
-        incidence_deg=_spread(first.inputs.get(MEAN_INCIDENCE, first.inputs["impact.incidence_deg"])),
+        speed=_spread(first.inputs[IMPACT_SPEED]),
+        incidence_deg=_spread(first.inputs.get(MEAN_INCIDENCE, first.inputs[IMPACT_INCIDENCE])),
         descent_s=_spread(descents) if len(descents) else None,
-        ellipse=place_ellipses(job.study, latitude, longitude),
+        ellipse=place_ellipses(job.site, latitude, longitude),
         regions=rest_regions(density),
         why_no_regions=density.why,
     )
 
 
 def _spread(values: np.ndarray) -> tuple[float, float, float]:
-    low, median, high = np.quantile(values, LEVELS).tolist()
+    low, median, high = np.quantile(values, QUANTILES).tolist()
     return low, median, high

@@ -23,11 +23,11 @@ from lithobrake.results.journey_results import (
     SoilResults,
 )
 from lithobrake.study import Study
-from lithobrake.study.lander_section import SIDES, side_words, sides_down
+from lithobrake.study.lander_section import side_words, sides_down
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import JOURNEYS_FILE, SKY_FILE, SOIL, TOUCHDOWNS_FILE
-
-MEDIAN, Q95 = 0.5, 0.95
+from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
+from lithobrake.vocabulary.quantities import IMPACT_SPEED, SIDES, SOIL
+from lithobrake.vocabulary.study_files import JOURNEYS_FILE, SKY_FILE, TOUCHDOWNS_FILE
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     def quantiles(name: str) -> RestQuantiles:
         values = np.where(rests, table.numbers[name], np.nan)
         counts = name == "contacts"
-        return RestQuantiles(*(rest_quantile(values, table.bed, level, why, counts=counts) for level in (MEDIAN, Q95)))
+        return RestQuantiles(*(rest_quantile(values, table.bed, level, why, counts=counts) for level in (MEDIAN, HIGH)))
 
     density = highest_density(table.position[rests], SHARES)
     faces = table.face[rests]
@@ -135,7 +135,7 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
     returns: share of the flights of each run that return, [run_count], NaN where that is not known.
     """
     side, bed, why = _sides(study, runs), runs.inputs["bed"], why_no_interval(study)
-    ratio = runs.output("speed_out") / runs.inputs["impact.speed"]
+    ratio = runs.output("speed_out") / runs.inputs[IMPACT_SPEED]
     found = {}
     for name in _named(side):
         own = side == name
@@ -199,9 +199,6 @@ def soil_shares(job: Job, table: JourneyTable) -> dict[str, SoilResults]:
             outlines=soils.outlines(name),
         )
     return found
-
-
-LOW = 0.05
 
 
 def sky_results(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[str, SkyResults]:

@@ -19,7 +19,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.answer_sentences import limit_statement
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
-from lithobrake.pipeline.answer.run_answers import CAPTURED, failing_runs, left_in_flight, why_no_interval
+from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
 from lithobrake.pipeline.answer.typed_estimates import finite_estimate, limit_state, share_interval
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
@@ -33,10 +33,20 @@ from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words
 from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.units import input_units
-from lithobrake.vocabulary.limit_state import LOFTED, RETURNS, SETTLED, LimitState
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.constants import HOUR
+from lithobrake.vocabulary.limit_state import LimitState
+from lithobrake.vocabulary.outcomes import (
+    CAPTURED,
+    LOFTED,
+    RETURNS,
+    SETTLED,
+    FlightStatus,
+    JourneyStatus,
+    SampleOutcome,
+)
 from lithobrake.vocabulary.percentages import percent, with_interval
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE, PURE, UNKNOWN_END
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
+from lithobrake.vocabulary.study_files import AIM_FILE
 
 
 def limit_state_results(
@@ -144,7 +154,6 @@ FAR = 0.95
 UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
 # The words of bounces and of journeys.
 RESTS = (SETTLED, AT_REST)
-HOUR = 3600.0
 # More options than these make no sentence.
 NAMED = 3
 

@@ -20,8 +20,8 @@ from lithobrake.results.dispersion import RestRegion
 from lithobrake.results.run_results import MissingLandings
 from lithobrake.results.site_results import SiteResults
 from lithobrake.study import Study
-from lithobrake.vocabulary.limit_state import FATES, RETURNS, LimitState
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.limit_state import LimitState
+from lithobrake.vocabulary.outcomes import CAPTURED, FATES, RETURNS, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import OVER_RIM, TOUCHDOWN
 
@@ -172,7 +172,6 @@ def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
     return f"the {int(known.sum())} of {len(outcomes)} landings that {words or 'have this number'}"
 
 
-CAPTURED = TouchdownOutcome.CAPTURED.value
 # Words of a run that its touchdown alone decides; all others take flights.
 OF_TOUCHDOWN = (CAPTURED,)
 

@@ -36,10 +36,9 @@ from lithobrake.pipeline.answer.typed_estimates import (
     variance_part,
     variance_parts,
 )
-from lithobrake.pipeline.design.design import FLOWN, GRAIN, DrawnDesign
+from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.flights import QUANTILES
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -58,16 +57,16 @@ from lithobrake.results.run_results import (
 )
 from lithobrake.results.summary import Estimates
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import SURFACE
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
+from lithobrake.vocabulary.material import SURFACE_PROPERTIES
+from lithobrake.vocabulary.outcomes import CAPTURED, LOFTED, RETURNS, SETTLED, FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.percentages import QUANTILES
+from lithobrake.vocabulary.quantities import ARRIVAL, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
+from lithobrake.vocabulary.study_files import ESTIMATES_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
-RETURNS, MISSING = "returns", "missing"
-CAPTURED = TouchdownOutcome.CAPTURED.value
-SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
+MISSING = "missing"
 # These add up to 1; every other share holds some of them.
 PARTS = (*FlightStatus, CAPTURED)
 
@@ -163,7 +162,7 @@ def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> ReturnFraction:
 
 
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
-SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE))
+SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
 Inputs = dict[str, tuple["Distribution", np.ndarray]]
 
 
@@ -200,7 +199,7 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
     """
     from lithobrake.chaos import Empirical
 
-    flown = [name for name in FLOWN if job.design.is_flown and np.ptp(runs.inputs[name]) > 0.0]
+    flown = [name for name in ARRIVAL if job.design.is_flown and np.ptp(runs.inputs[name]) > 0.0]
     told = {name: Empirical(runs.inputs[name].tolist()) for name in flown}
     values = dict(runs.inputs)
     if job.design.study.site.roughness_deg and not job.design.is_flown:
@@ -243,7 +242,7 @@ def _parts(
     return None if found is None else variance_parts(found, of)
 
 
-ESTIMATES_FILE, AZIMUTH_OUT = "estimates.json", "azimuth_out"
+ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 
 

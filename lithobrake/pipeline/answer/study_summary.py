@@ -52,7 +52,8 @@ from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Pr
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent
-from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
+from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
+from lithobrake.vocabulary.study_files import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 
 
 def summary_dependencies(study: Study) -> dict[str, Any]:
@@ -84,7 +85,7 @@ def bed_results(job: Job, name: str) -> BedNumbers:
 
     bed, values = stored_bed(job.folder / name), job.design.medians
     width, depth = smallest_bed(
-        lander(job.study, values), grain(values), float(bed.grain_diameter), values["impact.speed"]
+        lander(job.study, values), grain(values), float(bed.grain_diameter), values[IMPACT_SPEED]
     )  # fmt: skip
     return BedNumbers(
         solid_fraction=float(bed.solid_fraction),
@@ -118,12 +119,12 @@ def write_summary_file(job: Job, results: DrawnResults | PaperResults, asked: in
         "results": results,
         "provenance": provenance(job, asked, runs),
     }
-    job.folder.write_json("summary.json", {"format_version": SUMMARY_FORMAT, **to_json(tables)})
+    job.folder.write_json(SUMMARY_FILE, {"format_version": SUMMARY_FORMAT, **to_json(tables)})
 
 
 def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
     """Where it all comes from; asked: runs of all designs, of which `runs` are the distinct ones."""
-    ledger, keys = job.folder / "runs.sqlite", set(runs.keys)
+    ledger, keys = job.folder / RUNS_FILE, set(runs.keys)
     records = [one for one in (read_records(ledger) if ledger.is_file() else []) if one.key in keys]
     packages = ("lithobrake", "numpy", "scipy", "numba", "scikit-learn", "h5py")
     wall = [one.wall_s or 0.0 for one in records]
@@ -198,7 +199,7 @@ def write_drawn_summary(job: Job) -> None:
 def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
     """What the landings say, and what became of the samples of the emulator."""
     study, holds, refits = job.study, job.site.holds, _refits(estimates)
-    samples, flights = Samples.load(job.folder), read_table(job.folder, "flights.csv")
+    samples, flights = Samples.load(job.folder), read_table(job.folder, SAMPLE_FLIGHTS_FILE)
     table = _emulator_shares(samples, flights, estimates, refits, holds=holds)
     known = table.sample_count - table.outcomes["missing"].count
     returns = replace(found.returns, emulator=table.outcomes["returns"].count / known if known else None)
@@ -210,7 +211,7 @@ def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Es
         flights=replace(found.flights, checks=flight_checks(job)),
         # Its outputs are those of the runs, of which results.outputs speaks.
         monte_carlo=MonteCarlo(len(samples.leaves), int(samples.leaves.sum())),
-        ellipses=ellipses(study, flights, FlightStatus.IMPACT),
+        ellipses=ellipses(job.site, flights, FlightStatus.IMPACT),
         regions=place_regions(found.site, flights, FlightStatus.IMPACT),
         rest=_rest(job, refits),
         limit_states=limit_state_results(study, job.folder, flights, shares.outcomes, holds=holds),
@@ -234,7 +235,7 @@ def _rest(job: Job, refits: Refits) -> RestResults:
     rest = rest_results(job)
     if rest.soil is None:
         return rest
-    rows = [row for row in read_table(job.folder, "rest.csv") if row["ground"] == "soil"]
+    rows = [row for row in read_table(job.folder, REST_FILE) if row["ground"] == "soil"]
     sample = np.array([int(row["sample"]) for row in rows])
     counts = refits.with_intervals(rest.soil.counts, sample, journey_ends(rows))
     return replace(rest, soil=rest.soil.with_counts(counts, Level(LEVEL, refits.why)))

@@ -22,12 +22,13 @@ from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.json_values import to_json
 from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
-from lithobrake.results.study_files import STUDY_FILE, intact_file
+from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.percentages import HIGH, LEVEL, MEDIAN
 from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 # What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
 COMMON = {
@@ -39,7 +40,6 @@ COMMON = {
 # Numbers of a bed that tell it from every other.
 OF_BED = ("solid_fraction", "surface_height_m")
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "energy_lost")
-MEDIAN, Q95 = 0.5, 0.95
 # Tables of a study file that say how much of it is made, not of what.
 EFFORT = ("title", "seed", "bed.bed_count", "design.run_count", "journey.count")
 COPIED = ("impact", "site")
@@ -252,7 +252,7 @@ def _quantiles(
     """Median and 95th percentile of a number over the runs of each study that have it."""
     if not all(np.isfinite(one).any() for one in values):
         return
-    for level, title in ((MEDIAN, "median"), (Q95, "95th percentile")):
+    for level, title in ((MEDIAN, "median"), (HIGH, "95th percentile")):
         found = quantile_difference(values[0], values[1], bed, level, counts=counts, why=why)
         yield f"{name}_{title.split()[0]}", _told(f"{words}, {title}", unit, found)
 

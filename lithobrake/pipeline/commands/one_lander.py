@@ -16,7 +16,7 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.campaign import begin, begun_aloft, journey_row
 from lithobrake.pipeline.journeys.journey import Journey, JourneyModel
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS
 from lithobrake.study import Study, StudyError, fixed_study
@@ -90,14 +90,15 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
     study = with_site_gravity(study, "the study")
-    Soils(Site(study)).refuse("the study")
-    values = _values(study, number)
+    design = DrawnDesign(study)
+    Soils(design.site).refuse("the study")
+    values = _values(design, number)
     own = OF_JOURNEYS if study.journey is not None else ()
     free = {key: value for key, value in values.items() if key not in own}
     changed = dict(_changed(change, free) for change in changes)
     if not changed:
         return values
-    if DrawnDesign(study).is_flown:
+    if design.is_flown:
         raise ValueError(
             f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
             "(delivery.states, delivery.release), which determine the first impact; change the study file"
@@ -111,12 +112,10 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     if study.journey is None:
         return values | changed
     # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
-    return on_local_ground(study, [values | changed], number)[0]
+    return on_local_ground(design.site, [values | changed], number)[0]
 
 
-def land_one(
-    study: Study, values: dict[str, float], progress: Callable[[float, str], None] = lambda fraction, what: None
-) -> OneLanding:
+def land_one(study: Study, values: dict[str, float], progress: Progress = silent) -> OneLanding:
     """Land once with all that a landing reads, see landing_inputs.
 
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
@@ -126,7 +125,7 @@ def land_one(
     return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
 
 
-def bed_of(study: Study, number: int, progress: Callable[[float, str], None]) -> "Bed":
+def bed_of(study: Study, number: int, progress: Progress) -> "Bed":
     """The bed of a number, from the library or poured; the study has the gravity of its site."""
     from lithobrake.touchdown import pour_bed, stored_or_poured
     from lithobrake.touchdown.bed import Bed
@@ -144,7 +143,7 @@ def bed_of(study: Study, number: int, progress: Callable[[float, str], None]) ->
 
 
 def landed(
-    study: Study, values: dict[str, float], bed: "Bed", progress: Callable[[float, str], None]
+    study: Study, values: dict[str, float], bed: "Bed", progress: Progress
 ) -> OneLanding:  # fmt: skip
     """Land once with all that a landing reads on this bed; the study has the gravity of its site."""
     from lithobrake.touchdown import land
@@ -154,13 +153,14 @@ def landed(
         return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
 
 
-def _values(study: Study, number: int) -> dict[str, float]:
+def _values(design: DrawnDesign, number: int) -> dict[str, float]:
+    study = design.study
     if study.design.method == "paper":
-        return draw(study, DrawnDesign(study).medians, study.seed)
+        return draw(study, design.medians, study.seed)
     last = study.design.most_runs - 1
     if not 0 <= number <= last:
         raise ValueError(f"the number of a run is {number}; allowed: 0 to {last}, the runs of the study")
-    return DrawnDesign(study).row(number)
+    return design.row(number)
 
 
 def _refuse(study: Study, values: Mapping[str, float]) -> None:
@@ -244,11 +244,11 @@ def follow_one(
 def _begun(study: Study, values: Row) -> Journey:
     number, design = round(values["journey"]), DrawnDesign(study)
     if not design.is_flown:
-        return begin(JourneyModel(design, Site(study)), [values], number)[0]
+        return begin(JourneyModel(design), [values], number)[0]
     # Journeys of a longer study begin with those of this one.
     design = design.with_run_count(max(study.design.run_count, number + 1))
     assert design.descents is not None
-    return begun_aloft(JourneyModel(design, Site(study)), design.descents)[number]
+    return begun_aloft(JourneyModel(design), design.descents)[number]
 
 
 def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Record:

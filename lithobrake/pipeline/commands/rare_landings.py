@@ -19,15 +19,16 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.design import DrawnDesign
-from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.study import Study, StudySource
+from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.limit_state import LimitState
 
 # Landings of a level are made in chains of ten.
@@ -36,8 +37,6 @@ CHAIN, FEWEST = 10, 20
 MOST_LEVELS = 6
 # Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
 FEW_ORIGINS = 3.0
-# Probabilities as near to 0 and 1 as a law without ends can take.
-LEAST = 2.0**-53
 
 
 def rare_failure(
@@ -49,7 +48,7 @@ def rare_failure(
     worker_count: int | None = None,
     scheduler: str | None = None,
     model: Model | None = None,
-    shown: Progress | None = None,
+    shown: StudyProgress | None = None,
 ) -> dict[str, Any]:
     """Tell the probability of a rare limit state by subset simulation, and write it to rare_NAME.json of the folder.
 
@@ -65,7 +64,7 @@ def rare_failure(
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         study = with_site_gravity(source.study, source.name)
         design = grown(DrawnDesign(study), folder)
-        landings = Landings(Job(design, Site(study), source.tables, folder, executor, shown, model), name, state)
+        landings = Landings(Job(design, source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:
             shown.say("A program that is random beyond its inputs widens the interval.")
         shown.begin(f"landings of {name}", 1, 1)
@@ -116,7 +115,7 @@ class Landings:
 
     def beds(self, points: np.ndarray) -> np.ndarray:
         """Beds of points [count, dimension], [count]."""
-        shares = np.clip(ndtr(points[:, -1]), LEAST, 1.0 - LEAST)
+        shares = np.clip(ndtr(points[:, -1]), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
         # Below 1, as the clip above keeps the last bed from being passed.
         return (shares * self.job.study.bed_count).astype(int)
 
@@ -126,7 +125,7 @@ class Landings:
         Raises ValueError for an output that no landing has.
         """
         study = self.job.study
-        shares = np.clip(ndtr(points), LEAST, 1.0 - LEAST)
+        shares = np.clip(ndtr(points), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
         laws = self.job.design.coordinates.values()
         x = np.column_stack([law.ppf(share) for law, share in zip(laws, shares.T, strict=False)])
         rows = self.job.design.rows_at(self.beds(points).tolist(), x)

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.results.study_files import JOURNEYS, STUDY_FILE, TOUCHDOWNS
+from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import OVER_RIM
+from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import IntervalEstimate, ShareEstimate

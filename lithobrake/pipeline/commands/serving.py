@@ -21,7 +21,7 @@ from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.samples import VELOCITY
-from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
+from lithobrake.pipeline.site import SITE_KEYS, with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
 from lithobrake.serve import ClientGoneError, ServedModel
@@ -31,6 +31,7 @@ from lithobrake.study.touchdown_model import draw
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.study_files import EMULATOR_FILE
 
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
 RUN_KEYS = ("seed", "inputs", "setting")
@@ -52,7 +53,7 @@ class ServedStudy:
         """Read the study. Raises ValueError where it is refused."""
         source = StudySource.read(study)
         self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
-        self.design, self.site = DrawnDesign(self.study), Site(self.study)
+        self.design = DrawnDesign(self.study)
         self.inputs = tuple(self.design.inputs)
 
     def models(self) -> list[ServedModel]:
@@ -61,7 +62,7 @@ class ServedStudy:
         beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
         if self.inputs and all(bed.is_file() for bed in beds):
             found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
-        if (self.folder / "emulator.json").is_file():
+        if (self.folder / EMULATOR_FILE).is_file():
             found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
         if self._has_touchdown_emulator():
             found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
@@ -127,7 +128,7 @@ class ServedStudy:
     def _emulator(self) -> Any:
         from lithobrake.emulator import load
 
-        return load(intact_file(self.folder.path, "emulator.json", REMEDY))
+        return load(intact_file(self.folder.path, EMULATOR_FILE, REMEDY))
 
     def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
         """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.
@@ -162,15 +163,15 @@ class ServedStudy:
         _refuse_keys(config, SITE_KEYS)
         from lithobrake.smallbody import fly
 
-        body, numbers = self.site.body, self.site.medians | dict(config)
+        body, numbers = self.design.site.body, self.design.site.medians | dict(config)
         if config:
             _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
         site = {key: np.array([float(value)]) for key, value in numbers.items()}
-        origin, axes = self.site.frames(site)
+        origin, axes = self.design.site.frames(site)
         flown = fly(
             *(body, origin, np.einsum("nij,ni->nj", axes, [point]), self.study.flight.duration),
             gravity=self.study.flight.gravity,
-            start_time=self.site.clock(site),
+            start_time=self.design.site.clock(site),
             mass=site["mass"],
             spin_period=site["spin_period"],
             threads=1,

@@ -13,12 +13,12 @@ from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
-from lithobrake.pipeline.job import Job, Progress, Silent
+from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.site_grid import (
     SiteGround,
     all_at_rest,
@@ -32,10 +32,10 @@ from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.json_values import to_json
 from lithobrake.results.site_results import SiteMap
 from lithobrake.study import Study, StudySource
+from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.percentages import LEVEL, percent, span, with_interval
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
-HOUR = 3600.0
 NOT_COMPARED = "The emulator was not compared with landings: journey.emulated_count is 0."
 
 
@@ -120,7 +120,7 @@ def map_sites(
     worker_count: int | None = None,
     scheduler: str | None = None,
     model: Model | None = None,
-    shown: Progress | None = None,
+    shown: StudyProgress | None = None,
 ) -> SiteMap:
     """Say what becomes of landers that a study of journeys delivers to each of so many sites over its body.
 
@@ -140,7 +140,7 @@ def map_sites(
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
     with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
         design = grown(DrawnDesign(study), folder)
-        job = Job(design, Site(study), source.tables, folder, executor, shown, model)
+        job = Job(design, source.tables, folder, executor, shown, model)
         shown.begin("map of sites", 1, 1)
         return _mapped(job, source.stem, cells, lander_count)
 

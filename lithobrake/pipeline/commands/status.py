@@ -15,11 +15,12 @@ from lithobrake.pipeline.commands.running_estimates import (
     running_estimates,
     touchdown_keys,
 )
-from lithobrake.pipeline.folder_state import STUDY_FILE, FolderState, StageState, grouped, read_state
+from lithobrake.pipeline.folder_state import FolderState, StageState, grouped, read_state
 from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, StudyFolder
 from lithobrake.results import open_study
 from lithobrake.results.study_files import JOURNEYS
 from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.study_files import RUNS_FILE, STUDY_FILE
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ def study_status(path: Path) -> StudyStatus:
 
     A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """
-    ledger, is_study = path / "runs.sqlite", any((path / name).is_file() for name in (STUDY_FILE, NAME))
+    ledger, is_study = path / RUNS_FILE, any((path / name).is_file() for name in (STUDY_FILE, NAME))
     if not (is_study or ledger.is_file()):
         raise ValueError(f"{path} has neither study.toml nor runs.sqlite; name the folder of a study that ran, or runs")
     if not is_study:
@@ -202,7 +203,7 @@ def _runs(path: Path, notes: Notes, flown: dict[str, float], *, has_journeys: bo
     # Those beside the drawn runs are at places and soils of its runs, and say nothing new.
     drawn = set(notes.designs.get("drawn", ()))
     return RunsStatus(
-        tally=ledger_tally(records, campaign_began(path / "runs.sqlite")),
+        tally=ledger_tally(records, campaign_began(path / RUNS_FILE)),
         others=len(others.difference(*notes.rare.values())),
         rare={name: count for name, count in rare.items() if count},
         outcomes=Counter(entry.outcome or "" for entry in records if entry.status == RunStatus.DONE),

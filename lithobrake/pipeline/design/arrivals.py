@@ -15,7 +15,8 @@ from lithobrake.study import Study
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.touchdown_model import grain, grain_sizes, lander, medians
-from lithobrake.vocabulary.quantities import GROUND, ORIENTATION, SPIN
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.quantities import GROUND, IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION, SPIN
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import AttitudeHistory, Body
@@ -27,7 +28,7 @@ FLATTEST_DEG = 89.9
 
 def impact_inputs(speed: float, incidence: float) -> Row:
     """Speed [m/s] and incidence [rad] of an impact, as inputs of its touchdown."""
-    return {"impact.speed": speed, "impact.incidence_deg": min(math.degrees(incidence), FLATTEST_DEG)}
+    return {IMPACT_SPEED: speed, IMPACT_INCIDENCE: min(math.degrees(incidence), FLATTEST_DEG)}
 
 
 def attitude_inputs(axes: np.ndarray, azimuth_deg: float, attitude: Rotation, spin: np.ndarray) -> Row:
@@ -39,9 +40,6 @@ def attitude_inputs(axes: np.ndarray, azimuth_deg: float, attitude: Rotation, sp
     into_bed = about_z(math.radians(azimuth_deg)) * from_frame(axes).inv()
     spins = dict(zip(SPIN, into_bed.apply(spin).tolist(), strict=True))
     return spins | dict(zip(ORIENTATION, quaternion(into_bed * attitude), strict=True))
-
-
-Array = np.ndarray
 
 
 def icrf_to_body(site: SiteSection, time: Array, spin_period: Array) -> Array:
@@ -101,7 +99,6 @@ def turned_in_flight(
     return after, spin_after - turning
 
 
-AZIMUTH, INCIDENCE, SPEED = "impact.azimuth_deg", "impact.incidence_deg", "impact.speed"
 # Angle of an impact from the normal of the shape's facet, where the ground that is met faces another way.
 MEAN_INCIDENCE = "impact.mean_incidence_deg"
 
@@ -136,7 +133,7 @@ def first_axes(study: Study, axes: np.ndarray, rows: Sequence[Row]) -> np.ndarra
     """
     if not study.site.roughness_deg or not len(rows):
         return axes
-    angle = np.radians([row.get(MEAN_INCIDENCE, row[INCIDENCE]) for row in rows])
+    angle = np.radians([row.get(MEAN_INCIDENCE, row[IMPACT_INCIDENCE]) for row in rows])
     incoming = np.sin(angle)[:, None] * axes[:, 0] - np.cos(angle)[:, None] * axes[:, 2]
     journeys = [int(row["journey"]) for row in rows]
     return met_ground(study, incoming, axes[:, 2], angle, lambda: first_uniforms(study, journeys))[0]
@@ -161,14 +158,14 @@ def on_rough_ground(study: Study, rows: Sequence[Row], axes: np.ndarray, met: np
 
 
 def _seen_from(row: Row, axes: np.ndarray, met: np.ndarray) -> Row:
-    angle = math.radians(row[INCIDENCE])
+    angle = math.radians(row[IMPACT_INCIDENCE])
     incoming = math.sin(angle) * axes[0] - math.cos(angle) * axes[2]
     incidence = math.acos(min(max(-float(incoming @ met[2]), 0.0), 1.0))
     return {
         **row,
-        **impact_inputs(row[SPEED], incidence),
-        MEAN_INCIDENCE: row[INCIDENCE],
-        **attitude_inputs(met, row[AZIMUTH], *arriving(row, axes)),
+        **impact_inputs(row[IMPACT_SPEED], incidence),
+        MEAN_INCIDENCE: row[IMPACT_INCIDENCE],
+        **attitude_inputs(met, row[IMPACT_AZIMUTH], *arriving(row, axes)),
     }
 
 
@@ -194,9 +191,9 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
     return dict(zip(GROUND, (sign * strength, math.degrees(tilt), downhill % 360.0), strict=True))
 
 
-def on_local_ground(study: Study, rows: Sequence[Row], first: int) -> list[Row]:
+def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
     """The first touchdowns of journeys, numbered from `first` on, each on the soil and under the acceleration there."""
-    site = Site(study)
+    study = site.study
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
     met = first_axes(study, axes, rows)
@@ -215,7 +212,9 @@ def on_ground(
 ) -> list[Row]:
     """Touchdowns under the acceleration at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
     local = np.einsum("nij,nj->ni", axes, felt(body, origin, time, mass, spin_period))
-    return [row | ground_inputs(one, row[AZIMUTH], friction_of(row)) for row, one in zip(rows, local, strict=True)]
+    return [
+        row | ground_inputs(one, row[IMPACT_AZIMUTH], friction_of(row)) for row, one in zip(rows, local, strict=True)
+    ]
 
 
 def friction_of(row: Mapping[str, float]) -> float:
@@ -256,5 +255,5 @@ def smallest_width(study: Study) -> float:
 
     values: dict[str, Any] = medians(study)
     diameter = float(grain_sizes(study).draw((np.arange(SIZE_COUNT) + 0.5) / SIZE_COUNT).mean())
-    speed = values.get("impact.speed", ANY_SPEED)
+    speed = values.get(IMPACT_SPEED, ANY_SPEED)
     return smallest_bed(lander(study, values), grain(values), diameter, speed)[0]

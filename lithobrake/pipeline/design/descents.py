@@ -28,12 +28,15 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.delivered_states import DeliveredStates, states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.percentages import QUANTILES
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Flights
 
-Array = np.ndarray
 # Coordinates of the sequence of a study beside the others.
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
 # Of a direction from the centre next to the pole, about which north is any.
@@ -95,7 +98,6 @@ def _root(covariance: Array) -> Array:
 
 
 Row = dict[str, float]
-AZIMUTH = "impact.azimuth_deg"
 # A start so far below the ground is on it, of a millionth of the radius and at most [m].
 SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 
@@ -112,7 +114,7 @@ class Descents:
                     against axes that do not turn [rad/s], [count, 3]; else None
     """
 
-    study: Study
+    site: Site
     first: int
     flights: "Flights"
     axes: np.ndarray
@@ -121,17 +123,17 @@ class Descents:
     spin: np.ndarray | None
 
     @classmethod
-    def flown(cls, study: Study, first: int, uniforms: np.ndarray) -> "Descents":
+    def flown(cls, site: Site, first: int, uniforms: np.ndarray) -> "Descents":
         """Fly the journeys from `first` on, each with six uniform numbers [count, 6], which a release draws by.
 
         Raises StudyError for states below the ground, and landers too fast for any contact.
         """
         from lithobrake.smallbody import fly
 
+        study, count = site.study, len(uniforms)
         assert study.journey is not None
-        site, count = Site(study), len(uniforms)
         columns = {key: values[first:] for key, values in site.sampled(first + count).items()}
-        states = _states(study, first, uniforms)
+        states = _states(site, first, uniforms)
         into_body = _into_body(study, states.time, columns["spin_period"])
         position, velocity = turned(into_body, states.position), turned(into_body, states.velocity)
         if _is_icrf(study):
@@ -144,7 +146,7 @@ class Descents:
             here = ground.at(clock)
             position, velocity = here.states_out_of_frame(position, velocity)
             into_body = here.axes.transpose(0, 2, 1) @ into_body
-        _refuse_below(study, site, position, states.source)
+        _refuse_below(site, position, states.source)
         flights = fly(
             *(site.body, position, velocity, study.journey.duration),
             gravity=study.flight.gravity,
@@ -156,7 +158,7 @@ class Descents:
         axes, incidence = _met_ground(study, flights, down, first)
         _refuse_fast(study, flights.impact_speed[down])
         attitude, spin = _turning(states, into_body)
-        return cls(study, first, flights, axes, incidence, attitude, spin)
+        return cls(site, first, flights, axes, incidence, attitude, spin)
 
     @property
     def touches_down(self) -> np.ndarray:
@@ -178,7 +180,7 @@ class Descents:
             row = rows[lander] | self._impact(lander)
             found.append(row | self._attitude(lander, row))
         start = flights.start
-        found = Soils(Site(self.study)).on_soil(found, flights.position[down])
+        found = Soils(self.site).on_soil(found, flights.position[down])
         return on_ground(
             flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
             start.spin_period[down],
@@ -186,7 +188,7 @@ class Descents:
 
     def _impact(self, lander: int) -> Row:
         met = impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
-        if not self.study.site.roughness_deg:
+        if not self.site.study.site.roughness_deg:
             return met
         return met | {MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
 
@@ -194,12 +196,12 @@ class Descents:
         if self.attitude is None or self.spin is None:
             return {}
         period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
-        inertia = lander_inertia(self.study, row)
+        inertia = lander_inertia(self.site.study, row)
         ground, start = self.flights.body.rotation, float(self.flights.start.time[lander])
         attitude, spin = turned_in_flight(
             *(inertia, self.attitude[lander], self.spin[lander], period, time), ground=ground, start=start
         )
-        return attitude_inputs(self.axes[lander], row[AZIMUTH], attitude, spin)
+        return attitude_inputs(self.axes[lander], row[IMPACT_AZIMUTH], attitude, spin)
 
 
 def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
@@ -224,12 +226,12 @@ def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.nd
     return np.tile(np.eye(3), (len(time), 1, 1))
 
 
-def _states(study: Study, first: int, uniforms: np.ndarray) -> DeliveredStates:
-    delivery = study.delivery
+def _states(site: Site, first: int, uniforms: np.ndarray) -> DeliveredStates:
+    study, delivery = site.study, site.study.delivery
     assert delivery is not None
     if delivery.release is None:
         return states_of(study).rows(first, len(uniforms))
-    pole = _into_body(study, np.zeros(1), np.full(1, Site(study).medians["spin_period"]))[0, 2]
+    pole = _into_body(study, np.zeros(1), np.full(1, site.medians["spin_period"]))[0, 2]
     return released_states(delivery.release, uniforms, first, pole)
 
 
@@ -242,12 +244,12 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     return Rotation.from_matrix(into_body) * given, turned(into_body, given.apply(states.rates))
 
 
-def _refuse_below(study: Study, site: Site, position: np.ndarray, source: Sequence[str]) -> None:
-    shape = site.body.shape
+def _refuse_below(site: Site, position: np.ndarray, source: Sequence[str]) -> None:
+    shape, delivery = site.body.shape, site.study.delivery
     for place, where in zip(position, source, strict=True):
         height = float(shape.height(place))
         if height < -min(SLACK_PART * shape.radius, MOST_SLACK):
-            key = "delivery.states" if study.delivery and study.delivery.states else "delivery.release"
+            key = "delivery.states" if delivery and delivery.states else "delivery.release"
             raise StudyError(
                 [
                     f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
@@ -277,7 +279,7 @@ def descents_in_words(descents: Descents) -> str:
     others = Counter(flights.status[~down].tolist())
     said = f"Delivery: {int(down.sum())} of {len(flights)} landers reach the ground"
     if down.any():
-        speed, hours = flights.impact_speed[down], flights.time[down] / 3600.0
+        speed, hours = flights.impact_speed[down], flights.time[down] / HOUR
         said += (
             f", {hours.min():.3g} to {hours.max():.3g} h after their state, at {100.0 * speed.min():.3g} to "
             f"{100.0 * speed.max():.3g} cm/s"
@@ -288,8 +290,8 @@ def descents_in_words(descents: Descents) -> str:
 
 def _places(descents: Descents) -> str:
     """Where the first touchdowns lie about the aim point, whose distance is an arc of the radius there."""
-    site, places = Site(descents.study), descents.flights.position[descents.touches_down]
-    near, middle, far = np.quantile(site.ways_from_aim(places), (0.05, 0.5, 0.95))
+    site, places = descents.site, descents.flights.position[descents.touches_down]
+    near, middle, far = np.quantile(site.ways_from_aim(places), QUANTILES)
     shape = site.body.shape
     latitude, longitude = shape.latitude_longitude(directions(*shape.latitude_longitude(places)).mean(axis=0))
     return (

@@ -17,10 +17,11 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
-from lithobrake.study.ground_sections import FEWEST_BEDS, MOST_BEDS
+from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
-from lithobrake.vocabulary.quantities import ORIENTATION
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -28,12 +29,13 @@ if TYPE_CHECKING:
 Row = dict[str, float]
 
 
-def arriving_together(study: Study, rows: list[Row], first: int) -> list[Row]:
+def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
     """Rows of journeys from number `first` on with what [delivery] correlates; where it lands the site draws."""
+    study = site.study
     keys = {key: f"impact.{key}" for key in correlated_keys(study) if key not in PLACE_KEYS}
     if not keys:
         return rows
-    place = {key: values[first:] for key, values in Site(study).sampled_apart(first + len(rows)).items()}
+    place = {key: values[first:] for key, values in site.sampled_apart(first + len(rows)).items()}
     arrival = {key: np.array([row[dotted] for row in rows]) for key, dotted in keys.items()}
     found = drawn_together(study, place | arrival)
     return [
@@ -41,13 +43,11 @@ def arriving_together(study: Study, rows: list[Row], first: int) -> list[Row]:
     ]
 
 
-AZIMUTH, GRAIN = "impact.azimuth_deg", "grain."
+GRAIN = "grain."
 # Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
 # an azimuth that is given leaves the others as they were.
 DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
 PAIR_COUNT, TWIN_COUNT = 20, 12
-# What the flight of a lander tells of its impact.
-FLOWN = ("impact.speed", "impact.incidence_deg")
 # Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
 SIDE_DESIGNS = ("soil_pairs", "twins")
 
@@ -57,10 +57,17 @@ SIDE_DESIGNS = ("soil_pairs", "twins")
 class DrawnDesign:
     """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
 
-    A study of the paper method takes inputs, medians and region alone from it.
+    A study of the paper method takes site, inputs, medians and region alone from it.
+    known_site: of the same study with another number of runs.
     """
 
     study: Study
+    known_site: Site | None = None
+
+    @cached_property
+    def site(self) -> Site:
+        """Where the study lands."""
+        return self.known_site or Site(self.study)
 
     @cached_property
     def inputs(self) -> "dict[str, Distribution]":
@@ -73,7 +80,7 @@ class DrawnDesign:
 
         Of landers that are flown to the ground, also the medians of what their flights tell.
         """
-        told = [key for key in FLOWN if self.is_flown]
+        told = [key for key in ARRIVAL if self.is_flown]
         return medians(self.study) | {key: float(np.median([row[key] for row in self.rows])) for key in told}
 
     @property
@@ -181,11 +188,11 @@ class DrawnDesign:
     @property
     def soil_inputs(self) -> "dict[str, Distribution]":
         """The uncertain inputs without place and azimuth, which each run draws by itself."""
-        return {name: law for name, law in self.inputs.items() if name not in (*PLACE, AZIMUTH)}
+        return {name: law for name, law in self.inputs.items() if name not in (*PLACE, IMPACT_AZIMUTH)}
 
     def with_run_count(self, count: int) -> "DrawnDesign":
         """The design of the same study with so many runs, which has all runs of one with fewer."""
-        return DrawnDesign(self.study.with_run_count(count))
+        return DrawnDesign(self.study.with_run_count(count), self.site)
 
     def _points(self, count: int, skip: int = 0) -> np.ndarray:
         """Points of the sequence, [count, coordinate_count]."""
@@ -216,7 +223,7 @@ class DrawnDesign:
             return delivered
         if descents is not None:
             return descents.first_touchdowns(delivered)
-        return on_local_ground(self.study, delivered, first)
+        return on_local_ground(self.site, delivered, first)
 
     def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
         """Rows of runs as journeys have them before it is known which ground they meet."""
@@ -225,10 +232,10 @@ class DrawnDesign:
             return rows
         begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
-        return arriving_together(self.study, numbered, first)
+        return arriving_together(self.site, numbered, first)
 
     def _descents(self, first: int, points: np.ndarray) -> Descents:
-        return Descents.flown(self.study, first, points[:, -len(RELEASE) :])
+        return Descents.flown(self.site, first, points[:, -len(RELEASE) :])
 
     def _soil_pairs(self) -> list[dict[str, float]]:
         """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.
@@ -256,16 +263,16 @@ def _arrival(study: Study, uniform: dict[str, float]) -> dict[str, float]:
     drawn = study.impact.orientation == "random"
     attitude = uniform_attitude(first, second, third) if drawn else given_attitude(study, first, second)
     row = dict(zip(ORIENTATION, (attitude / np.linalg.norm(attitude)).tolist(), strict=True))
-    return row | ({AZIMUTH: 360.0 * uniform["azimuth"]} if study.impact.azimuth_deg == "random" else {})
+    return row | ({IMPACT_AZIMUTH: 360.0 * uniform["azimuth"]} if study.impact.azimuth_deg == "random" else {})
 
 
 def beds_of_runs(study: Study, count: int) -> list[int]:
     """Number of the bed of each of the first `count` runs; a larger count changes none."""
     if study.bed.bed_count is not None:
         return _in_blocks(study.seed, study.bed.bed_count, count)
-    few, many = FEWEST_BEDS * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
+    few, many = FEWEST_BEDS_OF_INTERVAL * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
     # Blocks leave every run on its bed however many follow, and at each full block all beds have equally many.
-    first = _in_blocks(study.seed, FEWEST_BEDS, min(count, few))
+    first = _in_blocks(study.seed, FEWEST_BEDS_OF_INTERVAL, min(count, few))
     growing = [run // study.runs_a_bed for run in range(few, min(count, many))]
     # A bed is as new as any other, so the order in which they were filled so far says nothing.
     return first + growing + _in_blocks(study.seed, MOST_BEDS, count - many)

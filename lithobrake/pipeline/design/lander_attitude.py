@@ -7,12 +7,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, seen_from_lander
-from lithobrake.pipeline.design.design import AZIMUTH, DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.study import Study
-from lithobrake.study.lander_section import SIDES
+from lithobrake.study.lander_section import side_toward
 from lithobrake.study.touchdown_model import lander, medians
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.quantities import ORIENTATION
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, SIDES
 
 # Names of the terms among the inputs of a touchdown.
 PREFIX = "attitude."
@@ -44,13 +44,13 @@ def named_terms(terms: AttitudeTerms, normal: Array, travel: Array) -> dict[str,
 
 def tells_attitude(inputs: Mapping[str, np.ndarray]) -> bool:
     """Whether touchdowns say in which attitude they are; those of a program need not."""
-    return {*ORIENTATION, AZIMUTH} <= inputs.keys()
+    return {*ORIENTATION, IMPACT_AZIMUTH} <= inputs.keys()
 
 
 def seen(inputs: Mapping[str, np.ndarray]) -> tuple[Array, Array]:
     """Normal of the ground and direction of travel, [run_count, 3], seen from the lander at its touchdowns."""
     orientation = np.column_stack([inputs[name] for name in ORIENTATION])
-    return seen_from_lander(orientation, np.radians(inputs[AZIMUTH]))
+    return seen_from_lander(orientation, np.radians(inputs[IMPACT_AZIMUTH]))
 
 
 def independent_terms(design: DrawnDesign, inputs: Mapping[str, np.ndarray]) -> Array | None:
@@ -93,5 +93,5 @@ def side_down(attitude: Rotation, acceleration: np.ndarray) -> tuple[str, float]
     attitude: of the lander, acceleration [m/s2]: of what rests there, both in one frame.
     """
     down = attitude.inv().apply(acceleration / np.linalg.norm(acceleration))
-    axis = int(np.argmax(np.abs(down)))
-    return SIDES[2 * axis + int(down[axis] < 0.0)], math.acos(min(abs(float(down[axis])), 1.0))
+    side = int(side_toward(down[None])[0])
+    return SIDES[side], math.acos(min(abs(float(down[side // 2])), 1.0))

@@ -14,7 +14,8 @@ from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, AIM_FILE
+from lithobrake.vocabulary.quantities import AIM_COLUMNS
+from lithobrake.vocabulary.study_files import AIM_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body

@@ -17,19 +17,17 @@ from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import grain_sizes, lander
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import SPIN
+from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_INCIDENCE, IMPACT_SPEED, SPIN
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
     from lithobrake.smallbody import Bounce, Impacts, Rebounds, RestitutionTable
 
-# Without these two among the uncertain inputs the expansion says nothing about an impact that differs from the first.
-NEEDED = ("impact.speed", "impact.incidence_deg")
-
 
 def why_no_soil(study: Study) -> str | None:
     """Why the soil cannot be asked about the impacts after the first; None where it can."""
-    absent = [name for name in NEEDED if name not in uncertain(study.touchdown_values())]
+    # Without these among the uncertain inputs the expansion says nothing about an impact unlike the first.
+    absent = [name for name in ARRIVAL if name not in uncertain(study.touchdown_values())]
     if not absent:
         return None
     return (
@@ -45,7 +43,7 @@ def inputs_at(
 
     inputs: of each lander. Those outside have the inputs of the first impact in place of theirs.
     """
-    felt = {"impact.speed": impacts.speed, "impact.incidence_deg": np.degrees(impacts.incidence)}
+    felt = {IMPACT_SPEED: impacts.speed, IMPACT_INCIDENCE: np.degrees(impacts.incidence)}
     felt |= dict(zip(SPIN, impacts.spin.T, strict=True)) | {"surface.gravity": -impacts.effective_acceleration}
     x = np.column_stack([values[impacts.lander] for values in inputs.values()])
     outside = np.zeros(len(x), dtype=bool)
@@ -109,7 +107,6 @@ def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
 
 
 RESTITUTION_FILE = "restitution.csv"
-ARRIVAL = ("impact.speed", "impact.incidence_deg")
 CLEAR_RUN, CAPTURED_RUN, *_ = TouchdownOutcome
 # Cells along each side, and landers that leave which a cell has in the mean; fewer make fewer cells.
 MOST_CELLS, CELL_COUNT = 4, 50

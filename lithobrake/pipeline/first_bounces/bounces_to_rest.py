@@ -24,14 +24,13 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.quantities import ARC, SPIN_OUT
+from lithobrake.vocabulary.study_files import ARCS_FILE, REST_FILE, REST_NOTES_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Arcs, Body, Bounce, HardSurface, Impacts, Journeys, Rebounds
 
     # Spin after the first impact [rad/s], [sample_count, 3], and the bounce of what follows.
     Soil = tuple[np.ndarray, Bounce]
-
-ARCS_FILE = "arcs.csv"
 
 
 def arc_rows(arcs: "Arcs", samples: np.ndarray) -> list[list[Any]]:
@@ -53,7 +52,7 @@ COLUMNS = (
     "ground", "sample", "status", "time_s", "latitude_deg", "longitude_deg", "rebounds", "path_length",
     "slid_length", "slid_time_s", "impact_speed", "impact_incidence_deg",
 )  # fmt: skip
-FILES = ("rest.csv", ARCS_FILE, "rest.json")
+FILES = (REST_FILE, ARCS_FILE, REST_NOTES_FILE)
 # Statuses of landers that lie on, or have just touched, the ground of the body.
 DOWN = (
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
@@ -104,10 +103,10 @@ def follow(job: Job, design: str, soil: "Callable[[Job, Samples], Soil]") -> Non
         rows += sites.follow(job, "hard", *on_hard_ground(study, sites))
         if RESTITUTION_FILE in rest_files(study):
             rows += sites.follow(job, "equivalent", *_on_equivalent_ground(job, sites))
-    write_table(job.folder, "rest.csv", COLUMNS, rows)
+    write_table(job.folder, REST_FILE, COLUMNS, rows)
     write_table(job.folder, ARCS_FILE, tuple(ARC), arcs, ARC)
     ranges = DesignRuns.load(job.folder, design).ranges(job.design.inputs)
-    job.folder.write_json("rest.json", {"why_no_soil": why, "trained_ranges": ranges})
+    job.folder.write_json(REST_NOTES_FILE, {"why_no_soil": why, "trained_ranges": ranges})
 
 
 def hard_surface(study: Study) -> "HardSurface":

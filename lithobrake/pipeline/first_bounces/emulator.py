@@ -20,12 +20,12 @@ from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, ro
 from lithobrake.results.explorer_tables import FORMAT_VERSION, NAMES, ExplorerTables
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
+from lithobrake.vocabulary.study_files import EMULATOR_FILE, EXPLORER_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.emulator import Emulator
 
-EMULATOR_FILE = "emulator.json"
 SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
 STEEPEST = 0.5 * math.pi
 # What is drawn with its run: directions, and numbers beside the motion.
@@ -170,9 +170,6 @@ class DrawnLandings:
         of_vectors = dict(zip((*VELOCITY, *SPIN_OUT), np.hstack([self.velocity, self.spin]).T, strict=True))
         found = {**self.outputs, **of_vectors}
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
-
-
-EXPLORER_FILE = "explorer.h5"
 
 
 def write_explorer(job: Job) -> None:

@@ -17,15 +17,8 @@ from lithobrake.pipeline.runs.landings import account, campaign_setting, model_o
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
-from lithobrake.vocabulary.quantities import (
-    ARC,
-    FLIGHTS_FILE,
-    JOURNEY,
-    JOURNEY_TOUCHDOWN,
-    JOURNEYS_FILE,
-    SOIL,
-    TOUCHDOWNS_FILE,
-)
+from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
+from lithobrake.vocabulary.study_files import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 
 
 def begun_aloft(model: JourneyModel, descents: Descents) -> list[Journey]:
@@ -56,7 +49,7 @@ def _descent(descents: Descents, number: int, touches_down: bool) -> dict[str, A
     )  # fmt: skip
 
 
-JOURNEY_FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, FLIGHTS_FILE)
+JOURNEY_FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
 
 
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
@@ -65,7 +58,7 @@ def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
     columns = JOURNEY_TOUCHDOWN | (SOIL if any(journey.model.design.study.soil for journey in journeys) else {})
     write_table(folder, TOUCHDOWNS_FILE, tuple(columns), touchdowns, columns)
     flights = [[row[name] for name in ARC] for journey in journeys for row in _flights(journey)]
-    write_table(folder, FLIGHTS_FILE, tuple(ARC), flights, ARC)
+    write_table(folder, ARCS_FILE, tuple(ARC), flights, ARC)
 
 
 def _flights(journey: Journey) -> list[dict[str, Any]]:
@@ -114,7 +107,7 @@ def make_journeys(job: Job) -> None:
 
 
 def begun(job: Job) -> list[Journey]:
-    model, descents = JourneyModel(job.design, job.site), job.design.descents
+    model, descents = JourneyModel(job.design), job.design.descents
     return begin(model, job.design.rows, 0) if descents is None else begun_aloft(model, descents)
 
 
@@ -147,7 +140,7 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
         job.note(journeys=said)
         job.progress(ended, len(journeys), "journeys", f"{said}\n{state.sentence()}")
 
-    with Ledger(job.folder / "runs.sqlite") as ledger:
+    with Ledger(job.folder / RUNS_FILE) as ledger:
         return run_chains(
             model_of(job.study, job.folder.path.absolute(), job.model),
             rows,

@@ -10,7 +10,6 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.geometry.frames import directions
-from lithobrake.pipeline.design.arrivals import AZIMUTH
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, with_side_down
 from lithobrake.pipeline.first_bounces.aiming import ways_from_aims
@@ -27,7 +26,6 @@ from lithobrake.pipeline.journeys.touchdown_emulator import (
 )
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import Site
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
@@ -36,16 +34,15 @@ from lithobrake.study.question_sections import SIDE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import (
     AIM_COLUMNS,
-    AIM_FILE,
     EMULATED,
     EMULATED_FILE,
+    IMPACT_AZIMUTH,
     JOURNEY_DESIGN,
     ORIENTATION,
     SPIN,
     UNKNOWN_END,
 )
-
-TOUCHDOWN_EXPLORER_FILE = "touchdown_explorer.h5"
+from lithobrake.vocabulary.study_files import AIM_FILE, TOUCHDOWN_EXPLORER_FILE
 
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
@@ -118,13 +115,13 @@ def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     assert job.study.journey is not None
     # Numbers behind those of the journeys: other points of the sequence, so other landers.
     followed = len(job.design.rows)
-    begin = Arrivals.drawn(job.design, job.site, followed, job.study.journey.emulated_count)
+    begin = Arrivals.drawn(job.design, followed, job.study.journey.emulated_count)
     return _rows(job, emulator, FRESH, begin, most_landings(job))
 
 
 def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     """Rows of the landers of the journeys, each by refits that have not seen its bed, without any landing."""
-    begin = Arrivals.drawn(job.design, job.site, 0, len(job.design.rows))
+    begin = Arrivals.drawn(job.design, 0, len(job.design.rows))
     unseen = {bed: emulator.unseen(bed) for bed in {int(row["bed"]) for row in begin.rows}}
     pairs = [
         (lander, refit)
@@ -168,7 +165,7 @@ def follow_options(job: Job) -> None:
 
     All have the same landers: soil, bed, site and refit of each are drawn once, and only what is chosen differs.
     """
-    begin = option_arrivals(job.design, job.site)
+    begin = option_arrivals(job.design)
     count = job.study.aim.lander_count * REFIT_COUNT
     end, time = np.full(len(begin.rows), UNKNOWN_END, dtype=object), np.zeros(len(begin.rows))
     distance = time
@@ -190,11 +187,11 @@ def follow_options(job: Job) -> None:
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-def option_arrivals(design: DrawnDesign, place: Site) -> Arrivals:
+def option_arrivals(design: DrawnDesign) -> Arrivals:
     """The landers of all options, one option after the other."""
-    study = design.study
+    study, place = design.study, design.site
     options = study.aim.aims()
-    one = Arrivals.drawn(design, place, len(design.rows), study.aim.lander_count * REFIT_COUNT)
+    one = Arrivals.drawn(design, len(design.rows), study.aim.lander_count * REFIT_COUNT)
     count = len(one.rows)
     rows, site = [], {key: np.tile(values, len(options)) for key, values in one.site.items()}
     for number, option in enumerate(options):
@@ -214,5 +211,5 @@ def _attitudes(study: Study, side: str, landers: Arrivals) -> list[dict[str, flo
     random = np.random.default_rng(hashed_seed(study.seed, "attitudes of options"))
     directions, count = np.array(directions_of_sides(study.lander)[side]), len(landers.rows)
     down = directions[random.integers(len(directions), size=count)]
-    turned = with_side_down(down, landers.column(AZIMUTH), random.random(count))
+    turned = with_side_down(down, landers.column(IMPACT_AZIMUTH), random.random(count))
     return [dict(zip(ORIENTATION, one, strict=True)) for one in turned.tolist()]

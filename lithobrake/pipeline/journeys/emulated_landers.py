@@ -11,14 +11,7 @@ from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.geometry.frames import about_z
-from lithobrake.pipeline.design.arrivals import (
-    AZIMUTH,
-    FLATTEST_DEG,
-    MEAN_INCIDENCE,
-    friction_of,
-    ground_inputs,
-    met_ground,
-)
+from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, MEAN_INCIDENCE, friction_of, ground_inputs, met_ground
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.job import Job
@@ -28,9 +21,7 @@ from lithobrake.pipeline.journeys.touchdown_emulator import (
     ASIDE,
     DURATION,
     GRAVITY,
-    INCIDENCE,
     SLOPE,
-    SPEED,
     Answers,
     Arrivals,
     Row,
@@ -39,7 +30,15 @@ from lithobrake.pipeline.journeys.touchdown_emulator import (
 from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import ORIENTATION, SPIN, SPIN_OUT, VELOCITY_OUT
+from lithobrake.vocabulary.quantities import (
+    IMPACT_AZIMUTH,
+    IMPACT_INCIDENCE,
+    IMPACT_SPEED,
+    ORIENTATION,
+    SPIN,
+    SPIN_OUT,
+    VELOCITY_OUT,
+)
 
 # Of these landings alone: what the study says of its runs is of those of its journeys.
 LEDGER = "emulated.sqlite"
@@ -76,7 +75,7 @@ class LandingsBetween:
 
     @cached_property
     def model(self) -> JourneyModel:
-        return JourneyModel(self.job.design, self.job.site)
+        return JourneyModel(self.job.design)
 
     def answers(self, impacts: NextImpacts, number: int) -> Answers:
         """Land at touchdowns of a number, the first ones as long as landings are left; of others nothing is known."""
@@ -96,7 +95,7 @@ class LandingsBetween:
         row, acceleration = self.begin.rows[lander], impacts.acceleration[place].tolist()
         # The first touchdown is that of the design, whose attitude and place are the lander's own.
         if number == 0:
-            return row | ground_inputs(acceleration, row[AZIMUTH], friction_of(row))
+            return row | ground_inputs(acceleration, row[IMPACT_AZIMUTH], friction_of(row))
         seed = hashed_seed(self.model.seed, "landings between", self.title, lander, number)
         x, y, turn, *attitude = np.random.default_rng(seed).random(6).tolist()
         azimuth = 360.0 * turn
@@ -105,9 +104,9 @@ class LandingsBetween:
         return of_lander | {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - float(impacts.time[place]),
-            SPEED: float(impacts.speed[place]),
-            INCIDENCE: float(impacts.incidence[place]),
-            AZIMUTH: azimuth,
+            IMPACT_SPEED: float(impacts.speed[place]),
+            IMPACT_INCIDENCE: float(impacts.incidence[place]),
+            IMPACT_AZIMUTH: azimuth,
             **dict(zip(SPIN, spin.tolist(), strict=True)),
             **dict(zip(ORIENTATION, uniform_attitude(*attitude).tolist(), strict=True)),
             **dict(zip(PLACE, self.model.place(x, y, row), strict=True)),
@@ -172,8 +171,8 @@ class EmulatedLanders:
             position=np.array(begin.origin),
             axes=np.array(begin.axes),
             spin=begin.spin,
-            speed=begin.column(SPEED),
-            incidence=begin.column(INCIDENCE),
+            speed=begin.column(IMPACT_SPEED),
+            incidence=begin.column(IMPACT_INCIDENCE),
             time=np.zeros(count),
             # As wide as the longest of its words: NumPy cuts longer ones without notice.
             end=np.full(count, "", dtype="<U10"),
@@ -216,8 +215,8 @@ class EmulatedLanders:
         # The emulator reads the size of the acceleration and the slope, for which any azimuth will do.
         ground = [ground_inputs(one, 0.0, friction_of(row)) for one, row in zip(acceleration, rows, strict=True)]
         inputs = {name: values[going] for name, values in self.soil.items()} | {
-            SPEED: self.speed[going],
-            INCIDENCE: self.incidence[going],
+            IMPACT_SPEED: self.speed[going],
+            IMPACT_INCIDENCE: self.incidence[going],
             GRAVITY: np.array([one[GRAVITY] for one in ground]),
             SLOPE: np.array([one[SLOPE] for one in ground]),
             **self._attitude(going, number),
@@ -236,7 +235,7 @@ class EmulatedLanders:
         if terms is None:
             return {}
         if number == 0:
-            delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, AZIMUTH)}
+            delivered = {name: self.begin.column(name)[going] for name in (*ORIENTATION, IMPACT_AZIMUTH)}
             return attitude_inputs_of(terms, delivered)
         # Drawn for all landers, so that the numbers of one do not depend on which others are still under way.
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))

@@ -27,7 +27,7 @@ from lithobrake.pipeline.design.soils import Soils, felt
 from lithobrake.pipeline.site import Site
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import SOIL, VELOCITY_OUT
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, SOIL, VELOCITY_OUT
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -42,7 +42,11 @@ PROJECTIONS = 8
 @dataclass(frozen=True, eq=False)
 class JourneyModel:
     design: DrawnDesign
-    site: Site
+
+    @property
+    def site(self) -> Site:
+        """Where the study lands."""
+        return self.design.site
 
     @cached_property
     def body(self) -> "Body":
@@ -246,7 +250,7 @@ class Journey:
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - self.time,
             **impact_inputs(float(flight.impact_speed[0]), incidence),
-            "impact.azimuth_deg": azimuth,
+            IMPACT_AZIMUTH: azimuth,
             **attitude_inputs(self.axes, azimuth, attitude, spin),
             **dict(zip(PLACE, self.model.place(x, y, self.row), strict=True)),
             **ground_inputs(self.axes @ self._felt(), azimuth, friction_of(self.row)),
@@ -287,8 +291,8 @@ class Journey:
 
     def _incoming(self) -> np.ndarray:
         """Velocity of the present impact against the ground [m/s], fixed to the body."""
-        incidence = math.radians(self.row["impact.incidence_deg"])
-        along, down = self.row["impact.speed"] * math.sin(incidence), self.row["impact.speed"] * math.cos(incidence)
+        incidence = math.radians(self.row[IMPACT_INCIDENCE])
+        along, down = self.row[IMPACT_SPEED] * math.sin(incidence), self.row[IMPACT_SPEED] * math.cos(incidence)
         incoming: np.ndarray = along * self.axes[0] - down * self.axes[2]
         return incoming
 

@@ -19,7 +19,17 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import GROUND, JOURNEY_DESIGN, SPIN, TO_REST, UNKNOWN_END
+from lithobrake.vocabulary.quantities import (
+    GROUND,
+    IMPACT_AZIMUTH,
+    IMPACT_INCIDENCE,
+    IMPACT_SPEED,
+    JOURNEY_DESIGN,
+    SPIN,
+    TO_REST,
+    UNKNOWN_END,
+)
+from lithobrake.vocabulary.study_files import TOUCHDOWN_EMULATOR_FILE
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -59,21 +69,19 @@ class Answers:
 
 
 # Another file than that of single landings, whose inputs are those of the study alone.
-TOUCHDOWN_EMULATOR_FILE = "touchdown_emulator.json"
-SPEED, INCIDENCE = "impact.speed", "impact.incidence_deg"
 GRAVITY, SLOPE, _ = GROUND
 ALONG, ASIDE, DURATION, _ = TO_REST
 # What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
-OF_TOUCHDOWN = (SPEED, INCIDENCE, GRAVITY, SLOPE)
+OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
-ARRIVAL = ("impact.", "surface.")
+ARRIVAL_TABLES = ("impact.", "surface.")
 ONE_SOIL = (
     "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
     "their own."
 )
 # How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
 FACTOR, DEGREES = 1.1, 5.0
-LARGEST = {INCIDENCE: 90.0, SLOPE: 90.0}
+LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
 
 
 @dataclass(frozen=True)
@@ -132,10 +140,10 @@ class TouchdownEmulator:
 
     def beyond(self, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
         """Which input of each touchdown lies beyond the ranges, the first of them, [count]; "" where none does."""
-        found = np.full(len(inputs[SPEED]), "", dtype="<U24")
+        found = np.full(len(inputs[IMPACT_SPEED]), "", dtype="<U24")
         for name, (lower, upper) in self.ranges.items():
             # No speed is too low: such a touchdown is as the slowest of them.
-            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (name != SPEED))
+            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (name != IMPACT_SPEED))
             found[outside & (found == "")] = name
         return found
 
@@ -147,7 +155,7 @@ class TouchdownEmulator:
         found = Answers.unknown(len(refit))
         inside = self.beyond(inputs) == ""
         # Slower than any touchdown is as the slowest of them, which has more energy to leave with.
-        inputs = {**inputs, SPEED: np.maximum(inputs[SPEED], self.ranges[SPEED][0])}
+        inputs = {**inputs, IMPACT_SPEED: np.maximum(inputs[IMPACT_SPEED], self.ranges[IMPACT_SPEED][0])}
         values = {name: inputs[name] for name in self.inputs} | dict(zip(SPIN, spin.T, strict=True))
         bound = energy_bound(self.design, self.bed_height, values, len(refit), self.across)
         x = np.column_stack([inputs[name] for name in self.inputs])
@@ -199,7 +207,7 @@ def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
         else:
             # Gravity below 0 points outward.
             margin = (FACTOR - 1.0) * max(abs(lower), abs(upper))
-            found[name] = (lower if name == SPEED else lower - margin), upper + margin
+            found[name] = (lower if name == IMPACT_SPEED else lower - margin), upper + margin
     return found
 
 
@@ -207,9 +215,9 @@ def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
     """Soil and lander as the study draws them, and what differs between touchdowns, over its range."""
     from lithobrake.chaos import LogUniform, Uniform
 
-    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL)}
+    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL_TABLES)}
     ranges = trained_ranges(runs)
-    found = kept | {name: (LogUniform if name == SPEED else Uniform)(*ends) for name, ends in ranges.items()}
+    found = kept | {name: (LogUniform if name == IMPACT_SPEED else Uniform)(*ends) for name, ends in ranges.items()}
     terms = attitude_terms(job.study)
     of_attitude = {} if terms is None else terms.ranges
     return found | {f"{PREFIX}{name}": Uniform(*ends) for name, ends in of_attitude.items()}
@@ -274,12 +282,12 @@ class Arrivals:
         return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
 
     @classmethod
-    def drawn(cls, design: DrawnDesign, place: Site, first: int, count: int) -> "Arrivals":
+    def drawn(cls, design: DrawnDesign, first: int, count: int) -> "Arrivals":
         """Journeys of a study from the number `first` on, each with one refit after the other."""
         number = np.arange(first, first + count)
         rows = design.with_run_count(first + count).rows[first:]
-        site = {key: values[first:] for key, values in place.sampled(first + count).items()}
-        return cls.of(place, number, rows, site, number % REFIT_COUNT)
+        site = {key: values[first:] for key, values in design.site.sampled(first + count).items()}
+        return cls.of(design.site, number, rows, site, number % REFIT_COUNT)
 
     def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
         """Some of the landers, or some of them several times, with these refits."""
@@ -298,5 +306,5 @@ class Arrivals:
         from lithobrake.geometry.frames import about_z
 
         of_bed = np.column_stack([self.column(name) for name in SPIN])
-        turns = [about_z(-angle) for angle in np.radians(self.column("impact.azimuth_deg")).tolist()]
+        turns = [about_z(-angle) for angle in np.radians(self.column(IMPACT_AZIMUTH)).tolist()]
         return np.array([turn.apply(one) for turn, one in zip(turns, of_bed, strict=True)]).reshape(-1, 3)

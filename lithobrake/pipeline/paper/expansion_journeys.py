@@ -11,6 +11,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, outgoing, rolling_spin
+from lithobrake.vocabulary.study_files import REFINED_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -67,7 +68,7 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
     """The bounce of a study for landers with these inputs, each of shape [lander_count]."""
     from lithobrake.chaos import load
 
-    refined = load(job.folder / "refined.json")
+    refined = load(job.folder / REFINED_FILE)
     # In the refined runs the inputs that the screening drops are at their medians, and have no range.
     ranges = DesignRuns.load(job.folder, "screening").ranges(inputs)
     scatter = Scatter.of(job, refined) if job.study.monte_carlo.scatter else None

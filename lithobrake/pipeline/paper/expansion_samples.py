@@ -14,7 +14,8 @@ from lithobrake.pipeline.samples import CLEAR, Samples, sampling_seed, touchdown
 from lithobrake.results.explorer_tables import ExplorerTables
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import PAPER_DESIGNS
+from lithobrake.vocabulary.quantities import IMPACT_SPEED, PAPER_DESIGNS
+from lithobrake.vocabulary.study_files import REFINED_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -43,7 +44,7 @@ class Scatter:
         runs = DesignRuns.load(job.folder, "refined")
         rows = joint_scatter(refined, runs.columns(refined.input_names), runs.y)
         # Every run has its impact speed among its inputs, whether the study varies it or not.
-        speeds = runs.inputs["impact.speed"][runs.has_outputs]
+        speeds = runs.inputs[IMPACT_SPEED][runs.has_outputs]
         grows = np.array([name not in ANGLES for name in refined.output_names])
         return cls(rows, float(np.sqrt(np.mean(speeds**2))), grows)
 
@@ -66,7 +67,7 @@ def draw_samples(job: Job) -> None:
     from lithobrake.chaos import load
 
     study, inputs = job.study, job.design.inputs
-    refined = load(job.folder / "refined.json")
+    refined = load(job.folder / REFINED_FILE)
     x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
     job.progress(0, 1, "chances of the outcomes")
@@ -74,7 +75,7 @@ def draw_samples(job: Job) -> None:
     drawn = outcome_model(job).draw(x, random)
     outputs, without_scatter = smooth, None
     if study.monte_carlo.scatter:
-        speed = touchdown_values(study, inputs, x, "impact.speed")
+        speed = touchdown_values(study, inputs, x, IMPACT_SPEED)
         generator = np.random.Generator(np.random.PCG64(sampling_seed(study, "scatter")))
         outputs, without_scatter = smooth + Scatter.of(job, refined).draw(speed, generator), smooth
     Samples.of(inputs, refined.output_names, x, outputs, drawn, without_scatter).save(job.folder)
@@ -106,7 +107,6 @@ def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:
     return outputs
 
 
-SPEED = "impact.speed"
 # Points to a term at which a quadratic is read off: more than enough, as it has no scatter.
 POINTS_PER_TERM = 3
 
@@ -120,12 +120,12 @@ def write_expansion_explorer(job: Job) -> None:
     """Write explorer.h5: the refined expansion, then the same fitted to other draws of its residuals."""
     from lithobrake.chaos import coefficient_changes, load
 
-    refined, runs = load(job.folder / "refined.json"), DesignRuns.load(job.folder, "refined")
+    refined, runs = load(job.folder / REFINED_FILE), DesignRuns.load(job.folder, "refined")
     x = runs.columns(refined.input_names)
     changes = coefficient_changes(
         refined, x, runs.y, count=REFIT_COUNT - 1, seed=hashed_seed(job.study.seed, "refits")
     )  # fmt: skip
-    outcome, fixed = outcome_model(job), job.study.touchdown_values()[SPEED]
+    outcome, fixed = outcome_model(job), job.study.touchdown_values()[IMPACT_SPEED]
     job.progress(0, 1, "tables of the explorer")
     scatter = Scatter.of(job, refined)
     if not job.study.monte_carlo.scatter:
@@ -141,7 +141,7 @@ def write_expansion_explorer(job: Job) -> None:
             group_count=int(runs.has_outputs.sum()),
             # Runs on one bed bound no share over other beds.
             interval_reach=float("nan"),
-            bound={SPEED: median(fixed)},
+            bound={IMPACT_SPEED: median(fixed)},
         ),
     )
 

@@ -13,6 +13,7 @@ from lithobrake.pipeline.runs.landings import drawn_rows, make_rows, say_gravity
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS
+from lithobrake.vocabulary.study_files import REFINED_FILE, SCORES_FILE, SCREENING_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate
@@ -71,18 +72,18 @@ def replicate_count(study: Study, design: str) -> int:
 
 def fit_screening(job: Job) -> None:
     runs = DesignRuns.load(job.folder, "screening")
-    _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / "screening.json")
+    _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / SCREENING_FILE)
 
 
 def fit_refined(job: Job) -> None:
     runs = DesignRuns.load(job.folder, "refined")
-    _fit(job, "refined", runs, screened_inputs(job)).save(job.folder / "refined.json")
+    _fit(job, "refined", runs, screened_inputs(job)).save(job.folder / REFINED_FILE)
 
 
 def screened_inputs(job: Job) -> tuple[str, ...]:
     from lithobrake.chaos import load
 
-    return kept_inputs(job.study, load(job.folder / "screening.json"))
+    return kept_inputs(job.study, load(job.folder / SCREENING_FILE))
 
 
 def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surrogate":
@@ -121,12 +122,12 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
 def score_all(job: Job) -> None:
     from lithobrake.chaos import load
 
-    screening, refined = load(job.folder / "screening.json"), load(job.folder / "refined.json")
+    screening, refined = load(job.folder / SCREENING_FILE), load(job.folder / REFINED_FILE)
     runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
     job.progress(0, 1, "scores with their intervals")
     scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in PAPER_DESIGNS}
     scores["test_screening"] = _score(screening, runs["test_all"])
-    job.folder.write_json("scores.json", scores)
+    job.folder.write_json(SCORES_FILE, scores)
 
 
 def _score(surrogate: "Surrogate", design: DesignRuns) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from lithobrake.pipeline.answer.run_answers import place_regions, scope
 from lithobrake.pipeline.answer.run_estimates import SPLIT
 from lithobrake.pipeline.answer.study_summary import bed_results, outputs_of_runs, write_summary_file
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.flights import QUANTILES, read_table
+from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansions import kept_inputs, replicate_count
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -41,22 +41,23 @@ from lithobrake.results.run_results import ReturnFraction, SampleShares
 from lithobrake.results.summary import PaperResults
 from lithobrake.results.telling_numbers import MainInput, TellingNumbers
 from lithobrake.study import Study
+from lithobrake.vocabulary.constants import CENTIMETRES
+from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.percentages import QUANTILES, percent
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
+from lithobrake.vocabulary.study_files import REFINED_FILE, SAMPLE_FLIGHTS_FILE, SCORES_FILE, SCREENING_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate
 
-CENTIMETRES = 100.0
-
 
 def answer(study: Study, results: PaperResults) -> list[str]:
     """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    outcomes, site, hours = results.shares.outcomes, results.site, f"{study.flight.duration / 3600:.3g} h"
-    again = f"impact the surface again within {hours}"
+    outcomes, site, limit = results.shares.outcomes, results.site, hours(study.flight.duration)
+    again = f"impact the surface again within {limit}"
     down = f"are captured or {again}" if site.holds else again
-    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {hours}"}
+    ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {limit}"}
     if outcomes[FlightStatus.PARTNER].count:
         ways[FlightStatus.PARTNER] = "impact the partner"
     beside = [f"{percent(outcomes[status].share, 1)} {words}" for status, words in ways.items()]
@@ -99,7 +100,7 @@ def _speed(study: Study, speed: Mapping[str, float] | None) -> list[str]:
     """The rebound speed of the samples that leave."""
     if not speed:
         return []
-    low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in (0.05, 0.5, 0.95))
+    low, middle, high = (CENTIMETRES * speed[f"quantile_{level:g}"] for level in QUANTILES)
     of = "with run-to-run scatter" if study.monte_carlo.scatter else "by the expansion alone, without scatter"
     return [
         f"Rebound speed of the samples that leave the surface, {of}: median {middle:.3g} cm/s; 5th to 95th percentile "
@@ -156,12 +157,12 @@ def _results(job: Job, runs: dict[str, DesignRuns], distinct: DesignRuns) -> Pap
     """What came out, without sentences."""
     from lithobrake.chaos import load
 
-    study, screening, refined = job.study, load(job.folder / "screening.json"), load(job.folder / "refined.json")
+    study, screening, refined = job.study, load(job.folder / SCREENING_FILE), load(job.folder / REFINED_FILE)
     ended = Counter(outcome for outcome in distinct.outcomes if outcome in list(TouchdownOutcome))
     samples, kept, flights = (
         Samples.load(job.folder),
         kept_inputs(study, screening),
-        read_table(job.folder, "flights.csv"),
+        read_table(job.folder, SAMPLE_FLIGHTS_FILE),
     )
     holds = job.site.holds
     table = replace(limited_shares(samples, flights, ended, holds=holds), why=scope(study).why)
@@ -183,7 +184,7 @@ def _results(job: Job, runs: dict[str, DesignRuns], distinct: DesignRuns) -> Pap
         shares=table,
         returns=return_fraction(study, table, sum(ended.values())),
         flights=FlightResults(impact_numbers(flights), flight_checks(job)),
-        ellipses=ellipses(study, flights, FlightStatus.IMPACT),
+        ellipses=ellipses(job.site, flights, FlightStatus.IMPACT),
         regions=place_regions(site, flights, FlightStatus.IMPACT),
         without_scatter=_without_scatter(job, samples, ended, holds=holds),
         rest=rest_results(job),
@@ -214,7 +215,7 @@ def _without_scatter(
         return None
     flights = read_table(job.folder, "flights_without_scatter.csv")
     found = limited_shares(samples.expansion_alone(), flights, run_outcomes, holds=holds)
-    return WithoutScatter(found, impact_numbers(flights), ellipses(job.study, flights, FlightStatus.IMPACT))
+    return WithoutScatter(found, impact_numbers(flights), ellipses(job.site, flights, FlightStatus.IMPACT))
 
 
 def return_fraction(study: Study, table: SampleShares, run_count: int) -> ReturnFraction:
@@ -241,7 +242,7 @@ def _scores(job: Job) -> dict[str, dict[str, OutputErrors]]:
             output: replace(from_json(OutputErrors, score, f"{stage}.{output}"), ape=None)
             for output, score in table.items()
         }
-        for stage, table in job.folder.read_json("scores.json").items()
+        for stage, table in job.folder.read_json(SCORES_FILE).items()
     }
 
 

@@ -15,6 +15,7 @@ from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study.touchdown_model import draw, lander, landing
 from lithobrake.vocabulary.quantities import PAPER_DESIGNS
+from lithobrake.vocabulary.study_files import SCREENING_FILE
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull
@@ -62,7 +63,7 @@ def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known
     if screened:
         from lithobrake.chaos import load
 
-        choices = [kept_inputs(study, load(folder / "screening.json"))]
+        choices = [kept_inputs(study, load(folder / SCREENING_FILE))]
     else:
         choices = [inputs[:1], inputs] if len(inputs) > 1 else [inputs]
     ended = set(known)

@@ -32,7 +32,7 @@ TOUCHDOWNS = 4  # of a journey
 REPORT_BYTES = 7_500_000  # page and figures, with expansions, scores and summary
 
 
-def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
+def expected_bytes(design: DrawnDesign, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
     """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
     study = design.study
     samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
@@ -41,7 +41,7 @@ def expected_bytes(design: DrawnDesign, site: Site, runs: PlannedRuns, soil: Exp
     found = {
         "runs": LEDGER_RUN * runs.total * (1 if study.journey is None else TOUCHDOWNS),
         "samples": 0 if study.journey is not None else samples.sample_count * row,
-        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(site.body.shape.faces),
+        "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(design.site.body.shape.faces),
         "report": REPORT_BYTES,
     }
     if soil is not None:

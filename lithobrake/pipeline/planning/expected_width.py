@@ -18,7 +18,7 @@ from lithobrake.pipeline.planning.study_warnings import expected_loss
 from lithobrake.pipeline.sequential_sampling import flown_shares
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
-from lithobrake.study.ground_sections import FEWEST_BEDS
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
 
 if TYPE_CHECKING:
     from lithobrake.analysis.half_width import RunLaw
@@ -218,8 +218,8 @@ class RunsABed:
             judged = f"takes {100 * self.over_best:.0f} % more time for the same interval; bed.bed_count changes it"
         return (
             f"{more.capitalize()} on each bed: {self.count:.3g}. A bed takes the time of about {cost}, so about "
-            f"{max(round(self.best), 1)} on each, on at least {FEWEST_BEDS} beds, give the narrowest interval for the "
-            f"time (correlation of two on one bed {self.correlation:g}); {self.count:.3g} {judged}."
+            f"{max(round(self.best), 1)} on each, on at least {FEWEST_BEDS_OF_INTERVAL} beds, give the narrowest "
+            f"interval for the time (correlation of two on one bed {self.correlation:g}); {self.count:.3g} {judged}."
         )
 
 
@@ -239,6 +239,6 @@ def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record])
     # A span reaches as many times below its middle as above it.
     run_count, cost = study.design.run_count, pace * pour_time(soil) / math.sqrt(math.prod(span))
     count, correlation = run_count / study.bed_count, expected_correlation(study)
-    best = min(best_runs_a_bed(cost, correlation), max(run_count / FEWEST_BEDS, 1.0))
+    best = min(best_runs_a_bed(cost, correlation), max(run_count / FEWEST_BEDS_OF_INTERVAL, 1.0))
     over_best = cost_over_best(count, best, cost, correlation) - 1.0
     return RunsABed(runs, count, cost, best, over_best, correlation)

@@ -16,6 +16,7 @@ from lithobrake.pipeline.planning.planned_ground import (
     PlannedSoils,
     PlannedTile,
 )
+from lithobrake.vocabulary.durations import in_suitable_unit
 
 
 @dataclass(frozen=True)
@@ -181,17 +182,10 @@ def _time(plan: Plan) -> str:
 
 
 def _seconds(lower: float, upper: float) -> str:
-    (first, unit), (last, other) = (_in_unit(seconds) for seconds in (lower, upper))
+    (first, unit), (last, other) = (in_suitable_unit(seconds, most=100.0) for seconds in (lower, upper))
     if unit == other:
         return f"{_range(first, last)} {unit}"
     return f"{_rounded(first)} {unit} to {_rounded(last)} {other}"
-
-
-def _in_unit(seconds: float) -> tuple[float, str]:
-    for limit, unit, size in ((100.0, "s", 1.0), (6000.0, "min", 60.0), (172_800.0, "h", 3600.0)):
-        if seconds < limit:
-            return seconds / size, unit
-    return seconds / 86_400.0, "days"
 
 
 def bytes_in_words(count: float) -> str:

@@ -18,7 +18,7 @@ from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_the_study
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN, percent
 from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
 
@@ -135,10 +135,6 @@ def planned_grains(study: Study) -> PlannedGrains | None:
     large = float(sizes.draw(np.array([1.0 - LARGE_FRACTION]))[0])
     count = study.bed.grain_count / math.prod(study.bed.width)
     return PlannedGrains(sizes.lower, sizes.upper, sizes.mean_diameter, large, count)
-
-
-# Of the touchdowns: those between which nine in ten lie, and those with a smaller slope.
-LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
 
 
 @dataclass(frozen=True)

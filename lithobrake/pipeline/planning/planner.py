@@ -34,7 +34,7 @@ from lithobrake.pipeline.planning.planned_ground import (
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import stages_of
 from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
@@ -55,8 +55,9 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     source = StudySource.read(path)
     study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
-    Soils(Site(study)).refuse(source.name)
-    plan = plan_of(grown(DrawnDesign(study), folder), Site(study), study.title or path.stem, folder, worker_count)
+    design = DrawnDesign(study)
+    Soils(design.site).refuse(source.name)
+    plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
 
 
@@ -77,7 +78,7 @@ def _delivery(design: DrawnDesign) -> str | None:
 
 
 def plan_of(
-    design: DrawnDesign, site: Site, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
+    design: DrawnDesign, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
 ) -> Plan:
     study, keys = design.study, stage_keys(design.study)
     old = [one for one in stages_of(study) if not folder.is_current(one.files(study), keys[one.name])]
@@ -91,7 +92,7 @@ def plan_of(
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
-    sizes, free = expected_bytes(largest, site, runs[-1], soil), _free(folder.path)
+    sizes, free = expected_bytes(largest, runs[-1], soil), _free(folder.path)
     room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
@@ -102,18 +103,18 @@ def plan_of(
         runs=runs,
         half_width=expected_width(design, known, folder, soil),
         process_count=workers,
-        seconds=expected_seconds(site, made, soil, ended, workers) if stale else {},
+        seconds=expected_seconds(design.site, made, soil, ended, workers) if stale else {},
         basis=basis(made, soil, ended),
         bytes=sizes,
         free_bytes=free,
-        warnings=(*room, *study_warnings(design, site, soil)),
-        site_slope_deg=site.slope_deg,
+        warnings=(*room, *study_warnings(design, soil)),
+        site_slope_deg=design.site.slope_deg,
         runs_a_bed=runs_a_bed(study, soil, ended),
         grains=planned_grains(study),
         boulders=planned_boulders(study),
         tile=planned_tile(study),
         ground=planned_ground(design),
-        soils=planned_soils(site),
+        soils=planned_soils(design.site),
         delivery=_delivery(design),
     )
 

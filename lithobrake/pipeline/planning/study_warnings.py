@@ -10,11 +10,11 @@ from lithobrake.pipeline.design.arrivals import smallest_width
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
-from lithobrake.study.ground_sections import FEWEST_BEDS
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
+from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.material import SHARED_PROPERTIES
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
@@ -27,12 +27,11 @@ FEW_REACH = 0.5
 WIDE = 100.0
 # Fewer runs a term than this, and a least-squares fit follows single runs.
 RUNS_A_TERM = 1.5
-# Properties of a contact that the rule "smaller" takes from one of its two materials.
-SHARED = ("restitution", "friction", "rolling_friction", "spinning_friction", "cohesion_force", "surface_energy")
 
 
-def study_warnings(design: DrawnDesign, site: Site, soil: ExpectedSoil | None) -> list[str]:
-    study, ground = design.study, [warning for warning in (site.warning, site.gravity_warning) if warning]
+def study_warnings(design: DrawnDesign, soil: ExpectedSoil | None) -> list[str]:
+    study, site = design.study, design.site
+    ground = [warning for warning in (site.warning, site.gravity_warning) if warning]
     touchdown = (
         [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
     )
@@ -130,7 +129,7 @@ def _never_count(study: Study) -> Iterator[str]:
     """Properties of the lander and its parts that no contact takes."""
     values = study.touchdown_values() if study.contact.pair_rule == "smaller" else {}
     tables = ("lander", *(f"lander.part.{part}" for part in study.lander.part))
-    for table, name in product(tables, SHARED):
+    for table, name in product(tables, SHARED_PROPERTIES):
         own, rock = values.get(f"{table}.{name}"), values.get(f"grain.{name}")
         if own is not None and rock is not None and own != rock and _reach(own)[0] >= _reach(rock)[1]:
             yield (
@@ -187,21 +186,22 @@ def _bounces(study: Study) -> Iterator[str]:
 
 def _few_beds(study: Study) -> Iterator[str]:
     """Beds that give no interval, or a wide one."""
-    if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS:
+    if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS_OF_INTERVAL:
         return
     from lithobrake.analysis.confidence import t_quantile
 
     if study.bed_count == 1:
         yield (
             "All runs land on one bed, and another bed would change the result: no number of this study will have an "
-            f"interval; set bed.bed_count to {FEWEST_BEDS} or more, or leave it out."
+            f"interval; set bed.bed_count to {FEWEST_BEDS_OF_INTERVAL} or more, or leave it out."
         )
         return
-    wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS - 1) - 1.0)
+    wider = 100.0 * (t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0)
+    enough = FEWEST_BEDS_OF_INTERVAL
     remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
     yield (
         f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
-        f"{wider:.0f} % wider than {FEWEST_BEDS} would, by Student's t alone; {remedy} to {FEWEST_BEDS} or more."
+        f"{wider:.0f} % wider than {enough} would, by Student's t alone; {remedy} to {enough} or more."
     )
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
+from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import (
     acceleration,
@@ -25,6 +25,7 @@ from lithobrake.study.touchdown_model import (
     medians,
     refuse_other_code,
 )
+from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe
@@ -75,7 +76,7 @@ def fly_briefly(study: Study) -> None:
     """Fly one lander from the site of a study for a second, and have another slide there; makes the gravity table."""
     from lithobrake.smallbody import HardSurface, Launch, hop
 
-    site = Site(study)
+    site = DrawnDesign(study).site
     origin, axes = site.frames(site.columns(2))
     launch = Launch(origin, np.outer([1.0, 0.0], axes[0, 2]), captured=[False, True])
     # No bounce: what happens at an impact is nothing that is compiled.
@@ -120,7 +121,7 @@ def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None
 
 
 def pour_one(
-    recipe: "BedRecipe", path: Path, engine: str, tell: Callable[[float, str], None] | None = None
+    recipe: "BedRecipe", path: Path, engine: str, tell: Progress = silent
 ) -> None:  # fmt: skip
     """Write the bed of a recipe to a file, in this process; engine: hash of the code of the coordinator.
 

@@ -12,7 +12,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander, stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import SPIN
+from lithobrake.vocabulary.quantities import IMPACT_SPEED, SPIN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,12 +61,12 @@ def energy_bound(
     spin = sum(known[name] ** 2 for name in SPIN)
     slope, gravity = np.sin(np.radians(known["surface.slope_deg"])), np.abs(known["surface.gravity"])
     # Gravity that points outwards lifts a lander as far as the other makes it fall.
-    fallen = farthest(design.study, known["impact.speed"], gravity * slope) if across is None else across
+    fallen = farthest(design.study, known[IMPACT_SPEED], gravity * slope) if across is None else across
     gained = gravity * (bed_height + fallen * slope)
     smallest, largest = gyrations(design, known)
     # The spin before counts about the stiffest axis and the spin after about the easiest, so that the bound holds for
     # every attitude.
-    return EnergyBound(np.sqrt(known["impact.speed"] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
+    return EnergyBound(np.sqrt(known[IMPACT_SPEED] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
 def farthest(
@@ -90,7 +90,7 @@ def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
     has_inertia, is_sphere = study.lander.inertia is not None, _is_sphere(study)
-    names = ("impact.speed", *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
+    names = (IMPACT_SPEED, *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
         "height": bed_height,
         "across": float(farthest(study, 0.0, 0.0)),

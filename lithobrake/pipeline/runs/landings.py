@@ -48,6 +48,7 @@ from lithobrake.study.touchdown_model import (
 )
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.study_files import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 
 
 def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[str, float]]:
@@ -62,7 +63,7 @@ def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[
 
 
 def touchdowns(
-    job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int, ledger_file: str = "runs.sqlite"
+    job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int, ledger_file: str = RUNS_FILE
 ) -> Runs:  # fmt: skip
     """Make the touchdowns with these inputs; those that the ledger has are read from it."""
     study = job.study
@@ -123,7 +124,7 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
 
     Raises ValueError for a file that is no ledger.
     """
-    path = folder / "runs.sqlite"
+    path = folder / RUNS_FILE
     records = read_records(path) if path.is_file() else []
     tries = study.campaign.retry_count
     return {
@@ -179,7 +180,7 @@ def account(job: Job, design: str, runs: Runs, inputs: Sequence[str]) -> None:
 
 
 SNAPSHOT_FRAMES = 120
-FIRST, TELLING = "landing.h5", "telling_landing.h5"
+FIRST, TELLING = LANDING_FILE, TELLING_LANDING_FILE
 
 
 def landing_files(study: Study) -> list[str]:

@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from lithobrake.report.figures.ground_map import SITE_STYLE, density_colours, mark_site
@@ -23,11 +22,11 @@ from lithobrake.report.figures.map_frames import degrees, draw_bar
 from lithobrake.report.figures.style import INK, QUIET, RULE, SITE, TRAINING
 from lithobrake.results.run_results import ShareInterval
 from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteMap
+from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus
 from lithobrake.vocabulary.percentages import percent
 
-Array = NDArray[np.float64]
-Facets = NDArray[np.int64]
 # Impacts are counted within this share of the body's radius, or on a facet alone where facets are larger.
 REACH = 0.1
 HECTARE = 1e4
@@ -37,7 +36,7 @@ COLOURS = density_colours(FATE_COLOURS[FlightStatus.IMPACT])
 LIGHT = np.array([-0.5, 0.6, 0.62])
 
 
-def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> Figure:
+def body_figure(vertices: Array, faces: Integers, facet: Integers, site: Array) -> Figure:
     """Draw the body from above the site, from the other side, and along its axis.
 
     vertices [m], shape [vertex, 3]; faces [face, 3], counter-clockwise from outside; facet: the one that each impact
@@ -77,7 +76,7 @@ def body_figure(vertices: Array, faces: Facets, facet: Facets, site: Array) -> F
     return figure
 
 
-def facet_density(corners: Array, facet: Facets) -> Array:
+def facet_density(corners: Array, facet: Integers) -> Array:
     """Impacts per area [1/ha] of each facet and what lies around it, shape [face].
 
     corners [m], shape [face, 3, 3]; facet: the one that each impact hit, [impact].
@@ -115,7 +114,6 @@ def _paint(axes: Axes, corners: Array, density: Array, norm: LogNorm, camera: Ca
     axes.add_collection(PolyCollection(stack, facecolors=colours, edgecolors=colours, linewidths=0.3, rasterized=True))
 
 
-HOUR = 3600.0
 COLUMNS = 2
 # Points on each side of a site, which the projection bends.
 SIDE = 12

@@ -19,8 +19,7 @@ from lithobrake.report.figures.ground_map import density_colours
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
 from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label, output
 from lithobrake.report.words.numbers import number
-
-Counts = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array
 
 # Two sizes, so that two equal designs are both seen.
 MARKERS = (("o", 11.0), ("D", 6.0))
@@ -41,7 +40,7 @@ class Design:
 
 
 def count_figure(
-    input_counts: Sequence[int], levels: Sequence[int], tensor: Counts, smolyak: Counts, designs: Sequence[Design]
+    input_counts: Sequence[int], levels: Sequence[int], tensor: Array, smolyak: Array, designs: Sequence[Design]
 ) -> Figure:
     """Draw node counts, shape [input count, level], against the number of inputs (left) and the level (right)."""
     figure = Figure(figsize=(9.2, 3.7))
@@ -72,7 +71,7 @@ def count_figure(
     return figure
 
 
-def _name_curves(axes: Axes, x: float, ends: Counts, words: Sequence[str], shades: NDArray[np.float64]) -> None:
+def _name_curves(axes: Axes, x: float, ends: Array, words: Sequence[str], shades: NDArray[np.float64]) -> None:
     """Name curves at their right ends, from the highest down; one too close below a name stays without."""
     places = (axes.transData + axes.transAxes.inverted()).transform([(x, end) for end in ends])[:, 1]
     free = np.inf
@@ -110,9 +109,6 @@ def _legend(figure: Figure, designs: Sequence[Design]) -> None:
         words = f"{design.name}: {design.input_count} input{plural}, {place}, {design.node_count} runs"
         handles.append(Line2D([], [], marker=marker, markersize=size, linestyle="none", label=words, **RING))
     figure.legend(handles=handles, loc="lower center", ncols=4, columnspacing=1.6)
-
-
-Array = NDArray[np.float64]
 
 
 def sobol_figure(

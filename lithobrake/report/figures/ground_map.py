@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK
 from lithobrake.results.dispersion import RestRegion
+from lithobrake.vocabulary.arrays import Array
 
-Array = NDArray[np.float64]
 # Lines of the graticule: so many points each, and round steps between them [deg].
 LINE_POINTS = 361
 STEPS_DEG = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0)

@@ -14,8 +14,7 @@ from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.report.figures.style import GRAIN, LANDER, shade
 from lithobrake.results import MovingBodies
 from lithobrake.results.motions import with_images
-
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.arrays import Array, Integers
 
 # Directions as the viewer has them: to the right, towards the viewer, up. The sun stands at the upper left, whatever
 # the camera's azimuth; a weak light from the lower right keeps the form of what the sun does not reach.
@@ -80,8 +79,6 @@ def sunlight(centres: Array, owners: NDArray[np.int64], position: Array, radius:
     return light
 
 
-Triangles = NDArray[np.int64]
-
 # A body this many times larger than the middle one is cut up before it is painted.
 LARGE = 1.5
 
@@ -93,7 +90,7 @@ class Hull:
     """
 
     vertices: Array
-    faces: Triangles
+    faces: Integers
     colour: str
 
 

@@ -7,15 +7,13 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from lithobrake.report.figures.hulls import Camera, Scene, draw_box, frame_axes, paint, scene
 from lithobrake.report.figures.map_frames import SIZE, track_map
 from lithobrake.report.figures.style import GRAIN, INK, LANDER, QUIET, SITE, figure_style
 from lithobrake.results import JourneyMotion
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.plain_text import wrapped
-
-Array = NDArray[np.float64]
 
 
 def instants(lander_height: Array, count: int = 6) -> list[int]:

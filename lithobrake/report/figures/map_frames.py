@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.patheffects import Normal, Stroke
-from numpy.typing import NDArray
 
 from lithobrake.report.figures.ground_map import (
     LINE_POINTS,
@@ -22,9 +21,9 @@ from lithobrake.report.figures.ground_map import (
 )
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE, WASH
 from lithobrake.results import JourneyTrack
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import END_COLOURS
 
-Array = NDArray[np.float64]
 # The bar of lengths is at most this part of the width.
 LONGEST_BAR = 0.3
 RIM = [Stroke(linewidth=2.2, foreground="white"), Normal()]

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import read_json
 from lithobrake.report.figures.style import INK, INTERACTIONS, LANDER, QUIET, TEST, TEST_ALL, TRAINING, figure_style
-from lithobrake.report.words.captions import band_luck, luck, unlucky
+from lithobrake.report.words.captions import BAND, band_luck, luck, unlucky
 from lithobrake.report.words.labels import PAPER_OUTPUTS, Output, input_label, output
 from lithobrake.report.words.numbers import number, q2_words
 from lithobrake.results.model_results import OutputErrors, OutputScore
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.percentages import percent
 
 LUCK = "#e3e7eb"
 
@@ -61,8 +63,8 @@ def _bands(axes: Axes, scores: Mapping[str, OutputScore]) -> None:
         axes.plot(held, row, "o", color=colour, markersize=6, zorder=3)
         words = f"{shown.symbol or shown.words}: {100 * held:.0f} %"
         axes.text(0.0, row - 0.36, words, transform=axes.get_yaxis_transform(), fontsize=8.5)
-    axes.axvline(0.9, color=QUIET, linewidth=0.9, zorder=1)
-    axes.set_title("in the 90 % band")
+    axes.axvline(BAND, color=QUIET, linewidth=0.9, zorder=1)
+    axes.set_title(f"in the {percent(BAND)} band")
     lowest = min([0.75, *(score.band_90 - 0.05 for score in scores.values())])
     axes.set_xlim(lowest, 1.0)
     axes.set_ylim(len(scores) - 0.4, -0.7)
@@ -164,7 +166,6 @@ def _label(axes: Axes, labels: list[str], row: int, column: int, *, is_last: boo
         axes.tick_params(axis="y", labelleft=False)
 
 
-Array = NDArray[np.float64]
 ErrorsByOutput = Mapping[str, OutputErrors]
 
 # Words and lines need more contrast with white than bars do.

@@ -15,10 +15,10 @@ from lithobrake.report.figures.style import INK, INPUT_COLOURS, LANDER, QUIET, R
 from lithobrake.report.words.labels import input_label
 from lithobrake.results.questions import AimResult, AimResults, RareLimitState
 from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.vocabulary.constants import HOUR
 
 # A number and its bounds.
 Reading = tuple[float, float | None, float | None]
-HOUR = 3600.0
 # One for all maps; colours darker than this part of their scale have white figures.
 COLOURS, DARK = "Blues", 0.55
 

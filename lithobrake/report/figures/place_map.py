@@ -34,9 +34,9 @@ from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_loc
 from lithobrake.report.figures.share_figures import Share, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.percentages import percent
 
-Array = NDArray[np.float64]
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
 WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17
 # Of the halves of the body beside the outcomes: their height [inch].

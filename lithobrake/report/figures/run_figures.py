@@ -15,16 +15,14 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
 from lithobrake.report.words.labels import input_label, long_part_words, output, part_words
 from lithobrake.results.run_results import VarianceParts
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
-
-Array = NDArray[np.float64]
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, percent
 
 # In inches: a bed's row, and what stands above and below the rows.
 BED_HEIGHT, MARGINS = 0.115, 1.07
 DOT: dict[str, Any] = {"s": 13.0, "color": TRAINING, "alpha": 0.75, "linewidths": 0, "zorder": 3}
 RING: dict[str, Any] = {"s": 34.0, "facecolors": "none", "edgecolors": SITE, "linewidths": 1.1, "zorder": 4}
-WORDS_OF_QUANTILES = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def runs_figure(landings: LandingsOfRuns, quantiles: Mapping[str, Mapping[str, f
     for level, value in speed.items():
         for axes in (left, right):
             axes.axvline(value, **_line(level))
-        label = WORDS_OF_QUANTILES.get(level, level)
+        label = QUANTILE_WORDS.get(level, level)
         left.annotate(label, (value, 1.0), (0, 2), **_at(left.get_xaxis_transform()), ha="center", fontsize=7)
     largest = 1.06 * float(np.max(landings.speed, where=landings.has_speed, initial=0.0)) or 1.0
     left.set_xlim(0.0, largest)
@@ -94,7 +92,7 @@ def draw_rebounds(axes: Axes, landings: LandingsOfRuns, quantiles: Mapping[str, 
     axes.scatter(landings.speed[rim], elevation[rim], **RING)
     for level, value in quantiles.get("elevation_out", {}).items():
         axes.axhline(shown.factor * value, **_line(level))
-        label = WORDS_OF_QUANTILES.get(level, level)
+        label = QUANTILE_WORDS.get(level, level)
         place = (1.0, shown.factor * value)
         axes.annotate(label, place, (3, 0), **_at(axes.get_yaxis_transform()), va="center", fontsize=7)
     axes.set_xlabel(output("speed_out").label)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, QUIET, TRAINING
 from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 
@@ -67,7 +68,6 @@ def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-Array = NDArray[np.float64]
 # With a largest value of so many medians an axis is one of equal factors.
 LONG_TAIL = 30.0
 # More whole numbers than these are counted in classes.

@@ -5,18 +5,17 @@ from typing import Any
 
 import numpy as np
 from matplotlib.colors import LogNorm, to_hex, to_rgb
-from numpy.typing import NDArray
 
 from lithobrake.report.content import LiveSection
 from lithobrake.report.figures.body_figures import BARE, COLOURS, colour_ends, facet_density
 from lithobrake.report.figures.style import INK, LANDER, QUIET
 from lithobrake.report.live.views import geometry, orbit, section, still
 from lithobrake.report.page_data import JourneyPage, PageData, SampledPage
-from lithobrake.report.words.captions import BODIES
 from lithobrake.report.words.numbers import number
+from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd
 
-Array = NDArray[np.float64]
 # Over the radius of the body: a pin, the marker of a lander, the ends of the axis and of the line to the partner.
 PIN, MARKER, AXIS, FAR = 0.04, 0.03, 1.3, 1.55
 MARK = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=float)
@@ -120,7 +119,8 @@ def _around(data: PageData, radius: float) -> tuple[dict[str, np.ndarray], list[
         ray = np.array([np.cos(np.radians(longitude)), np.sin(np.radians(longitude)), 0.0])
         lines += [tuple(radius * ray), tuple(FAR * radius * ray)]
         site = data.results.site
-        name = BODIES.get(str(site.partner), str(site.partner))
+        known = BUILT_IN_BODIES.get(str(site.partner))
+        name = known.name if known else str(site.partner)
         words = f"{name}, {number((site.partner_distance_m or 0.0) / 1e3)} km"
         labels.append(_label(f"to {words}", (1.03 * FAR * radius * ray).tolist()))
     return still("grid", lines, 0.0, QUIET) | _ring(place), labels
@@ -150,8 +150,9 @@ def _partner_longitude(data: PageData) -> float | None:
         return site.kernels.partner_longitude_deg
     if isinstance(given, int | float):
         return float(given)
-    # Dimorphos turns once an orbit, and has Didymos over its longitude 0.
-    return 0.0 if data.study["site"]["body"] == "dimorphos" and given is None else None
+    # A body that turns once an orbit, as Dimorphos does, has its partner over its longitude 0.
+    known = BUILT_IN_BODIES.get(data.study["site"]["body"])
+    return 0.0 if known is not None and known.is_synchronous and given is None else None
 
 
 def _ways(data: PageData) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:

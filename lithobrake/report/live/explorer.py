@@ -17,7 +17,7 @@ from lithobrake.report.words.numbers import in_html, number, raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import GROUND
+from lithobrake.vocabulary.quantities import GROUND, IMPACT_INCIDENCE, IMPACT_SPEED
 
 TYPES = ("float64", "float32", "int32", "int16", "uint8")
 
@@ -201,8 +201,7 @@ def _flown(flights: Table) -> dict[str, np.ndarray]:
 
 
 # What differs from touchdown to touchdown, in the order in which the page says it; the first one by its logarithm.
-SPEED = "impact.speed"
-OF_TOUCHDOWN = (SPEED, "impact.incidence_deg", *GROUND[:2])
+OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *GROUND[:2])
 
 
 def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
@@ -246,13 +245,13 @@ def _range(fitted: Table, name: str) -> str:
 
 def _law(explorer: ExplorerTables) -> str:
     """What the inputs are drawn from, and what no slider moves."""
-    even = listing([input_words(name) for name in OF_TOUCHDOWN if name != SPEED])
+    even = listing([input_words(name) for name in OF_TOUCHDOWN if name != IMPACT_SPEED])
     attitude = "Attitudes are uniform over all rotations, or have one side toward the ground; s"
     attitude = attitude if explorer.attitude else "S"
     named = {*OF_TOUCHDOWN, *explorer.attitude_inputs}
     others = "Soil and lander follow their input distributions; " if set(explorer.input_names) - named else ""
     words = (
-        f"{others}the logarithm of {input_words(SPEED)}, {even} are uniform over their ranges, independently of the "
-        f"number of touchdowns there. {attitude}pin and bed are part of the scatter."
+        f"{others}the logarithm of {input_words(IMPACT_SPEED)}, {even} are uniform over their ranges, independently "
+        f"of the number of touchdowns there. {attitude}pin and bed are part of the scatter."
     )
     return f"{words[:1].upper()}{words[1:]}"

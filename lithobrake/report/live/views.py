@@ -16,8 +16,8 @@ from lithobrake.report.figures.style import RULE
 from lithobrake.report.live.explorer import deflated, script_data
 from lithobrake.report.page_data import PageData
 from lithobrake.report.words.numbers import in_html, number
+from lithobrake.vocabulary.arrays import Array
 
-Array = NDArray[np.float64]
 SCRIPTS = ("live/overlay.js", "live/view3d.js", "live/moving.js", "live/ways.js", "live/start3d.js")
 FLOOR = "#e9e4da"
 # Half of the range of a signed number of 16 bits.

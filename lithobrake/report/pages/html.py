@@ -11,6 +11,7 @@ from urllib.parse import quote
 from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Tile
 from lithobrake.report.words.numbers import in_html
 from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS
+from lithobrake.vocabulary.study_files import CONTENTS
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15
@@ -31,15 +32,7 @@ def page(title: str, facts: str, content: Content, panels: Mapping[str, Panel], 
     shown = [(section, inside) for section, inside in shown if inside]
     live = [one for section, _ in shown for one in section.live]
     scripts = dict.fromkeys([SCRIPT, *(name for one in live for name in one.scripts)])
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(title)}</title>
-<style>
-{own_file("pages/style.css")}</style>
-</head>
+    return f"""{page_head(title)}
 <body>
 {_contents([section for section, _ in shown])}
 <main>
@@ -51,6 +44,19 @@ def page(title: str, facts: str, content: Content, panels: Mapping[str, Panel], 
 </body>
 </html>
 """
+
+
+def page_head(title: str) -> str:
+    """What every page begins with, up to its body."""
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(title)}</title>
+<style>
+{own_file("pages/style.css")}</style>
+</head>"""
 
 
 def own_file(name: str) -> str:
@@ -186,45 +192,6 @@ def _folding(title: str, length: int, unit: str, content: str) -> str:
     count = f" <small>{length} {unit}</small>" if is_long else ""
     opening = "<details>" if is_long else "<details open>"
     return f"{opening}<summary><h3>{escape(title)}{count}</h3></summary>{content}</details>\n"
-
-
-CONTENTS = {
-    "study.toml": "the study file",
-    "summary.json": "every number of this page, with its unit",
-    "runs.sqlite": "every touchdown: inputs, outcome, outputs, seed, times",
-    "beds/bed_*.h5": "a settled bed: shapes, poses and motion",
-    "designs/drawn.csv": "the drawn landings: inputs and outputs",
-    "designs/soil_pairs.csv": "drawn landings repeated on a second soil",
-    "designs/twins.csv": "drawn landings repeated at a slightly shifted impact point",
-    "run_flights.csv": "how the flights of each run ended, from many sites",
-    "run_impacts.csv": "time, speed and incidence of the impacts that end these flights",
-    "estimates.json": "estimates from the runs, with intervals",
-    "landing.h5": "the preview landing: shapes, poses and motion",
-    "telling_landing.h5": "the landing of this page: the run with the median rebound speed",
-    "emulator.json": "the emulator (lithobrake.emulator.load reads it)",
-    "explorer.h5": "refits of the emulator or the expansion, for the explorer of this page",
-    "screening.json": "the expansion in all inputs",
-    "refined.json": "the expansion in the kept inputs",
-    "scores.json": "the errors of the expansions, run by run",
-    "samples.h5": "the Monte Carlo: inputs and outputs of every sample",
-    "flights.csv": "the flight of each sample that leaves the surface",
-    "flights_without_scatter.csv": "the same flights without run-to-run scatter",
-    "flights.json": "accuracy of the flights",
-    "flight_paths.h5": "paths of the first flights, as the page shows them about the body",
-    "journeys.csv": "every journey: end, time, place, distance, contacts, side down",
-    "touchdowns.csv": "every landing of the journeys: its number, key, outcome, time and place",
-    "designs/touchdowns.csv": "the same landings: inputs and outputs",
-    "touchdown_emulator.json": "the emulator of all touchdowns of the journeys (lithobrake.emulator.load reads it)",
-    "touchdown_explorer.h5": "refits of that emulator, for the explorer of this page",
-    "emulated.csv": "journeys by the emulator of the touchdowns, and how they ended",
-    "rest.csv": "the journey of each lander that was followed from bounce to bounce",
-    "arcs.csv": "each flight between impacts: state at the beginning, time of the end",
-    "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
-    "rest.json": "which ground was followed, and the range of the runs",
-    "rare_*.json": "a rare limit state: its probability and the levels of its subset simulation",
-    "aim.csv": "the landers at every delivery option, and how they ended",
-    "body.obj": "the shape of the body that the flights used",
-}
 
 
 def data_files(folder: Path) -> PageTable:

@@ -21,7 +21,7 @@ from lithobrake.report.live.explorer import deflated, script_data, touchdown_sec
 from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_views, landing_words
 from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.pages.drawn_page import landing_plots
-from lithobrake.report.pages.html import own_file
+from lithobrake.report.pages.html import own_file, page_head
 from lithobrake.report.pages.shared_plots import draw_bed
 from lithobrake.report.tables import drawn_tables
 from lithobrake.report.tables import journey_tables as tables
@@ -206,15 +206,7 @@ def one_journey_page(motion: JourneyMotion) -> str:
     shown = list(zip(track.touchdowns, motion.bodies, strict=False))
     title = f"Journey {track.number}"
     scripts = "".join(own_file(name) for name in ("pages/page.js", *SCRIPTS, "live/touchdowns.js"))
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>
-{own_file("pages/style.css")}</style>
-</head>
+    return f"""{page_head(title)}
 <body><main>
 <header>
 <p class="kind">One lander</p>

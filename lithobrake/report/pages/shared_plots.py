@@ -23,9 +23,10 @@ from lithobrake.report.live.body_view import body_views
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
 from lithobrake.report.words import captions
-from lithobrake.report.words.captions import hours, thousands
+from lithobrake.report.words.captions import thousands
 from lithobrake.report.words.labels import PAPER_OUTPUTS
 from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus, JourneyStatus, TouchdownOutcome
 
 if TYPE_CHECKING:

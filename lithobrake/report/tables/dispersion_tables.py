@@ -5,14 +5,15 @@ from typing import Any
 
 from lithobrake.report.content import PageTable
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
-from lithobrake.report.words.captions import hours, thousands
+from lithobrake.report.words.captions import thousands
 from lithobrake.report.words.numbers import area, flat, number
 from lithobrake.results.dispersion import GroundResults, ImpactNumber
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.json_values import to_json
 from lithobrake.results.run_results import CountedShare, EmulatorShares
+from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
-from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, percent, with_interval
 
 OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "impact the surface again within {hours}",
@@ -41,7 +42,7 @@ JOURNEY_WORDS: dict[str, str] = {
     "slid": "(of all: slid along the ground at some time)",
 }
 GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
-QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
+QUANTILES = tuple(f"quantile_{level}" for level in QUANTILE_WORDS)
 ACCELERATIONS = ("effective_acceleration_outward", "effective_acceleration_along_heading")
 
 

@@ -9,9 +9,8 @@ from lithobrake.report.page_data import DrawnPage, RunsPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed
 from lithobrake.report.tables.limit_tables import limit_state_tables, rare_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
-from lithobrake.report.words.captions import BAND, action, hours, input_words
+from lithobrake.report.words.captions import BAND, action, input_words
 from lithobrake.report.words.drawn_captions import (
-    RETURNS,
     as_sentence,
     drawn_things,
     has_interval,
@@ -25,11 +24,10 @@ from lithobrake.report.words.journey_captions import quantile_words
 from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
 from lithobrake.results.run_results import Estimate, SideRuns, VarianceParts
-from lithobrake.vocabulary.outcomes import JourneyStatus
-from lithobrake.vocabulary.percentages import interval_digits, percent, span, with_interval
-
-CENTIMETRES = 100.0
-LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
+from lithobrake.vocabulary.constants import CENTIMETRES
+from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.outcomes import RETURNS, JourneyStatus
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, interval_digits, percent, span, with_interval
 
 
 def tiles(data: DrawnPage) -> list[Tile]:
@@ -126,12 +124,12 @@ def _bed_size(data: RunsPage) -> str:
 
 def _outputs(data: RunsPage) -> PageTable:
     """Mean and quantiles of the landings that left."""
-    columns = ["output", "unit", "mean", "standard deviation", *LEVELS.values()]
+    columns = ["output", "unit", "mean", "standard deviation", *QUANTILE_WORDS.values()]
     rows = []
     for name, table in data.results.spreads.items():
         shown = output(name)
         cells = [_estimate(table.mean, shown.factor), table_cell(table.standard_deviation * shown.factor)]
-        cells += [_estimate(table.quantiles[level], shown.factor) for level in LEVELS]
+        cells += [_estimate(table.quantiles[level], shown.factor) for level in QUANTILE_WORDS]
         rows.append([shown.words.replace("_", " "), shown.unit, *cells])
     speed = data.results.spreads.get("speed_out")
     of = "the landings that left" if speed is None else speed.of

@@ -9,6 +9,7 @@ from lithobrake.report.words.drawn_captions import as_sentence, interval
 from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
 from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import EndShare, RestQuantiles
+from lithobrake.vocabulary.constants import MINUTE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
@@ -127,7 +128,7 @@ def _delivery(data: JourneyPage) -> PageTable:
     spreads = {
         "speed [cm/s]": [100.0 * one for one in found.speed],
         "incidence, from the normal [deg]": list(found.incidence_deg),
-        "time from the delivered state [min]": [one / 60.0 for one in found.descent_s or ()],
+        "time from the delivered state [min]": [one / MINUTE for one in found.descent_s or ()],
     }
     rows = [[words, *(number(one, 3) for one in spread)] for words, spread in spreads.items() if spread]
     note = f"{found.count} of {found.of} landers touch down."

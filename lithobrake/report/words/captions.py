@@ -9,11 +9,13 @@ from lithobrake.report.words.labels import PAPER_OUTPUTS, PART_KEY, output
 from lithobrake.report.words.numbers import area, number, q2_words
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.model_results import DesignCounts, ExpansionResults, OutputErrors
+from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
+from lithobrake.vocabulary.material import PROPERTIES
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent, with_interval
+from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 
-BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
-FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
+FIELD_WORDS = {name: known.words for name, known in PROPERTIES.items()}
 WHOLE_WORDS = {"impact.speed": "impact speed"}
 POINT_WORDS = {
     "smolyak": "on the Smolyak grid",
@@ -39,11 +41,6 @@ def input_words(name: str) -> str:
 def listing(words: list[str]) -> str:
     """Words joined as a person would: a, b and c."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def hours(seconds: float) -> str:
-    """A length of time in hours."""
-    return f"{seconds / 3600:.3g} h"
 
 
 def answer(data: SampledPage) -> str:
@@ -79,7 +76,8 @@ def place_words(data: PageData) -> list[str]:
 def body_name(data: PageData) -> str:
     """The body in words."""
     site = data.study["site"]
-    return site.get("name") or BODIES.get(site["body"], "the body")
+    known = BUILT_IN_BODIES.get(site["body"])
+    return site.get("name") or (known.name if known else "the body")
 
 
 def facts(data: PageData) -> str:
@@ -300,7 +298,7 @@ def _float(value: object) -> float:
 # Half of the middle nine tenths of a normal distribution, in standard deviations.
 NINE_TENTHS = 1.645
 # What the bands of the emulator should hold of the runs (band_90 of its scores).
-BAND = 0.9
+BAND = LEVEL
 
 
 def luck(counts: Sequence[int]) -> tuple[float, float]:

@@ -8,8 +8,8 @@ from lithobrake.report.words.labels import output, part_words
 from lithobrake.report.words.numbers import number
 from lithobrake.results.questions import AimResults, RareLimitState
 from lithobrake.results.run_results import Estimate, VarianceParts
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import BoundedShare, interval_digits, percent, span
+from lithobrake.vocabulary.outcomes import RETURNS, TouchdownOutcome
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, BoundedShare, interval_digits, percent, span
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
@@ -105,7 +105,6 @@ def rare_warnings(rare: Mapping[str, RareLimitState]) -> list[str]:
     return [f"{name}: {found.warning}" for name, found in rare.items() if found.warning]
 
 
-RETURNS = "returns"
 # An input with more than this part of what the soil does is named.
 MAIN = 0.5
 
@@ -145,7 +144,7 @@ def _quantiles(data: RunsPage) -> str:
     for name in ("speed_out", "elevation_out"):
         if name in data.results.spreads:
             levels, shown = data.results.spreads[name].quantiles, output(name)
-            low, middle, high = (levels[level].value * shown.factor for level in ("0.05", "0.5", "0.95"))
+            low, middle, high = (levels[level].value * shown.factor for level in QUANTILE_WORDS)
             ends = _ends(data, levels["0.5"], shown.factor)
             found.append(
                 f"the median {shown.words} is {number(middle)} {shown.unit}{ends}, "

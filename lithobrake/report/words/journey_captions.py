@@ -1,14 +1,15 @@
 """The sentences of the page of a study of journeys, from the numbers of its summary. They are plain text."""
 
 from lithobrake.report.page_data import JourneyPage
-from lithobrake.report.words.captions import hours, place_words
+from lithobrake.report.words.captions import place_words
 from lithobrake.report.words.drawn_captions import detected_words, floor_words, landing_warnings, variance
 from lithobrake.report.words.numbers import area, number
 from lithobrake.results.journey_results import RestQuantile
+from lithobrake.vocabulary.constants import HOUR, MINUTE
+from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 
-HOUR, MINUTE = 3600.0, 60.0
 # How a journey ended, as short as it has to be in a legend.
 END_WORDS: dict[str, str] = {end.value: end.label for end in JourneyEnd}
 FIRST = "Of the first touchdown alone"

@@ -5,6 +5,7 @@ import re
 from dataclasses import dataclass
 
 from lithobrake.results.run_results import VarianceParts
+from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 # In a figure.
@@ -23,23 +24,8 @@ PART_KEY = r"lander\.part\.(?P<part>[\w-]+)\.(?P<key>\w+)"
 # A number of a region with a soil of its own.
 REGION_KEY = r"soil\.(?P<name>[\w-]+)\.(?P<key>grain\.\w+)"
 INPUT_LABELS = {
-    "grain.young_modulus": "Young's modulus $E$, grains",
-    "grain.poisson_ratio": r"Poisson's ratio $\nu$, grains",
-    "grain.restitution": "restitution $e$, grains",
-    "grain.friction": r"friction $\mu$, grains",
-    "grain.rolling_friction": "rolling friction, grains",
-    "grain.spinning_friction": "spinning friction, grains",
-    "grain.cohesion_force": "cohesion, grains",
-    "grain.surface_energy": "surface energy, grains",
-    "grain.density": r"density $\rho$, grains",
-    "lander.young_modulus": "Young's modulus $E$, lander",
-    "lander.poisson_ratio": r"Poisson's ratio $\nu$, lander",
-    "lander.restitution": "restitution $e$, lander",
-    "lander.friction": r"friction $\mu$, lander",
-    "lander.rolling_friction": "rolling friction, lander",
-    "lander.spinning_friction": "spinning friction, lander",
-    "lander.cohesion_force": "cohesion, lander",
-    "lander.surface_energy": "surface energy, lander",
+    **{f"grain.{name}": f"{known.label}, grains" for name, known in PROPERTIES.items()},
+    **{f"lander.{name}": f"{PROPERTIES[name].label}, lander" for name in SURFACE_PROPERTIES},
     "lander.mass": "mass of the lander",
     "lander.diameter": "diameter of the lander",
     "impact.speed": "impact speed",

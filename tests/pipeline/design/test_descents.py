@@ -137,7 +137,7 @@ def test_the_spread_at_the_ground_is_that_of_the_linear_propagation(ball: Path) 
         site={"body": str(ball), "mass": MASS, "spin_period": 1e12, "partner": True},
     )  # fmt: skip
     uniforms = np.random.default_rng(3).random((count, 6))
-    found = Descents.flown(one, 0, uniforms)
+    found = Descents.flown(Site(one), 0, uniforms)
     assert found.touches_down.all()
     on_ground = RADIUS * np.arctan2(found.flights.position[:, 1:], found.flights.position[:, :1])
     gain = np.zeros((2, 6))

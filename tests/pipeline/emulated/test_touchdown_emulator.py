@@ -22,7 +22,6 @@ from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS, option_arrivals
-from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
@@ -181,7 +180,7 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
 def test_a_side_is_an_option_like_any_other(results: StudyResults) -> None:
     study = check_tables(journey_tables(aim={"grid": {"delivery.speed": [0.05]}, "sides": ["z", "x or y"]}), Path())
     assert study.aim.aims() == [{"delivery.speed": 0.05, "aim.sides": 0.0}, {"delivery.speed": 0.05, "aim.sides": 1.0}]
-    begin = option_arrivals(DrawnDesign(study), Site(study))
+    begin = option_arrivals(DrawnDesign(study))
     inputs = {name: begin.column(name) for name in (*ORIENTATION, "impact.azimuth_deg")}
     sides = sides_down(study.lander, seen(inputs)[0])
     half = len(sides) // 2

@@ -28,8 +28,7 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
-from lithobrake.study.lander_section import SIDES
-from lithobrake.vocabulary.quantities import SKY
+from lithobrake.vocabulary.quantities import SIDES, SKY
 
 from ...paper_tables import paper_tables, with_keys
 from ...smallbody.kernels import write_kernels
@@ -116,7 +115,7 @@ def test_the_delivery_stands_in_summary_page_and_status(flown: tuple[StudyResult
 
 def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
     study = study_of(tables(delivery={"release": RELEASE}))
-    plan = plan_of(DrawnDesign(study), Site(study), "flown", StudyFolder.only_read(tmp_path), 1)
+    plan = plan_of(DrawnDesign(study), "flown", StudyFolder.only_read(tmp_path), 1)
     line = next(line for line in plan_lines(plan) if line.startswith("Delivery"))
     assert f"of {COUNT} landers reach the ground" in line
     # Distances along the ground, by the angles that the first touchdowns make with the aim point.
@@ -250,9 +249,8 @@ def test_pushed_landers_are_followed_to_rest_in_the_next_study(journeys_folder: 
     assert said.exit_code == 0, said.output
     assert "journey.count = 43" in said.output
     tables = journey_tables(journey={"count": AT_REST})
-    tables["delivery"] = {
-        "latitude_deg": 10.0, "longitude_deg": -60.0, "frame": "body_fixed", "states": str(tmp_path / "push.csv"),
-    }  # fmt: skip
+    tables["delivery"] = {"latitude_deg": 10.0, "longitude_deg": -60.0, "frame": "body_fixed",
+        "states": str(tmp_path / "push.csv")}  # fmt: skip
     after = run_without_emulator(tables, tmp_path / "next").journeys
     before = lithobrake.open_study(journeys_folder).journeys
     east = np.nanmedian(after["longitude_deg"]) - np.nanmedian(before["longitude_deg"])

@@ -289,9 +289,8 @@ def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> 
     assert [plot.name for plot in others if "first touchdown" not in f"{plot.title} {plot.sentence}".lower()] == []
     appendix = next(section for section in content.sections if section.title == "Appendix")
     titles = {table.title for table in appendix.tables}
-    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {
-        "Beds", "Sampled inputs",
-    }  # fmt: skip
+    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {"Beds",
+        "Sampled inputs"}  # fmt: skip
 
 
 def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None:

@@ -22,7 +22,7 @@ from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.runs.solver import function_identity
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.site_grid import (
     MOST_UNKNOWN,
     PLACES,
@@ -53,7 +53,7 @@ def job_of(source: StudySource) -> Job:
     """What the parts of a map read of a job; no executor makes anything."""
     study = with_site_gravity(source.study)
     nothing: Any = None
-    return Job(DrawnDesign(study), Site(study), source.tables, nothing, nothing, Silent())
+    return Job(DrawnDesign(study), source.tables, nothing, nothing, Silent())
 
 
 @pytest.fixture(scope="session")

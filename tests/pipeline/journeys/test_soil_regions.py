@@ -318,7 +318,7 @@ def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> No
 def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) -> None:
     given = read(body_file, {"sink": SINK, "strip": STRIP}, journey={"count": 64}, bed={"bed_count": 4})
     study, nothing = with_site_gravity(given), None
-    job = Job(DrawnDesign(study), Site(study), {}, cast(Any, nothing), cast(Any, nothing), Silent())
+    job = Job(DrawnDesign(study), {}, cast(Any, nothing), cast(Any, nothing), Silent())
     rows, words = job.design.rows, [""] * 64
     runs = DesignRuns(words, words, words, {name: np.array([row[name] for row in rows]) for name in rows[0]}, {})
     # What the strip alone decides is told of all journeys, whether they begin in there or not.

@@ -125,7 +125,7 @@ def released(**delivery: Any) -> Flights:
     given = turning_cubesat(journey={"count": 6}, site={"pole_right_ascension_deg": 60.0})
     given["site"] |= {"pole_declination_deg": -71.0, "meridian_deg": 25.0}
     given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "release": release, **delivery}
-    return Descents.flown(with_site_gravity(StudySource.of_tables(given).study), 0, np.full((6, 6), 0.5)).flights
+    return Descents.flown(Site(with_site_gravity(StudySource.of_tables(given).study)), 0, np.full((6, 6), 0.5)).flights
 
 
 def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:

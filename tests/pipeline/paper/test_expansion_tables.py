@@ -19,7 +19,6 @@ from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.paper.expansions import points
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -223,7 +222,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 @pytest.fixture(scope="module")
 def job(results: StudyResults) -> Job:
     study = check_tables(tables(), Path()).with_function("of a test")
-    return Job(DrawnDesign(study), Site(study), {}, StudyFolder.only_read(results.folder), None, Silent())  # type: ignore[arg-type]
+    return Job(DrawnDesign(study), {}, StudyFolder.only_read(results.folder), None, Silent())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

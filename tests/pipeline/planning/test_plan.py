@@ -37,7 +37,7 @@ from lithobrake.pipeline.planning.planned_ground import planned_boulders, planne
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import _missed, expected_loss, study_warnings
 from lithobrake.pipeline.samples import Samples
-from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
 from lithobrake.study import Study, StudyError, StudySource, check_tables, load_tables, read_study
@@ -72,7 +72,7 @@ def journeys(roughness_deg: float) -> Study:
 
 
 def plan_for(study: Study, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False) -> Plan:
-    return plan_of(DrawnDesign(study), Site(study), "quick", folder, workers, on_cluster=on_cluster)
+    return plan_of(DrawnDesign(study), "quick", folder, workers, on_cluster=on_cluster)
 
 
 def soil_of(study: Study) -> ExpectedSoil:
@@ -246,7 +246,7 @@ def test_what_a_run_refuses_a_plan_refuses_in_its_words(changes: dict[str, str],
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
     kept = {name: {key: value for key, value in keys.items() if value is not None} for name, keys in changes.items()}
     study = soft(**kept)
-    found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
+    found = " ".join(study_warnings(DrawnDesign(study), soil_of(study)))
     assert said in found if said else "The screening fits" not in found
 
 
@@ -275,7 +275,7 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
 ])  # fmt: skip
 def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
     study = drawn(**changes)
-    found = " ".join(study_warnings(DrawnDesign(study), Site(study), soil_of(study)))
+    found = " ".join(study_warnings(DrawnDesign(study), soil_of(study)))
     assert said in found if said else "All runs" not in found and "the unit of an interval" not in found
 
 
@@ -286,8 +286,8 @@ def test_landings_that_will_leave_the_bed_laterally_are_warned_of_by_their_angle
         for angle, w in ((15.0, 0.7), (slanted, 0.7), (slanted, 3.0))
     )
     words = "may leave the bed laterally"
-    assert words not in " ".join(study_warnings(DrawnDesign(steep), Site(steep), soil_of(steep)))
-    assert words in " ".join(study_warnings(DrawnDesign(flat), Site(flat), soil_of(flat)))
+    assert words not in " ".join(study_warnings(DrawnDesign(steep), soil_of(steep)))
+    assert words in " ".join(study_warnings(DrawnDesign(flat), soil_of(flat)))
     # 22 % of 300 landings of a study of first bounces over 0 to 88 deg, which this one is like.
     losses = [expected_loss(soil_of(one).landings[1:], min(one.bed.width)) for one in (steep, flat, wide)]
     assert losses == [pytest.approx(1 / 64), pytest.approx(0.22, abs=0.04), pytest.approx(0.07, abs=0.02)]
@@ -310,7 +310,7 @@ def test_the_smallest_tile_of_ground_that_repeats_is_said(tmp_path: Path) -> Non
 def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> None:
     flat = {"distribution": "uniform", "lower": 0.0, "upper": 88.0}
     studies = (drawn(impact={"incidence_deg": flat}, bed={"grain_count": count}) for count in (150, 20))
-    said = [" ".join(study_warnings(DrawnDesign(one), Site(one), soil_of(one))) for one in studies]
+    said = [" ".join(study_warnings(DrawnDesign(one), soil_of(one))) for one in studies]
     assert not any("laterally" in one or "over the edge" in one for one in said)
     assert "images" not in said[0]
     assert "to avoid reflections and waves of the lander's own images" in said[1]
@@ -461,9 +461,9 @@ incidence_deg = { distribution = "uniform", lower = 0.0, upper = 88.0 }
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
     tables = tomllib.loads(EVERY_IMPACT)
     repeating, walled = (check_tables(with_keys(tables, {"bed": bed}), HERE) for bed in ({}, {"sides": "walls"}))
-    (here,) = study_warnings(DrawnDesign(repeating), Site(repeating), soil_of(repeating))
+    (here,) = study_warnings(DrawnDesign(repeating), soil_of(repeating))
     assert here.startswith("Many journeys on the soil will have an unknown outcome")
-    lost, unknown = study_warnings(DrawnDesign(walled), Site(walled), soil_of(walled))
+    lost, unknown = study_warnings(DrawnDesign(walled), soil_of(walled))
     assert lost.startswith("About 13 % of the landings may leave the bed laterally")
     assert unknown.startswith("Many journeys on the soil will have an unknown outcome")
 
@@ -543,7 +543,7 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     names, count = list(DrawnDesign(study).inputs), study.monte_carlo.sample_count
     inputs, outputs = np.zeros((count, len(names))), np.zeros((count, len(OUTPUTS)))
     Samples(names, list(OUTPUTS), inputs, outputs, np.zeros(count, dtype=np.uint8)).save(StudyFolder(tmp_path))
-    expected = expected_bytes(DrawnDesign(study), Site(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
+    expected = expected_bytes(DrawnDesign(study), PlannedRuns(4, 41, 96, 20, frozenset()), None)["samples"]
     # Names and the layout of the file come on top.
     assert 0.0 < (tmp_path / "samples.h5").stat().st_size - expected < 2e4
 

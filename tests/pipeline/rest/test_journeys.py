@@ -162,7 +162,7 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     with ThreadPoolExecutor(1) as executor:
         shown = Silent()
         shown.say = said.append  # type: ignore[method-assign]
-        job = Job(DrawnDesign(study), Site(study), {}, folder, executor, shown)
+        job = Job(DrawnDesign(study), {}, folder, executor, shown)
         inputs = {name: np.array([1.0, 2.0]) for name in job.design.inputs}
         DesignRuns(["a", "b"], ["clear"] * 2, [""] * 2, inputs, {}).save(folder, "screening")
         follow_expansion_samples(job)
@@ -231,7 +231,7 @@ def test_a_captured_lander_rests_or_slides_by_the_friction_of_its_soil(tmp_path:
     sites, first = captured_sites(study, 40.0)
     assert 0.05 < math.tan(float(sites.body.slope(40.0, 0.0))) < 0.9
     with ThreadPoolExecutor(1) as executor:
-        job = Job(DrawnDesign(study), Site(study), {}, StudyFolder(tmp_path / "out"), executor, Silent())
+        job = Job(DrawnDesign(study), {}, StudyFolder(tmp_path / "out"), executor, Silent())
         rough, smooth, unknown = (
             dict(zip(REST, row, strict=True)) for row in sites.follow(job, "soil", first, HardSurface(0.0))
         )

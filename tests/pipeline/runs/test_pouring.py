@@ -21,7 +21,6 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs import beds as module
 from lithobrake.pipeline.runs.beds import pour_beds
-from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, check_tables
 from lithobrake.touchdown import bed_library
 
@@ -63,7 +62,7 @@ class Told(Silent):
 def pour(folder: Path, wanted: tuple[str, ...], executor: Executor | None = None) -> Told:
     """Pour these beds; without an executor any call of a worker is an error."""
     told, none = Told(), Executor()
-    pour_beds(Job(DrawnDesign(STUDY), Site(STUDY), {}, StudyFolder(folder), executor or none, told, wanted=wanted))
+    pour_beds(Job(DrawnDesign(STUDY), {}, StudyFolder(folder), executor or none, told, wanted=wanted))
     return told
 
 
@@ -145,9 +144,8 @@ def test_beds_of_a_dask_cluster_have_the_same_bits(poured: tuple[Path, str, int]
 
 
 def start(folder: Path) -> "subprocess.Popen[str]":
-    words = [
-        sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers", "2",
-    ]  # fmt: skip
+    words = [sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers",
+        "2"]  # fmt: skip
     # What runs in the background of a shell ignores the signal, and so would what it starts.
     return subprocess.Popen(list(map(str, words)), stderr=subprocess.PIPE, text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # fmt: skip
