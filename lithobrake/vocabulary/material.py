@@ -87,7 +87,7 @@ class Material:
         above=0.0, example='{ distribution = "log_uniform", lower = 1e6, upper = 1e8 }',
     )  # fmt: skip
     poisson_ratio: float = _property(
-        "", "Poisson's ratio", "Poisson's ratio.", "law/material_pair", symbol=r"$\nu$",
+        "", "Poisson's ratio", "Poisson's ratio.", "law/restitution", symbol=r"$\nu$",
         at_least=0.0, below=0.5, example='{ distribution = "uniform", lower = 0.15, upper = 0.35 }',
     )  # fmt: skip
     restitution: float = _property(
