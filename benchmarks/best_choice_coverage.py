@@ -20,7 +20,7 @@ import numpy as np
 from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
 from scipy import special
 
-from lithobrake.analysis import LEVEL, IntervalEstimate, best_choice, refit_interval
+from lithobrake.analysis import LEVEL, Estimate, best_choice, refit_interval
 
 TABLE = RESULTS / "best_choice_coverage.csv"
 COLUMNS = ("kind", "options", "beds", "bed_spread", "studies", "set_held", "set_size", "own_held", "own_bias",
@@ -65,22 +65,22 @@ def landers(beds: np.ndarray, refit_count: int, random: np.random.Generator) -> 
     return (uniform < fractions).transpose(2, 0, 1).astype(float)
 
 
-def plain(met: np.ndarray, bed_count: int) -> IntervalEstimate:
+def plain(met: np.ndarray, bed_count: int) -> Estimate:
     """The mean of one option with its interval over refits, met [refit_count, LANDERS]."""
     return refit_interval(met.sum(axis=1), np.full(len(met), LANDERS), bed_count)
 
 
-def of_halves(beds: np.ndarray, random: np.random.Generator) -> IntervalEstimate:
+def of_halves(beds: np.ndarray, random: np.random.Generator) -> Estimate:
     """What each half of the beds says of the option that the other half chooses, the mean of both."""
     halves = np.array_split(random.permutation(len(beds)), 2)
     met = [landers(beds[half], REFITS // 2, random) for half in halves]
     chosen = [int(one.mean(axis=(1, 2)).argmax()) for one in met]
     said = [plain(met[1 - place][one], len(halves[1 - place])) for place, one in enumerate(chosen)]
     value, half_width = np.mean([one.value for one in said]), 0.5 * math.hypot(*(width(one) for one in said))
-    return IntervalEstimate(float(value), float(value) - half_width, float(value) + half_width)
+    return Estimate(float(value), float(value) - half_width, float(value) + half_width)
 
 
-def width(one: IntervalEstimate) -> float:
+def width(one: Estimate) -> float:
     return 0.5 * (one.upper - one.lower)
 
 

@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import INPUTS, Truth, exact_share, random_soils, returns
 
 from lithobrake.analysis import (
-    IntervalEstimate,
+    Estimate,
     chaos_variance,
     mean_estimate,
     quantile_estimates,
@@ -79,7 +79,7 @@ def exact_speed(truth: Truth) -> dict[str, float]:
     return found | {"bed share": float(bed_means(truth)[1].var()) / variance if truth.rho > 0.0 else 0.0}
 
 
-def held(estimate: IntervalEstimate, exact: float) -> tuple[float, float, float]:
+def held(estimate: Estimate, exact: float) -> tuple[float, float, float]:
     """Whether an interval holds, error, half width."""
     return (
         float(estimate.lower <= exact <= estimate.upper),
@@ -93,7 +93,7 @@ def one_study(truth: Truth, run_count: int, bed_count: int, seed: int) -> dict[s
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
     found = share_estimate(returns(y, outcome), bed, terms=regression_terms(INPUTS, x))
     share, beds = exact_share(truth), bed_means(truth)[0]
-    result = {"share": held(IntervalEstimate(found.share, found.lower, found.upper), share)}
+    result = {"share": held(found.share, share)}
     on_beds = np.mean((found.next_bed[0] <= beds) & (beds <= found.next_bed[1]))
     result["next bed"] = (float(on_beds), 0.0, 0.5 * (found.next_bed[1] - found.next_bed[0]))
     exact, speed = exact_speed(truth), y[:, 0]
@@ -119,7 +119,7 @@ def missing(truth: Truth, seed: int) -> dict[str, tuple[float, float, float]]:
         "share": share_estimate(h, bed, terms=terms),
         "share, those with an outcome alone": share_estimate(h[known], bed[known], terms=(terms[0][known], terms[1])),
     }
-    return {name: held(IntervalEstimate(one.share, one.lower, one.upper), exactly) for name, one in found.items()}
+    return {name: held(one.share, exactly) for name, one in found.items()}
 
 
 def like_missing(truth: Truth, seed: int) -> dict[str, tuple[float, float, float]]:
@@ -135,7 +135,7 @@ def like_missing(truth: Truth, seed: int) -> dict[str, tuple[float, float, float
         "share, half of the rim known and like the other": share_estimate(h, bed, terms=terms, like_missing=over),
     }
     exactly = exact_share(truth)
-    return {name: held(IntervalEstimate(one.share, one.lower, one.upper), exactly) for name, one in found.items()}
+    return {name: held(one.share, exactly) for name, one in found.items()}
 
 
 def table(truth: Truth, run_count: int, bed_count: int, study_count: int, seed: int = 0) -> dict[str, Row]:
@@ -231,7 +231,7 @@ def flights(truth: Truth, seed: int, systematic: bool) -> float:
     for count in (21, 210):
         flown = np.floor(count * h + rng.random(len(h))) if systematic else rng.binomial(count, h)
         found = share_estimate(np.minimum(flown / count, 1.0), bed, terms=terms)
-        widths.append(found.upper - found.lower)
+        widths.append(found.share.half_width)
     return widths[1] / widths[0]
 
 
@@ -241,7 +241,7 @@ def no_event(run_count: int, study_count: int) -> float:
     covered = []
     for count in counts:
         stay = (np.arange(run_count) < count).astype(float)
-        found = share_estimate(stay, np.arange(run_count)).upper
+        found = share_estimate(stay, np.arange(run_count)).share.upper
         covered.append(found is not None and found >= 1.0 / run_count)
     return float(np.mean(covered))
 

@@ -83,7 +83,7 @@ def one_emulator(truth: Truth, limits: list[float], exact: np.ndarray, seed: int
         soils, beds = sobol_sequence(INPUTS, RUNS, seed=1000 * seed + repeat), beds_of(RUNS, random)
         left, terms = speeds(truth, soils, beds, random), regression_terms(INPUTS, soils)
         for place, limit in enumerate(limits):
-            found[place, 0, repeat] = share_estimate((left > limit).astype(float), beds, terms=terms).share
+            found[place, 0, repeat] = share_estimate((left > limit).astype(float), beds, terms=terms).share.value
             # An emulator that has no such landing at a soil still knows it only to its draws.
             seen = np.clip((drawn > limit).mean(axis=1), 0.5 / DRAWS, 1.0 - 0.5 / DRAWS)
             found[place, 1, repeat] = by_strata(truth, limit, pool, seen, random)

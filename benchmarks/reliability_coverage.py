@@ -80,13 +80,13 @@ def one_study(truth: Truth, seed: int) -> dict[str, tuple[float, ...]]:
     for exact in PROBABILITIES:
         limit = truth.limit(exact)
         found = failure_probability(y > limit, bed, terms=terms, drawn=drawn_counts(drawn > limit, refit, REFITS))
-        runs, alone = found.by_runs, found.by_emulator
-        for name, share, low, high in (
-            ("failure_probability", found.probability, found.lower, found.upper),
-            ("runs alone", runs.share, runs.lower, runs.upper),
-            ("emulator alone", alone.value, alone.lower, alone.upper),
+        for name, one in (
+            ("failure_probability", found.probability),
+            ("runs alone", found.by_runs.share),
+            ("emulator alone", found.by_emulator),
         ):
-            held = (float(low <= exact <= high), float(low > exact), share - exact, high - low)
+            low, high = one.bounds
+            held = (float(low <= exact <= high), float(low > exact), one.value - exact, high - low)
             result[name, exact] = (*held, float(found.source == "emulator"))
     return result
 
@@ -125,14 +125,15 @@ def subset_rows(count: int) -> Iterator[Row]:
     for name, (margin, dimension, exact) in LIMIT_STATES.items():
         for points in (500, 1000):
             found = [subset_simulation(margin, dimension, points_per_level=points, seed=seed) for seed in range(count)]
+            told = [one.probability for one in found]
             yield {
                 "quantity": f"subset simulation, {name}, {points} a level",
                 "probability": exact,
                 "repeats": count,
-                "held": float(np.mean([one.lower <= exact <= one.upper for one in found])),
-                "too_high": float(np.mean([one.lower > exact for one in found])),
-                "bias": float(np.mean([one.probability for one in found])) - exact,
-                "width": float(np.std([one.probability for one in found])) / exact,
+                "held": float(np.mean([one.lower <= exact <= one.upper for one in told])),
+                "too_high": float(np.mean([one.lower > exact for one in told])),
+                "bias": float(np.mean([one.value for one in told])) - exact,
+                "width": float(np.std([one.value for one in told])) / exact,
                 "cost": float(np.mean([one.evaluation_count for one in found])),
             }
 

@@ -47,13 +47,14 @@ def rows(count: int) -> Iterator[Row]:
     """A row a case, over so many seeds."""
     for case in CASES:
         found = [one(*case, seed) for seed in range(count)]
-        probability = np.array([each.probability for each in found])
+        told = [each.probability for each in found]
+        probability = np.array([each.value for each in told])
         numbers = {
-            "held": np.mean([each.lower <= EXACT <= each.upper for each in found]),
+            "held": np.mean([each.lower <= EXACT <= each.upper for each in told]),
             "bias": probability.mean() / EXACT - 1.0,
             "scatter": probability.std() / EXACT,
             "told": np.median([each.coefficient_of_variation for each in found]),
-            "width": np.median([each.upper / each.lower if each.reached else math.inf for each in found]),
+            "width": np.median([each.upper / each.lower if each.lower else math.inf for each in told]),
         }
         row = dict(zip(COLUMNS, (*case, count), strict=False))
         yield row | {key: round(float(value), 3) for key, value in numbers.items()}

@@ -12,8 +12,9 @@ from pathlib import Path
 from textwrap import dedent, wrap
 from typing import Any, get_args
 
-from lithobrake.results.json_values import dataclass_in, is_inline, key_of
-from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
+from lithobrake.results.summary import DrawnResults, PaperResults, Provenance, Summary
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.inline_fields import Form, is_inline, key_of
 
 LINE = 100  # characters, as on every page of the documentation
 HEAD = """# The keys of summary.json, scores.json and the expansions
@@ -24,16 +25,10 @@ This page explains every key of the results that a study writes. `*` stands for 
 output, an input (by its dotted key), a design or an outcome. In a list of tables every table has
 the keys that are listed. Numbers are in SI units unless another unit is named; `null` means that
 there is no such number. In Python `lithobrake.open_study("DIR").results` has the same as
-attributes, with types; a key that is a Python keyword has an underscore there (`from_`).
+attributes, with types; a key that is a Python keyword has an underscore there (`from_`), and the
+value, the bounds and the level of an interval are one `Estimate` (`.value`, `.lower`, `.upper`).
 
 ## `summary.json`
-
-| key | meaning |
-|---|---|
-| `format_version` | version of the format; files with different versions have different keys |
-| `study` | the study with all defaults, as the tables of its file (every key: lithobrake new) |
-| `results` | the results, equal in two executions of one study |
-| `provenance` | origin of the results; everything that may differ between two executions of one study |
 """
 # What the parts that write these files put there.
 EXPANSION_KEYS = {
@@ -93,24 +88,37 @@ def field_words(kind: type) -> dict[str, str]:
     return found
 
 
+def form_of(kind: Any) -> Form | None:
+    """The form of an estimate in a file; None for any other kind of value."""
+    return next((one for one in get_args(kind) if isinstance(one, Form)), None)
+
+
 def tables_within(kind: Any, place: str) -> Iterator[tuple[Any, str]]:
-    """Each dataclass of a kind of value with its place, `*` for the names of a mapping."""
-    if is_dataclass(kind):
+    """Each dataclass or estimate of a kind of value with its place, `*` for the names of a mapping."""
+    if is_dataclass(kind) or form_of(kind):
         yield kind, place
+        return
     star = f"{place}.*" if is_mapping(kind) else place
     for inner in get_args(kind):
         yield from tables_within(inner, star)
 
 
 def describe(kind: Any, place: str, found: dict[Any, Table]) -> None:
-    """Note a dataclass and those within it, each once with all its places."""
+    """Note a dataclass or an estimate and those within it, each once with all its places."""
+    form = form_of(kind)
+    if form is not None:
+        table = found.setdefault(kind, Table([], " ".join((Estimate.__doc__ or "").split()), keys_of_form(form)))
+        table.places += [place] if place not in table.places else []
+        return
     if kind in found:
         found[kind].places += [place] if place not in found[kind].places else []
     else:
         found[kind] = Table([place], " ".join((kind.__doc__ or "").split()), keys_of(kind))
     for field in fields(kind):
+        if is_inline(field) and form_of(field.type):
+            continue
         if is_inline(field) and not is_mapping(field.type):
-            _describe_inner(dataclass_in(field.type), place, found)
+            _describe_inner(table_in(field.type), place, found)
         else:
             for inner, where in tables_within(field.type, place if is_inline(field) else f"{place}.{key_of(field)}"):
                 describe(inner, where, found)
@@ -123,13 +131,26 @@ def _describe_inner(kind: Any, place: str, found: dict[Any, Table]) -> None:
             describe(inner, where, found)
 
 
+def table_in(kind: Any) -> Any:
+    """The dataclass of a field that may hold one or None."""
+    return next(one for one in (kind, *get_args(kind)) if is_dataclass(one))
+
+
 def is_mapping(kind: Any) -> bool:
     """Whether a field holds values by name."""
     return len(get_args(kind)) == 2 and get_args(kind)[0] is str
 
 
+def keys_of_form(form: Form, value: str = "") -> dict[str, str]:
+    """The keys of an estimate with their meaning; value: words of the number, where a field has some."""
+    words = field_words(Estimate)
+    value = value or ("fraction of 1" if "share" in form.keys else "")
+    return {key: value if value and name == "value" else words[name] for key, name in form.keys.items()}
+
+
 def summary_of(kind: Any) -> str:
     """The first sentence of a dataclass, as words of a key."""
+    kind = Estimate if form_of(kind) else kind
     first = " ".join((kind.__doc__ or "").split("\n\n")[0].split()).rstrip(".")
     return f"{first[:1].lower()}{first[1:]}"
 
@@ -138,12 +159,15 @@ def keys_of(kind: Any) -> dict[str, str]:
     """The keys of a dataclass with their meaning, those of inline fields among them."""
     words, keys = field_words(kind), {}
     for field in fields(kind):
-        if not is_inline(field) or is_mapping(field.type):
+        form = form_of(field.type)
+        if is_inline(field) and form is not None:
+            keys |= keys_of_form(form, words[field.name])
+        elif not is_inline(field) or is_mapping(field.type):
             # A field without words of its own holds a table that has some.
             inner = next((one for one, _ in tables_within(field.type, "")), None)
             keys["*" if is_inline(field) else key_of(field)] = words.get(field.name) or summary_of(inner)
         else:
-            keys |= keys_of(dataclass_in(field.type))
+            keys |= keys_of(table_in(field.type))
     return keys
 
 
@@ -156,7 +180,7 @@ def page() -> str:
     found: dict[Any, Table] = {}
     for kind, place in ((DrawnResults, "results"), (PaperResults, "results"), (Provenance, "provenance")):
         describe(kind, place, found)
-    lines = [HEAD.rstrip()]
+    lines = [HEAD.rstrip(), *key_table(field_words(Summary))]
     for kind, table in found.items():
         first, *others = (f"`{place}`" for place in table.places)
         of = {DrawnResults: " of a drawn study", PaperResults: " of a paper study"}.get(kind, "")

@@ -22,7 +22,7 @@ def main(folder: Path) -> Path:
     figure = plt.figure(figsize=(16.0, 9.0), dpi=120)
     figure.text(0.04, 0.90, study.study["title"], fontsize=30, weight="bold")
     # No line ends between a number and its unit.
-    sentences = [re.sub(r"(?<=\d) (?=[%a-z])", "\u00a0", one) for one in study.summary["results"]["answer"][:3]]
+    sentences = [re.sub(r"(?<=\d) (?=[%a-z])", "\u00a0", one) for one in study.results.answer[:3]]
     figure.text(0.04, 0.84, "\n\n".join(fill(one, 42) for one in sentences), fontsize=17, va="top", linespacing=1.4)
     assumed = "Holds over the input ranges of the study file, and for ground that was not simulated."
     figure.text(0.04, 0.05, f"{assumed} Made with lithobrake.", fontsize=12, color="0.4")

@@ -159,7 +159,7 @@ def test_imports_of_third_parties_are_declared() -> None:
     # Some come with the package that they belong to, which asks for the one it needs.
     names_on_index = {"PIL": "matplotlib", "contourpy": "matplotlib", "imageio_ffmpeg": "imageio-ffmpeg",
         "sklearn": "scikit-learn", "mpl_toolkits": "matplotlib", "pydantic_core": "pydantic", "llvmlite": "numba",
-        "tomli_w": "tomli-w", "yaml": "pyyaml"}  # fmt: skip
+        "tomli_w": "tomli-w", "lazy_loader": "lazy-loader", "yaml": "pyyaml"}  # fmt: skip
     used: set[str] = set()
     for source in (ROOT / "lithobrake").rglob("*.py"):
         for node in ast.walk(ast.parse(source.read_text())):

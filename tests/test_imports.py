@@ -74,13 +74,18 @@ def imported_names(path: Path, only_at_load: bool = False) -> set[str]:
     it is itself imported. A face whose names are imported late counts as importing them.
     """
     tree = ast.parse(path.read_text(encoding="utf-8"))
+    stub = path.with_suffix(".pyi")
+    if stub.exists():
+        tree.body += ast.parse(stub.read_text(encoding="utf-8")).body
     if only_at_load and path.name != "__init__.py":
         tree.body = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path} imports by dots; write the full name"
-            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+            # A stub names what its face hands on, and does so by dots.
+            assert node.level == stub.exists(), f"{path} imports by dots; write the full name"
+            part = ".".join(("", *path.parent.relative_to(PACKAGE.parent).parts, "")) if node.level else ""
+            found |= {f"{part[1:]}{node.module}.{alias.name}" for alias in node.names}
         elif isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
     return {name for name in found if name.startswith("lithobrake.")}

@@ -14,7 +14,8 @@ import h5py
 import pytest
 
 from lithobrake.results import open_study
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
+from lithobrake.results.summary import Summary
 
 from .command_line import lithobrake
 from .few_grains import few_grains
@@ -47,7 +48,7 @@ def go_on(study: Path, out: Path, workers: int) -> None:
     assert ended.returncode == 0, ended.stderr
 
 
-def summary(out: Path) -> dict[str, Any]:
+def summary(out: Path) -> Summary:
     return open_study(out).summary
 
 
@@ -95,7 +96,7 @@ def test_every_file_is_there_and_the_summary_adds_up(out: Path) -> None:
 
 def test_every_key_that_soil_and_beds_write_has_a_field(out: Path) -> None:
     results = open_study(out)
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     assert results.beds.columns["surface_height_m"].units == "m"
 
 

@@ -21,7 +21,7 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
@@ -60,7 +60,7 @@ def parts(folder: Path) -> dict[str, Any]:
         one = variance_shares(inputs, x, y, runs.inputs["bed"], soil=soil, attitude=attitude)
         named = {} if one is None else {part: getattr(one, part) for part in PARTS if getattr(one, part) is not None}
         found[name] = {part: [share.value, share.lower, share.upper] for part, share in named.items()}
-    found["sides"] = to_json(first_sides(study, runs, returns))
+    found["sides"] = {side: json_values(one) for side, one in first_sides(study, runs, returns).items()}
     return found
 
 

@@ -35,17 +35,15 @@ def tables(number: int) -> dict[str, Any]:
 
 def compared(number: int, options: StudyResults, landings: StudyResults) -> dict[str, Any]:
     """The share at rest at one option, by the emulator of the scenario and by landings, each with its interval."""
-    aims = options.summary["results"]["aim"]["aims"]
-    emulated = next(one["soil"]["settled"] for one in aims if tuple(one["values"]) == OPTIONS[number])
-    results = landings.summary["results"]
-    ends, at_rest = results["ends"], results["ends"]["at_rest"]
-    numbers = [[one[key] for key in ("share", "lower", "upper")] for one in (emulated, at_rest)]
+    emulated = next(one.soil.settled for one in options.results.aim.aims if one.values == OPTIONS[number])
+    ends = landings.results.ends
+    numbers = [[one.value, one.lower, one.upper] for one in (emulated, ends["at_rest"].share)]
     return {
         **dict(zip(KEYS, OPTIONS[number], strict=True)),
         "by_emulator": numbers[0],
         "by_landings": numbers[1],
-        "journeys": {name: one["count"] for name, one in ends.items() if one["count"]},
-        "touchdowns": results["touchdowns"],
+        "journeys": {name: one.count for name, one in ends.items() if one.count},
+        "touchdowns": landings.results.touchdowns,
     }
 
 

@@ -7,11 +7,13 @@ folder below --work, where a case that was stopped goes on. Writes emulated_jour
 """
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import lithobrake
 from lithobrake.results import StudyResults
+from lithobrake.results.run_results import CountedShare
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, between, command_line, origin, read_document, study_tables, write_document
@@ -49,25 +51,26 @@ def compared(study: StudyResults) -> dict[str, Any]:
 
     agrees: within both intervals together; is_inside: all shares of the emulator in the intervals of the landings.
     """
-    results = study.summary["results"]
-    emulated, ends = results["emulated"], results["ends"]
+    results = study.results
+    emulated, ends = results.emulated, results.ends
 
-    def numbers(shares: dict[str, Any]) -> dict[str, list[float]]:
-        return {name: [one[key] for key in ("share", "lower", "upper")] for name, one in shares.items() if one["count"]}
+    def numbers(shares: Mapping[str, CountedShare]) -> dict[str, list[float | None]]:
+        known = {name: one.share for name, one in shares.items() if one.count}
+        return {name: [one.value, one.lower, one.upper] for name, one in known.items()}
 
     return {
-        "journeys": results["journeys"],
-        "touchdowns": results["touchdowns"],
+        "journeys": results.journeys,
+        "touchdowns": results.touchdowns,
         "by_landings": numbers(ends),
-        "why_no_emulator": emulated["why"],
-        "by_emulator": numbers(emulated["ends"]),
-        "unknown": emulated["unknown"],
-        "landings_between": emulated["landings"],
-        "agrees": emulated["agrees"],
+        "why_no_emulator": emulated.why,
+        "by_emulator": numbers(emulated.ends),
+        "unknown": emulated.unknown,
+        "landings_between": emulated.landings,
+        "agrees": emulated.agrees,
         "is_inside": all(
-            ends[end]["lower"] <= one["share"] <= ends[end]["upper"] for end, one in emulated["ends"].items()
+            ends[end].share.lower <= one.share.value <= ends[end].share.upper for end, one in emulated.ends.items()
         ),
-        "control": emulated["control"],
+        "control": emulated.control and vars(emulated.control),
     }
 
 

@@ -65,13 +65,13 @@ def cases(shapes: Path) -> dict[str, dict[str, Any]]:
 
 def ended(study: StudyResults) -> dict[str, Any]:
     """How the journeys of a case ended, and what they took."""
-    results, journeys = study.summary["results"], study.journeys
+    results, journeys = study.results, study.journeys
     return {
-        "ends": {name: one["count"] for name, one in results["ends"].items() if one["count"]},
-        "touchdowns": results["touchdowns"],
+        "ends": {name: one.count for name, one in results.ends.items() if one.count},
+        "touchdowns": results.touchdowns,
         "most_contacts": int(journeys["contacts"].max()),
-        "time_to_rest_median_s": results["rest"]["time_s"]["median"]["value"],
-        "distance_median_m": results["rest"]["distance_m"]["median"]["value"],
+        "time_to_rest_median_s": results.rest.time_s.median.value,
+        "distance_median_m": results.rest.distance_m.median.value,
         "cpu_s": float(np.nansum(study.touchdowns["cpu_s"])),
     }
 

@@ -126,12 +126,12 @@ def correlation(truth: Truth) -> float:
 def estimates(found: dict[str, np.ndarray]) -> Iterator[tuple[str, float, float | None, float | None]]:
     """Each quantity of a study with its value and the ends of its interval."""
     for end, name in enumerate(ENDS):
-        share = share_estimate((found["end"] == end).astype(float), found["bed"])
-        yield name, share.share, share.lower, share.upper
+        share = share_estimate((found["end"] == end).astype(float), found["bed"]).share
+        yield name, share.value, share.lower, share.upper
     for name in ("time_s", CONTACTS):
         for level, probability in PROBABILITIES.items():
             one = quantile_estimate(found[name], found["bed"], probability, counts=name == CONTACTS)
-            yield f"{name} {level}", math.nan if one.value is None else one.value, one.lower, one.upper
+            yield f"{name} {level}", one.value, one.lower, one.upper
 
 
 def setting(truth: Truth, journey_count: int, bed_count: int, study_count: int) -> Iterator[Row]:

@@ -71,21 +71,21 @@ def largest_side(edges: list[float] | None) -> str | None:
 
 def found(study: StudyResults) -> Row:
     """Each quantity of a study with the ends of its interval; NaN where there is none."""
-    results, journeys = study.summary["results"], study.journeys
-    of = {name: results["rest"][name]["median"] for name in ("time_s", "contacts", "distance_m")}
-    share, rests = results["ends"]["at_rest"], journeys["end"] == "at_rest"
-    of["at_rest"] = {"value": share["share"], **share}
-    side = largest_side(study.summary["study"]["lander"].get("edges"))
+    results, journeys = study.results, study.journeys
+    of = {name: getattr(results.rest, name).median for name in ("time_s", "contacts", "distance_m")}
+    rests = journeys["end"] == "at_rest"
+    of["at_rest"] = results.ends["at_rest"].share
+    side = largest_side(study.study["lander"].get("edges"))
     if side is not None:
         lies = share_estimate((journeys["face"][rests] == side).astype(float), journeys["bed"][rests])
-        of["largest_side"] = {"value": lies.share, "lower": lies.lower, "upper": lies.upper}
+        of["largest_side"] = lies.share
     row = {}
     for name in WORDS:
         for part in PARTS:
-            value = of.get(name, {}).get(part)
+            value = getattr(of.get(name), part, None)
             row[f"{name} {part}"] = math.nan if value is None else float(value)
-    ends = {f"{name} count": one["count"] for name, one in results["ends"].items()}
-    return row | ends | {"touchdowns": results["touchdowns"], "cpu_s": float(np.nansum(study.touchdowns["cpu_s"]))}
+    ends = {f"{name} count": one.count for name, one in results.ends.items()}
+    return row | ends | {"touchdowns": results.touchdowns, "cpu_s": float(np.nansum(study.touchdowns["cpu_s"]))}
 
 
 def make(work: Path, setting_count: int) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import lithobrake
+from lithobrake.results.result_files import json_values
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, command_line, origin, read_document, write_document
@@ -56,7 +57,7 @@ def studies(seeds: int) -> list[tuple[str, float, dict[str, Any]]]:
 
 def told(results: lithobrake.StudyResults) -> dict[str, Any]:
     """What the table and the figures need of a study."""
-    found = results.summary["results"]
+    found = json_values(results.results)
     samples = found["monte_carlo"]["outputs"]
     entry = {
         "returns": found["returns"], "variance_shares": found.get("variance_shares"), "headline": found["headline"],
@@ -91,7 +92,7 @@ def main() -> None:
         entries.append(dict(zip(("kind", "diameter_m", "seed"), key, strict=True)) | {"wall_s": wall} | told(results))
         command = f"validation/one_bed.py --seeds {given.seeds}"
         write_document(path, {**origin(command), "studies": entries})
-        print(*key, f"{wall:.0f} s", results.summary["results"]["headline"][0], flush=True)
+        print(*key, f"{wall:.0f} s", results.results.headline[0], flush=True)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import lithobrake
+from lithobrake.results.result_files import json_values
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, VALIDATION_STUDIES, command_line, origin, read_document, write_document
@@ -140,14 +141,14 @@ def main() -> None:
             folder = given.work / f"{kind} {name}".replace(" ", "_")
             results = lithobrake.run(tables, folder, workers=given.workers, report=False)
             wall = time.perf_counter() - start
-            entry = {"kind": kind, "name": name, "wall_s": wall} | told(results.summary["results"])
+            entry = {"kind": kind, "name": name, "wall_s": wall} | told(json_values(results.results))
             if kind == "twin":
                 runs = dict(results.runs)
                 first = [row for row, design in enumerate(runs["design"]) if design == "screening"]
                 entry["screening_runs"] = {output: [float(runs[output][row]) for row in first] for output in PAIRED}
             entries.append(entry)
             write_document(path, {**origin("validation/paper_study.py"), "studies": entries})
-            print(kind, name, f"{wall:.0f} s", results.summary["results"]["headline"][0], flush=True)
+            print(kind, name, f"{wall:.0f} s", results.results.headline[0], flush=True)
 
 
 if __name__ == "__main__":

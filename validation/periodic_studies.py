@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.results import StudyResults, open_study
+from lithobrake.vocabulary.estimate import Estimate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import Row, command_line, origin, write_document
@@ -30,24 +31,26 @@ def over_beds(value: np.ndarray, bed: np.ndarray) -> Row:
     return {"mean": mean, "standard_error": error}
 
 
+def bounded(one: Estimate) -> Row:
+    """A share with its bounds."""
+    return {"share": one.value, "lower": one.lower, "upper": one.upper}
+
+
 def numbers(study: StudyResults) -> Row:
     """Beds, outcomes, what comes down again, and how landers leave."""
-    summary = study.summary
-    results, bed, runs = summary["results"], summary["study"]["bed"], study.runs
+    results, bed, runs = study.results, study.study["bed"], study.runs
     drawn = (runs["design"] == "drawn") & (runs["outcome"] == "clear")
-    shares = results["shares"]
+    shares = {name: results.shares.outcomes[name].share for name in ("escaped", "flying")}
     return {
-        "title": summary["study"]["title"],
+        "title": study.study["title"],
         "bed": {key: bed[key] for key in ("sides", "grain_count", "width")},
-        "solid_fraction": float(np.mean([one["solid_fraction"] for one in results["beds"]])),
-        "coordination_number": float(np.mean([one["coordination_number"] for one in results["beds"]])),
-        "beds": results["runs"]["beds"],
-        "outcomes": results["runs"]["outcomes"],
-        "farther_than_period": results["runs"]["farther_than_period"],
-        "returns": {key: results["returns"][key] for key in ("share", "lower", "upper")},
-        "shares": {
-            key: {end: shares[key].get(end) for end in ("share", "lower", "upper")} for key in ("escaped", "flying")
-        },
+        "solid_fraction": float(np.mean([one.solid_fraction for one in results.beds])),
+        "coordination_number": float(np.mean([one.coordination_number for one in results.beds])),
+        "beds": results.runs.beds,
+        "outcomes": results.runs.outcomes,
+        "farther_than_period": results.runs.farther_than_period,
+        "returns": bounded(results.returns.share),
+        "shares": {name: bounded(one) for name, one in shares.items()},
         **{key: over_beds(runs[key][drawn], runs["bed"][drawn]) for key in OUTPUTS},
     }
 

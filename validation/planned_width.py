@@ -116,7 +116,7 @@ def answer_of(study: Study, folder: StudyFolder) -> Row:
         values, bed = flights.returns, runs.inputs["bed"].astype(int)
         found = return_fraction(study, runs, flights)
     known = [None if np.isnan(one) else round(float(one), 5) for one in values]
-    return {"half_width": half(found.lower, found.upper), "values": known, "bed": bed.tolist()}
+    return {"half_width": half(found.share.lower, found.share.upper), "values": known, "bed": bed.tolist()}
 
 
 def half(lower: float | None, upper: float | None) -> float:
@@ -223,7 +223,7 @@ def showcase_runs(folder: Path) -> Row:
     if (folder / "journeys.csv").exists():
         table = JourneyTable.load(StudyFolder.only_read(folder))
         found = end_share(table.rests, table.bed)
-        answer = {"share": found.share, "half_width": half(found.lower, found.upper)}
+        answer = {"share": found.share.value, "half_width": half(found.share.lower, found.share.upper)}
         return answer | {"values": table.rests.astype(float).tolist(), "bed": table.bed.tolist()}
     runs = read_rows(folder / "runs" / "drawn.csv", {}, str)
     beds = {row["key"]: int(float(row["input:bed"])) for row in runs}

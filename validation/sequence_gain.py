@@ -84,14 +84,14 @@ def with_points(kind: str) -> Any:
 def estimate(design: DrawnDesign, values: np.ndarray, bed: np.ndarray) -> Row:
     """What a study says of its fraction, and what its plain mean does."""
     x = design._points(len(values))[:, : len(design.inputs)]
-    found = share_estimate(values, bed, terms=regression_terms(design.inputs, x))
+    found = share_estimate(values, bed, terms=regression_terms(design.inputs, x)).share
     known = np.isfinite(values)
     y, beds = values[known], numbered_beds(bed[known], int(known.sum()))
     assert found.lower is not None
     assert found.upper is not None
     implied = (found.upper - found.lower) / 2.0 / t_quantile(int(beds.max()))
     return {
-        "share": found.share, "implied_se": implied, "mean": float(y.mean()),
+        "share": found.value, "implied_se": implied, "mean": float(y.mean()),
         "mean_se": standard_error(y, beds), "independent_se": float(y.std(ddof=1) / math.sqrt(len(y))),
         "missing": int((~known).sum()),
     }  # fmt: skip
@@ -159,7 +159,7 @@ def with_attitude(design: DrawnDesign, files: list[Any], runs: int) -> float:
     widths = []
     for one in (one for one in files if len(one["y"]) == runs):
         terms = regressions(design, one["x"])
-        found = [share_estimate(one["y"], one["bed"], terms=two) for two in terms]
+        found = [share_estimate(one["y"], one["bed"], terms=two).share for two in terms]
         widths.append([(two.upper or 1.0) - (two.lower or 0.0) for two in found])
     soil, attitude = np.mean(widths, axis=0)
     return float(attitude / soil)
@@ -205,10 +205,10 @@ def synthetic(runs: int, beds: int, parts: tuple[float, float, float], kind: str
         bed = np.array(beds_of_runs(design.study, runs))
         y = outcomes(uniforms, bed, parts, np.random.default_rng([seed, runs]))
         for way, terms in enumerate(regressions(design, x)):
-            found = share_estimate(y, bed, terms=terms)
+            found = share_estimate(y, bed, terms=terms).share
             assert found.lower is not None
             assert found.upper is not None
-            shares[way].append(found.share)
+            shares[way].append(found.value)
             implied[way].append((found.upper - found.lower) / 2.0 / t_quantile(beds - 1))
             held[way].append(found.lower <= 0.5 <= found.upper)
     for way, name in enumerate(("soil", "soil and attitude")):

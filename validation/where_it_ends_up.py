@@ -19,6 +19,8 @@ from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import StudyResults, open_study
+from lithobrake.results.result_files import json_values
+from lithobrake.vocabulary.estimate import Estimate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import command_line, origin, write_document
@@ -27,23 +29,29 @@ from page import two_digits
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "quick.toml"
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 FIGURE = Path(__file__).parents[1] / "docs" / "where_it_ends_up.png"
+REGION = ("share", "area_m2", "largest_extent_m")
 ENDS = ("at_rest", "escaped", "partner", "under_way", "failed")
 
 
 def numbers(name: str, study: StudyResults) -> dict[str, Any]:
-    results = study.summary["results"]
-    rest = results["rest"]
+    results, rest = study.results, study.results.rest
+
+    def bounded(one: Estimate) -> dict[str, float | None]:
+        return {"share": one.value, "lower": one.lower, "upper": one.upper}
+
     return {
         "ground": name,
-        "journeys": results["journeys"],
-        "touchdowns": results["touchdowns"],
-        "stay_at_first_touchdown": results["runs"]["outcomes"].get("captured", 0),
-        "returns": {key: results["returns"][key] for key in ("share", "lower", "upper")},
-        "ends": {end: {key: results["ends"][end].get(key) for key in ("share", "lower", "upper")} for end in ENDS},
-        "time_s": rest["time_s"],
-        "contacts": rest["contacts"],
-        "distance_m": rest["distance_m"],
-        "regions": [{key: one[key] for key in ("share", "area_m2", "largest_extent_m")} for one in rest["regions"]],
+        "journeys": results.journeys,
+        "touchdowns": results.touchdowns,
+        "stay_at_first_touchdown": results.runs.outcomes.get("captured", 0),
+        "returns": bounded(results.returns.share),
+        "ends": {end: bounded(results.ends[end].share) for end in ENDS},
+        "time_s": json_values(rest.time_s),
+        "contacts": json_values(rest.contacts),
+        "distance_m": json_values(rest.distance_m),
+        "regions": [
+            {key: getattr(one, key) for key in ("share", "area_m2", "largest_extent_m")} for one in rest.regions
+        ],
     }
 
 

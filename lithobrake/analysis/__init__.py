@@ -8,7 +8,7 @@ from lithobrake.analysis.comparisons import (
     quantile_within,
     share_difference,
 )
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, wilson_interval
+from lithobrake.analysis.confidence import LEVEL, wilson_interval
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms, soil_total_effect
 from lithobrake.analysis.equal_area import EqualAreaCells
 from lithobrake.analysis.failures import (
@@ -36,7 +36,6 @@ from lithobrake.analysis.observed_bounces import Identifiability, identifiabilit
 from lithobrake.analysis.outcome_model import OutcomeModel, refit_interval, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import (
     DirectionEstimate,
-    QuantileEstimate,
     direction_estimate,
     mean_estimate,
     quantile_estimate,
@@ -44,19 +43,21 @@ from lithobrake.analysis.output_estimates import (
 )
 from lithobrake.analysis.posterior import Observation, bed_shares, beds_statement
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
-from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 from lithobrake.chaos.design import sample_inputs
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.landing_fraction import LandingFraction
 
 __all__ = [
-    "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "EqualAreaCells", "FailureInput",
-    "FailureProbability", "HalfWidthRange", "HighestDensity", "Identifiability", "IntervalEstimate", "LearntInput",
-    "Observation", "OutcomeModel", "PairedDifference", "Posterior", "QuantileEstimate", "ShareEstimate", "SubsetResult",
-    "VarianceShares", "bed_shares", "beds_statement", "best_choice", "best_runs_a_bed", "chaos_variance",
-    "cost_over_best", "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures",
-    "expected_half_width", "failure_inputs", "failure_probability", "half_width_of", "half_width_range",
-    "highest_density", "identifiability", "infer", "mean_estimate", "next_run_count", "predictive_p_value",
-    "quantile_difference", "quantile_estimate", "quantile_estimates", "quantile_within", "refit_interval",
-    "regression_terms", "runs_for_half_width", "sample_inputs", "scatter_of", "share_difference", "share_estimate",
-    "soil_total_effect", "subset_simulation", "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
+    "LEVEL", "BestChoice", "DensityRegion", "DirectionEstimate", "Ellipses", "EqualAreaCells", "Estimate",
+    "FailureInput", "FailureProbability", "HalfWidthRange", "HighestDensity", "Identifiability", "LandingFraction",
+    "LearntInput", "Observation", "OutcomeModel", "PairedDifference", "Posterior", "SubsetResult", "VarianceShares",
+    "bed_shares", "beds_statement", "best_choice", "best_runs_a_bed", "chaos_variance", "cost_over_best",
+    "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures", "expected_half_width",
+    "failure_inputs", "failure_probability", "half_width_of", "half_width_range", "highest_density", "identifiability",
+    "infer", "mean_estimate", "next_run_count", "predictive_p_value", "quantile_difference", "quantile_estimate",
+    "quantile_estimates", "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width",
+    "sample_inputs", "scatter_of", "share_difference", "share_estimate", "soil_total_effect", "subset_simulation",
+    "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
 ]  # fmt: skip

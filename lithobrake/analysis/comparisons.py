@@ -7,20 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import (
-    LEVEL,
-    Bounds,
-    IntervalEstimate,
-    answers,
-    numbered_beds,
-    share_interval,
-    t_quantile,
-)
+from lithobrake.analysis.confidence import LEVEL, Bounds, answers, numbered_beds, share_interval, t_quantile
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_CORRELATION
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 
@@ -41,8 +34,8 @@ class BestChoice:
     best: int
     runner_up: int | None
     shares: Array
-    difference: IntervalEstimate | None
-    own: IntervalEstimate
+    difference: Estimate | None
+    own: Estimate
     not_worse: tuple[int, ...]
 
 
@@ -82,7 +75,7 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     between = values[best] - values[runner_up]
     half = t_quantile(bed_count - 1) * math.sqrt(_error_variance(between, bed_count))
     value = float(between.mean())
-    return BestChoice(best, runner_up, shares, IntervalEstimate(value, value - half, value + half), own, not_worse)
+    return BestChoice(best, runner_up, shares, Estimate(value, value - half, value + half), own, not_worse)
 
 
 def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, float]) -> tuple[float, float, float]:
@@ -105,9 +98,7 @@ def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, 
     return middle, lower if first >= places[0] else -math.inf, upper if second <= places[-1] else math.inf
 
 
-def _own(
-    values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int
-) -> IntervalEstimate:
+def _own(values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int) -> Estimate:
     """The mean of the best less its optimism, with the error that those which cannot be distinguished from it have.
 
     That the best is chosen among them chooses a small error of its own, too. So the variance is theirs together, as a
@@ -119,10 +110,10 @@ def _own(
     spread = float((means * (1.0 - means)).sum())
     # Where no draw scatters so many beds bound what was never seen.
     if value in (0.0, 1.0) or spread <= 0.0:
-        return IntervalEstimate(value, value * (1.0 - limit), value + (1.0 - value) * limit)
+        return Estimate(value, value * (1.0 - limit), value + (1.0 - value) * limit)
     part = sum(_error_variance(values[one], bed_count) for one in near) / spread
     lower, upper = share_interval(value, t_quantile(bed_count - 1) * math.sqrt(part * value * (1.0 - value)))
-    return IntervalEstimate(value, lower, upper)
+    return Estimate(value, lower, upper)
 
 
 def _optimism(values: Array, bed_count: int) -> float:
@@ -173,13 +164,7 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
     return scaled
 
 
-@dataclass(frozen=True)
-class Estimated:
-    """A number of one study, in its unit; a bound that the runs cannot give is None."""
-
-    value: float | None
-    lower: float | None
-    upper: float | None
+UNKNOWN = Estimate(math.nan, None, None)
 
 
 @dataclass(frozen=True)
@@ -187,20 +172,15 @@ class PairedDifference:
     """The second study less the first, in the unit of the answer.
 
     first, second   the answer of each, from the pairs alone
-    value           the difference; None where one of them has no answer
-    lower, upper    its interval; None where one of the studies cannot bound it
-    level           confidence of the interval
+    difference      NaN where one of them has no answer; without an interval where one of the studies cannot bound it
     correlation     of the two runs of a pair, about the answer of each study; None where one of them does not vary
     unpaired        lower and upper bound that two studies of the same sizes would give without pairs; None likewise
     pairs           with an answer in both studies
     """
 
-    first: Estimated
-    second: Estimated
-    value: float | None
-    lower: float | None
-    upper: float | None
-    level: float
+    first: Estimate
+    second: Estimate
+    difference: Estimate
     correlation: float | None
     unpaired: Bounds | None
     pairs: int
@@ -208,9 +188,10 @@ class PairedDifference:
     @property
     def landings_saved(self) -> float | None:
         """How many times the runs an unpaired comparison takes for an interval as narrow; None where there is none."""
-        if self.unpaired is None or self.lower is None or self.upper is None or self.upper <= self.lower:
+        bounds = self.difference.bounds
+        if self.unpaired is None or bounds is None or bounds[1] <= bounds[0]:
             return None
-        return ((self.unpaired[1] - self.unpaired[0]) / (self.upper - self.lower)) ** 2
+        return ((self.unpaired[1] - self.unpaired[0]) / (bounds[1] - bounds[0])) ** 2
 
 
 def share_difference(
@@ -222,9 +203,8 @@ def share_difference(
     so landings without an outcome widen them. Raises ValueError where no pair has an outcome in both.
     """
 
-    def estimated(shares: Array) -> tuple[Estimated, Array]:
-        found = share_estimate(shares, bed, why=why)
-        return Estimated(found.share, found.lower, found.upper), shares
+    def estimated(shares: Array) -> tuple[Estimate, Array]:
+        return share_estimate(shares, bed, why=why).share, shares
 
     return _difference(estimated, first, second, bed)
 
@@ -243,19 +223,19 @@ def quantile_difference(
     Each quantile is over the runs that have the output in its own study. counts, why: as for `quantile_estimate`.
     """
 
-    def estimated(values: Array) -> tuple[Estimated, Array]:
+    def estimated(values: Array) -> tuple[Estimate, Array]:
         found = quantile_estimate(values, bed, probability, counts=counts, why=why)
-        if found.value is None:
-            return Estimated(None, None, None), values
+        if not found.is_known:
+            return found, values
         below = np.where(np.isfinite(values), (values <= found.value).astype(float), np.nan)
         # The quantile is the higher the fewer values lie below it.
-        return Estimated(found.value, found.lower, found.upper), -below
+        return found, -below
 
     return _difference(estimated, first, second, bed)
 
 
 def _difference(
-    estimated: Callable[[Array], tuple[Estimated, Array]], first: ArrayLike, second: ArrayLike, bed: ArrayLike
+    estimated: Callable[[Array], tuple[Estimate, Array]], first: ArrayLike, second: ArrayLike, bed: ArrayLike
 ) -> PairedDifference:
     """From the estimate of each study and what each run contributes to it."""
     of_first, of_second = answers("first", first), answers("second", second)
@@ -264,30 +244,21 @@ def _difference(
         raise ValueError(f"first has {len(of_first)} runs and second {len(of_second)}; give the same pairs of both")
     (one, given), (two, taken) = estimated(of_first), estimated(of_second)
     pairs = int((np.isfinite(given) & np.isfinite(taken)).sum())
-    value = None if one.value is None or two.value is None else two.value - one.value
     correlation = pair_correlation(given, taken, beds)
-    bounds, unpaired = (_bounds(one, two, r) for r in (correlation or 0.0, 0.0))
+    bounds, unpaired = (difference_bounds(one, two, r) for r in (correlation or 0.0, 0.0))
     lower, upper = bounds if bounds is not None else (None, None)
-    return PairedDifference(one, two, value, lower, upper, LEVEL, correlation, unpaired, pairs)
+    difference = Estimate(two.value - one.value, lower, upper) if one.is_known and two.is_known else UNKNOWN
+    return PairedDifference(one, two, difference, correlation, unpaired, pairs)
 
 
-def _bounds(first: Estimated, second: Estimated, correlation: float) -> Bounds | None:
-    """Bounds of second less first; None where one of both lacks an end."""
-    ends = (first.value, first.lower, first.upper, second.value, second.lower, second.upper)
-    if None in ends:
-        return None
-    one, one_low, one_high, two, two_low, two_high = (float(end) for end in ends if end is not None)
-    return difference_bounds((one, one_low, one_high), (two, two_low, two_high), correlation)
-
-
-def difference_bounds(
-    first: tuple[float, float, float], second: tuple[float, float, float], correlation: float = 0.0
-) -> Bounds:
-    """Bounds of second less first, each given as value, lower and upper bound.
+def difference_bounds(first: Estimate, second: Estimate, correlation: float = 0.0) -> Bounds | None:
+    """Bounds of second less first; None where one of both lacks an end.
 
     Source: [Zou-2008] (the variances are recovered at the bounds that decide).
     """
-    (one, one_low, one_high), (two, two_low, two_high) = first, second
+    if first.bounds is None or second.bounds is None:
+        return None
+    (one, (one_low, one_high)), (two, (two_low, two_high)) = (first.value, first.bounds), (second.value, second.bounds)
 
     def reach(a: float, b: float) -> float:
         return math.sqrt(max(a * a + b * b - 2.0 * correlation * a * b, 0.0))

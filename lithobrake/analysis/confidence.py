@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import LEVEL as LEVEL
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, labels, numbers_or_nan, whole_number
-from lithobrake.vocabulary.percentages import LEVEL as LEVEL
 
 Bounds = tuple[float, float]
 
@@ -17,16 +18,6 @@ NEAR_CERTAIN = 0.1
 NORMAL_QUANTILE_95 = 1.959963984540054
 # Probabilities beyond this quantile are below the smallest float.
 MOST_QUANTILE = 40.0
-
-
-@dataclass(frozen=True)
-class IntervalEstimate:
-    """A number, the bounds that hold the truth with probability `level`, all in the unit of the number."""
-
-    value: float
-    lower: float
-    upper: float
-    level: float = LEVEL
 
 
 def t_quantile(freedom: float) -> float:
@@ -210,13 +201,13 @@ class BedComponents:
         return variance / (variance + self.within) if self.within > 0.0 else 1.0
 
     @property
-    def correlation(self) -> IntervalEstimate:
+    def correlation(self) -> Estimate:
         """Correlation of two runs on one bed (intraclass): the value not cut at 0, its bounds within [0, 1]."""
         if self.within <= 0.0:
-            return IntervalEstimate(1.0, 0.0, 1.0)
+            return Estimate(1.0, 0.0, 1.0)
         variances = [self.bed_variance, *(self.variance_at(0.5 + side * LEVEL) for side in (-0.5, 0.5))]
         value, lower, upper = (self.correlation_at(one) for one in variances)
-        return IntervalEstimate(value, lower, upper)
+        return Estimate(value, lower, upper)
 
 
 def bed_components(values: Array, bed: Labels, terms: Array | None = None) -> BedComponents:

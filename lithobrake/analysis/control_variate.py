@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answers
+from lithobrake.analysis.confidence import LEVEL, answers
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import Estimate
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -99,7 +100,7 @@ def ridge(terms: Array, degrees: Labels, y: Array) -> Array:
 SKEWNESS_FACTOR = 1.5
 
 
-def chaos_variance(differences: ArrayLike) -> IntervalEstimate:
+def chaos_variance(differences: ArrayLike) -> Estimate:
     """Variance that chaos alone gives an output, from differences [pair_count] of twins [unit of the output].
 
     Twins differ in nothing that anyone could know, so half the mean square of their difference is the variance.
@@ -111,10 +112,10 @@ def chaos_variance(differences: ArrayLike) -> IntervalEstimate:
     squares = _squares(differences)
     total, count = 0.5 * float(squares.sum()), len(squares)
     lower, upper = (total / float(special.chdtri(count, 0.5 - side * LEVEL)) for side in (0.5, -0.5))
-    return IntervalEstimate(total / count, lower, upper)
+    return Estimate(total / count, lower, upper)
 
 
-def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
+def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> Estimate:
     """Share of an output's variance that goes with its soil, interactions with bed, place and attitude included.
 
     differences [pair_count] between two soils of their own on the same bed, place and attitude; y [run_count]: the
@@ -133,11 +134,11 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> IntervalEstimate:
     deviations = (known - known.mean()) ** 2
     effect = min(float(halves.mean() * len(known) / ((len(known) - 1) * deviations.mean())), 1.0)
     if effect == 0.0:
-        return IntervalEstimate(0.0, 0.0, 0.0)
+        return Estimate(0.0, 0.0, 0.0)
     error = sum(float(one.var(ddof=1) / (len(one) * one.mean() ** 2)) for one in (halves, deviations))
     freedom = 2.0 / (SKEWNESS_FACTOR * error)
     lower, upper = (effect * freedom / float(special.chdtri(freedom, 0.5 - side * LEVEL)) for side in (0.5, -0.5))
-    return IntervalEstimate(effect, lower, min(upper, 1.0))
+    return Estimate(effect, lower, min(upper, 1.0))
 
 
 def _squares(differences: ArrayLike) -> Array:

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, answers, numbered_beds
+from lithobrake.analysis.confidence import LEVEL, answers, numbered_beds
 from lithobrake.analysis.outcome_model import refit_interval, unseen_limit
-from lithobrake.analysis.share_estimate import ShareEstimate, share_estimate
+from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import numbers_or_nan, random_numbers, whole_number
+from lithobrake.vocabulary.landing_fraction import LandingFraction
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -26,24 +28,21 @@ DRAW_COUNT = 400
 class FailureInput:
     """An input among failing landings beside the same over all.
 
-    distance        largest difference of the two distribution functions (Kolmogorov's), 0 to 1
-    lower, upper    its interval, by drawing the beds anew
-    luck            distance that no input without effect passes, with probability `level`, all inputs together
+    distance        largest difference of the two distribution functions (Kolmogorov's), 0 to 1; its interval by drawing
+                    the beds anew
+    luck            distance that no input without effect passes, with probability LEVEL, all inputs together
     median, median_of_all   of the input among failing landings, and by its law, in its unit
     """
 
-    distance: float
-    lower: float
-    upper: float
+    distance: Estimate
     luck: float
     median: float
     median_of_all: float
-    level: float = LEVEL
 
     @property
     def found(self) -> bool:
         """Whether failing landings differ in this input by more than luck."""
-        return self.distance > self.luck
+        return self.distance.value > self.luck
 
 
 def failure_inputs(
@@ -78,9 +77,9 @@ def failure_inputs(
         # Drawing anew adds the luck of the draw to a distance, which has no sign: what it adds is taken off.
         spread = column.distance(drawn) - max(float(np.mean(column.distance(drawn))) - distance, 0.0)
         lower, upper = np.quantile(spread, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
+        bounds = max(min(float(lower), distance), 0.0), min(max(float(upper), distance), 1.0)
         found[name] = FailureInput(
-            distance, max(min(float(lower), distance), 0.0), min(max(float(upper), distance), 1.0), float(luck),
-            column.median(weights), float(law.median),
+            Estimate(distance, *bounds), float(luck), column.median(weights), float(law.median)
         )  # fmt: skip
     return found
 
@@ -130,8 +129,7 @@ RUNS, EMULATOR = "runs", "emulator"
 class FailureProbability:
     """Probability of a limit state over the law of the inputs, on beds that were not in the study.
 
-    probability, lower, upper   from the runs where it is at least a fiftieth away from 0 and 1, else from the emulator;
-                                bounds None where there is none, and `why` says why
+    probability                 from the runs where it is at least a fiftieth away from 0 and 1, else from the emulator
     source                      "runs" or "emulator"
     by_runs                     what the runs say, whichever answers, with bounds for those without an outcome
     by_emulator                 what the emulator says; None where it was not asked, or cannot tell
@@ -140,19 +138,11 @@ class FailureProbability:
                                 then reaches at least as far as that of the runs
     """
 
-    probability: float
-    lower: float | None
-    upper: float | None
+    probability: Estimate
     source: str
-    by_runs: ShareEstimate
-    by_emulator: IntervalEstimate | None
+    by_runs: LandingFraction
+    by_emulator: Estimate | None
     tail_limit: float
-    level: float = LEVEL
-
-    @property
-    def why(self) -> str | None:
-        """Why there is no interval; None where there is one."""
-        return self.by_runs.why
 
 
 def failure_probability(
@@ -178,20 +168,22 @@ def failure_probability(
     runs = share_estimate(failing, bed, terms=terms, like_missing=like_missing, why=why)
     beds = np.asarray(bed)[np.isfinite(numbers_or_nan("failing", failing))]
     limit = unseen_limit(beds)
-    by_runs = FailureProbability(runs.share, runs.lower, runs.upper, RUNS, runs, None, limit)
-    if drawn is None or runs.lower is None or runs.upper is None:
+    by_runs = FailureProbability(runs.share, RUNS, runs, None, limit)
+    if drawn is None or runs.share.bounds is None:
         return by_runs
     emulator = refit_interval(*drawn, len(np.unique(beds)))
-    if RARE <= runs.share <= 1.0 - RARE:
+    if RARE <= runs.share.value <= 1.0 - RARE:
         return replace(by_runs, by_emulator=emulator)
     # The emulator learnt nothing from the runs without an outcome: none of them may meet the limit state, or all.
-    lower, upper = (1.0 - runs.missing) * emulator.lower, (1.0 - runs.missing) * emulator.upper + runs.missing
+    assert emulator.bounds is not None
+    lower, upper = ((1.0 - runs.missing) * end for end in emulator.bounds)
+    upper += runs.missing
     # A tail that is rarer than so many beds can show rests on the form of its scatter: it rules out no more than they.
     if emulator.value < limit:
-        upper = max(upper, runs.upper)
+        upper = max(upper, runs.share.bounds[1])
     if emulator.value > 1.0 - limit:
-        lower = min(lower, runs.lower)
-    return FailureProbability(emulator.value, lower, upper, EMULATOR, runs, emulator, limit)
+        lower = min(lower, runs.share.bounds[0])
+    return FailureProbability(Estimate(emulator.value, lower, upper), EMULATOR, runs, emulator, limit)
 
 
 def drawn_failures(

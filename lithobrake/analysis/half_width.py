@@ -264,8 +264,7 @@ def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:
     known, beds = answered_runs(answers("values", values), bed)
     if len(known) == 0:
         return None
-    found = share_estimate(known, beds)
-    return None if found.lower is None or found.upper is None else 0.5 * (found.upper - found.lower)
+    return share_estimate(known, beds).share.half_width
 
 
 def scatter_of(values: ArrayLike, bed: ArrayLike) -> tuple[float, float] | None:

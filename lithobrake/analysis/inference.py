@@ -9,14 +9,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate
-from lithobrake.analysis.posterior import ENDLESS, INSTALL, WALKER_COUNT, Observation, Proposal, by_bed, can_walk, walk
+from lithobrake.analysis.confidence import LEVEL
+from lithobrake.analysis.posterior import (
+    ENDLESS,
+    INSTALL,
+    WALKER_COUNT,
+    Observation,
+    Proposal,
+    by_bed,
+    can_walk,
+    walk,
+)
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.training import one_thread
 from lithobrake.emulator.density import BedEffect, observed_density
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.percentages import percent
 
@@ -47,8 +57,8 @@ class LearntInput:
     on the scale of its law; information: Kullback-Leibler divergence of after from before [nats].
     """
 
-    after: IntervalEstimate
-    before: IntervalEstimate
+    after: Estimate
+    before: Estimate
     sd_ratio: float
     information: float
 
@@ -91,7 +101,7 @@ class Posterior:
             # Where one point has all the weight its law has no width, and no more is known of it.
             after, before = np.sqrt(np.cov(germ, aweights=self.weights, ddof=0)), _germ_deviation(law)
             found[name] = LearntInput(
-                IntervalEstimate(middle, lower, upper), IntervalEstimate(median, least, most),
+                Estimate(middle, lower, upper), Estimate(median, least, most),
                 float(after / before), self._information(law.cdf(values)),
             )  # fmt: skip
         return found

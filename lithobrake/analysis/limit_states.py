@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import LEVEL, t_quantile
+from lithobrake.analysis.confidence import t_quantile
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import labels, numbers, random_numbers, whole_number
 from lithobrake.vocabulary.limit_state import COMPARED, Comparison, Condition, Junction, LimitState, Negation, Word
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -122,7 +123,7 @@ Margin = Callable[[Array], ArrayLike]
 class SubsetResult:
     """What subset simulation found.
 
-    probability, lower, upper   of failure, its bounds from the coefficient of variation on the logarithmic scale
+    probability                 of failure, its bounds from the coefficient of variation on the logarithmic scale
     coefficient_of_variation    standard deviation of the probability over itself, as the groups of points tell it
     origins                     how many groups of one size the points that fail descend from; 0 without any
     thresholds [level_count]    margins that the levels lay below; the last is 0
@@ -132,9 +133,7 @@ class SubsetResult:
     reached                     whether a level had failing points; without, probability is 0 and upper a rough bound
     """
 
-    probability: float
-    lower: float
-    upper: float
+    probability: Estimate
     coefficient_of_variation: float
     origins: float
     thresholds: Array
@@ -142,7 +141,6 @@ class SubsetResult:
     failing: Array
     evaluation_count: int
     reached: bool = True
-    level: float = LEVEL
 
 
 def subset_simulation(
@@ -223,10 +221,11 @@ class _Levels:
         origins = float(failing.sum() ** 2 / np.sum(failing**2)) if len(failing) else 0.0
         told = variation, origins, np.array(self.thresholds), np.array(self.shares), points[fails], count
         if not len(failing):
-            return SubsetResult(0.0, 0.0, probability, *told, reached=False)
+            return SubsetResult(Estimate(0.0, 0.0, probability), *told, reached=False)
         # One origin alone is counted as two.
         half = t_quantile(max(origins - 1.0, 1.0)) * math.sqrt(math.log1p(variation**2))
-        return SubsetResult(probability, probability * math.exp(-half), min(probability * math.exp(half), 1.0), *told)
+        lower, upper = probability * math.exp(-half), min(probability * math.exp(half), 1.0)
+        return SubsetResult(Estimate(probability, lower, upper), *told)
 
     def _variation(self) -> float:
         """Coefficient of variation of the probability, as groups differ. Source: [Lee-2018]."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, IntervalEstimate, share_interval, t_quantile
+from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
 from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
 
@@ -122,7 +123,7 @@ def unseen_limit(bed: ArrayLike) -> float:
     return upper_limit(len(np.unique(beds)), LEVEL)
 
 
-def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> IntervalEstimate:
+def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Estimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
     counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
@@ -144,7 +145,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Inte
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
     limit = upper_limit(bed_count, LEVEL)
     if share in (0.0, 1.0):
-        return IntervalEstimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
+        return Estimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
     shares = met / drawn
     total_variance = float(shares.var(ddof=1))
     between = total_variance - float(np.mean(shares * (1.0 - shares) / (drawn - 1.0)))
@@ -156,5 +157,5 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Inte
     lower, upper = share_interval(share, half)
     # On the logit scale a few draws with the event could pass for anything.
     if share < 0.5:
-        return IntervalEstimate(share, lower, min(upper, max(share + half, limit)))
-    return IntervalEstimate(share, max(lower, min(share - half, 1.0 - limit)), upper)
+        return Estimate(share, lower, min(upper, max(share + half, limit)))
+    return Estimate(share, max(lower, min(share - half, 1.0 - limit)), upper)

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, Bounds, IntervalEstimate, answered_runs, normal_quantile, t_quantile
+from lithobrake.analysis.confidence import LEVEL, Bounds, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.arrays import Array, Labels
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_TAIL
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.percentages import QUANTILES
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
@@ -18,24 +19,7 @@ from lithobrake.vocabulary.percentages import QUANTILES
 TAIL = 0.1
 
 
-@dataclass(frozen=True)
-class QuantileEstimate:
-    """A quantile of an output with its interval.
-
-    value         in the unit of the output; None where no run has the output
-    lower, upper  its interval; an end that the runs cannot give is None, and `why` has the reason
-    level         confidence of the interval
-    why           why an end is missing; None where both are there
-    """
-
-    value: float | None
-    lower: float | None
-    upper: float | None
-    level: float
-    why: str | None
-
-
-def mean_estimate(y: ArrayLike, bed: ArrayLike) -> IntervalEstimate:
+def mean_estimate(y: ArrayLike, bed: ArrayLike) -> Estimate:
     """Mean of an output y [run_count], NaN where a run has none, with its interval from beds [run_count].
 
     For an output with a heavy tail, as the contact time, read the quantiles: a few rare runs carry much of its mean,
@@ -44,17 +28,15 @@ def mean_estimate(y: ArrayLike, bed: ArrayLike) -> IntervalEstimate:
     """
     values, beds = _known(y, bed)
     mean, half = float(values.mean()), t_quantile(int(beds.max())) * standard_error(values, beds)
-    return IntervalEstimate(mean, mean - half, mean + half)
+    return Estimate(mean, mean - half, mean + half)
 
 
-def quantile_estimates(
-    y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = QUANTILES
-) -> list[IntervalEstimate]:
+def quantile_estimates(y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = QUANTILES) -> list[Estimate]:
     """Quantiles of an output y [run_count], NaN where a run has none, with their intervals from beds [run_count].
 
     The share of runs below a quantile has an interval from beds; the bounds are the quantiles at its ends, so they
     follow the skewness of the output and stay among its values. Below 0.1 and above 0.9 fewer than ten beds give no
-    interval: the bounds are infinite. Raises ValueError for runs on one bed, and for probabilities outside 0 to 1.
+    interval. Raises ValueError for runs on one bed, and for probabilities outside 0 to 1.
     Source: [Woodruff-1952] (intervals of quantiles); [Hyndman-1996], definition 5 (a run in the middle of its step).
     """
     if not all(0.0 < probability < 1.0 for probability in probabilities):
@@ -65,18 +47,18 @@ def quantile_estimates(
     for probability in probabilities:
         quantile = float(np.interp(probability, places, ordered))
         if _few_beds_of_tail(probability, beds):
-            found.append(IntervalEstimate(quantile, -math.inf, math.inf))
+            found.append(Estimate(quantile, None, None))
             continue
         error = standard_error((values <= quantile).astype(float), beds)
         half = t_quantile(int(beds.max())) * error
         lower, upper = np.interp([probability - half, probability + half], places, ordered).tolist()
-        found.append(IntervalEstimate(quantile, lower, upper))
+        found.append(Estimate(quantile, lower, upper))
     return found
 
 
 def quantile_estimate(
     y: ArrayLike, bed: ArrayLike, probability: float, *, counts: bool = False, why: str | None = None
-) -> QuantileEstimate:
+) -> Estimate:
     """Estimate a quantile of an output y [run_count], NaN where a run has none, with its interval where there is one.
 
     bed     of each run [run_count]: the units of the interval
@@ -93,14 +75,14 @@ def quantile_estimate(
         raise ValueError(f"probability is {probability}; it must lie between 0 and 1")
     values, beds = answered_runs(y, bed)
     if len(values) == 0:
-        return QuantileEstimate(None, None, None, LEVEL, why or "no run has this output")
+        return Estimate(math.nan, None, None, why_missing=why or "no run has this output")
     quantile = _at(values, probability, counts)
     if why is None and beds.max() == 0:
         why = ONE_BED
     if why is None and _few_beds_of_tail(probability, beds):
         why = f"{beds.max() + 1} beds give no interval of a quantile so far out: {FEWEST_BEDS_OF_TAIL} are needed"
     if why is not None:
-        return QuantileEstimate(quantile, None, None, LEVEL, why)
+        return Estimate(quantile, None, None, why_missing=why)
     # Many runs may lie on the quantile of a count itself.
     below = (values <= quantile, values < quantile) if counts else (values <= quantile,)
     effect = max(_design_effect(one.astype(float), beds) for one in below)
@@ -109,7 +91,7 @@ def quantile_estimate(
     lower, upper = (_at(values, one, counts) if step <= one <= 1.0 - step else None for one in bounds)
     missing = [name for name, end in (("lower", lower), ("upper", upper)) if end is None]
     beyond = f"the {' and the '.join(missing)} end lies beyond all {len(values)} values" if missing else None
-    return QuantileEstimate(quantile, lower, upper, LEVEL, beyond)
+    return Estimate(quantile, lower, upper, why_missing=beyond)
 
 
 def _at(values: Array, share: float, counts: bool) -> float:
@@ -154,19 +136,13 @@ def _known(y: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:
 class DirectionEstimate:
     """Mean direction and resultant length of an angle over the input distributions and over new beds.
 
-    mean_direction           [rad], above -pi and at most pi
-    mean_direction_bounds    the direction less and plus at most pi [rad], so they may lie outside -pi to pi; a whole
-                             turn where the landings have no preferred direction; None without an interval
-    resultant_length         0 where directions cancel, 1 where all are alike
-    resultant_length_bounds  its interval, within 0 to 1; None without an interval
-    level                    confidence of each interval
+    mean_direction    [rad], above -pi and at most pi; its bounds the direction less and plus at most pi [rad], so they
+                      may lie outside -pi to pi; a whole turn where the landings have no preferred direction
+    resultant_length  0 where directions cancel, 1 where all are alike; its interval within 0 to 1
     """
 
-    mean_direction: float
-    mean_direction_bounds: Bounds | None
-    resultant_length: float
-    resultant_length_bounds: Bounds | None
-    level: float = LEVEL
+    mean_direction: Estimate
+    resultant_length: Estimate
 
 
 def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> DirectionEstimate:
@@ -188,15 +164,15 @@ def direction_estimate(angle: ArrayLike, bed: ArrayLike, *, why: str | None = No
     direction, length = math.atan2(sine, cosine), math.hypot(cosine, sine)
     bed_count = int(beds.max()) + 1
     if why is not None or bed_count == 1:
-        return DirectionEstimate(direction, None, length, None)
+        return DirectionEstimate(Estimate(direction, None, None), Estimate(length, None, None))
     quantile = t_quantile(bed_count - 1)
     across, along = (quantile * standard_error(wave(values - direction), beds) for wave in (np.sin, np.cos))
     # Where the error of the mean vector is as long as the vector itself it may point anywhere.
     half = math.asin(across / length) if across < length else math.pi
     # Which way a vector points that may be 0 is chance, and so is which error is the one along it.
     error = max(across, along) if half == math.pi else along
-    lengths = _length_bounds(length, error / normal_quantile())
-    return DirectionEstimate(direction, (direction - half, direction + half), length, lengths)
+    lengths = Estimate(length, *_length_bounds(length, error / normal_quantile()))
+    return DirectionEstimate(Estimate(direction, direction - half, direction + half), lengths)
 
 
 def _length_bounds(length: float, error: float) -> Bounds:

@@ -1,7 +1,6 @@
 """A fraction of the landings, over the input distributions and over beds that were not in the study."""
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +21,9 @@ from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan
+from lithobrake.vocabulary.landing_fraction import LandingFraction
 
 ONE_BED = (
     "all runs landed on one bed; another bed would change this number, and these runs cannot show by how much: set "
@@ -33,36 +34,6 @@ FEWEST_LIKE = 5
 # The variance of beds is taken at its upper limit of this confidence: few beds say little of it, and its plain estimate
 # is 0 in half of the studies where beds differ little.
 BED_VARIANCE_CONFIDENCE = 0.7
-
-
-@dataclass(frozen=True)
-class ShareEstimate:
-    """A fraction of the landings with what they show of it; fractions of 1.
-
-    share         over the input distributions, on beds that were not in the study; landings without an outcome count as
-                  those like them (see `share_estimate`)
-    lower, upper  its confidence interval, which assumes nothing of the landings without an outcome; None where the
-                  landings cannot give one, and `why` has the reason
-    level         confidence of each interval
-    source        how many landings with an outcome it comes from, of how many, on how many beds
-    next_bed      prediction interval of the fraction on a new bed; None without an interval, where all landings end
-                  alike, or with one landing a bed
-    if_missing    the fraction if it is 0, and if it is 1, for all landings without an outcome; without sampling error
-    missing       fraction of the landings that have no outcome
-    emulator      the fraction by the emulator, as the caller gave it
-    why           why there is no interval; None where there is one
-    """
-
-    share: float
-    lower: float | None
-    upper: float | None
-    level: float
-    source: str
-    next_bed: Bounds | None
-    if_missing: Bounds
-    missing: float
-    emulator: float | None
-    why: str | None
 
 
 class _Mean(NamedTuple):
@@ -92,9 +63,8 @@ def share_estimate(
     explained: ArrayLike | None = None,
     weights: ArrayLike | None = None,
     like_missing: ArrayLike | None = None,
-    emulator: float | None = None,
     why: str | None = None,
-) -> ShareEstimate:
+) -> LandingFraction:
     """Estimate the mean of `shares` over the input distributions, with its interval from beds.
 
     shares [run_count]        0 to 1 for each landing, as the share of its flights that return; NaN without an outcome
@@ -135,7 +105,7 @@ def share_estimate(
     next_bed = None if bounds is None else _next_bed(known, ends, bounds)
     lower, upper = bounds or (None, None)
     source, missing = _source(answered, known.bed_count), float(np.mean(~answered))
-    return ShareEstimate(share, lower, upper, LEVEL, source, next_bed, if_missing, missing, emulator, why)
+    return LandingFraction(Estimate(share, lower, upper, why_missing=why), source, next_bed, if_missing, missing)
 
 
 def plain_interval(shares: ArrayLike, bed: ArrayLike) -> Bounds | None:

@@ -11,7 +11,6 @@ from lithobrake.analysis.confidence import (
     LEVEL,
     BedComponents,
     Bounds,
-    IntervalEstimate,
     answers,
     bed_components,
     numbered_beds,
@@ -20,6 +19,7 @@ from lithobrake.analysis.confidence import (
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms
 from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.estimate import Estimate
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -54,25 +54,24 @@ class VarianceShares:
     """
 
     variance: float
-    soil: IntervalEstimate
-    soil_by_input: dict[str, IntervalEstimate]
-    arrival: IntervalEstimate | None
-    attitude: IntervalEstimate | None
-    bed: IntervalEstimate
-    place: IntervalEstimate
-    chaos: IntervalEstimate | None
+    soil: Estimate
+    soil_by_input: dict[str, Estimate]
+    arrival: Estimate | None
+    attitude: Estimate | None
+    bed: Estimate
+    place: Estimate
+    chaos: Estimate | None
     unbiased: dict[str, float]
     terms: str
 
     @property
-    def soil_doubled(self) -> IntervalEstimate:
+    def soil_doubled(self) -> Estimate:
         """At least so much would be the soil's with input distributions twice as wide, everything else as it is.
 
         Terms of first degree have four times the variance then, those of higher degree more; each distribution is
         widened on its own scale, that of the logarithm where it has one.
         """
-        share = self.soil
-        return IntervalEstimate(*(4.0 * one / (1.0 + 3.0 * one) for one in (share.value, share.lower, share.upper)))
+        return self.soil.on_scale(lambda share: 4.0 * share / (1.0 + 3.0 * share))
 
 
 class _Part(NamedTuple):
@@ -93,10 +92,10 @@ class _Part(NamedTuple):
         nearest = min(max(value, 0.0), 1.0)
         return cls(value, value - half, value + half, (nearest - half, nearest + half))
 
-    def estimate(self) -> IntervalEstimate:
+    def estimate(self) -> Estimate:
         """The share to print, within its bounds and within [0, 1]."""
         value = min(max(self.value, 0.0), 1.0)
-        return IntervalEstimate(value, min(max(self.printed[0], 0.0), value), max(min(self.printed[1], 1.0), value))
+        return Estimate(value, min(max(self.printed[0], 0.0), value), max(min(self.printed[1], 1.0), value))
 
 
 class _Terms(NamedTuple):
@@ -280,9 +279,10 @@ def _of_beds(components: BedComponents, rest: float) -> _Part:
     return _Part(value, lower, upper, (lower, most))
 
 
-def _of_chaos(chaos: IntervalEstimate, total: float) -> _Part:
+def _of_chaos(chaos: Estimate, total: float) -> _Part:
     """Share of chaos in the whole; one above 1 has the bounds to print of 1: chi-square intervals scale with values."""
-    value, bounds = chaos.value / total, (chaos.lower / total, chaos.upper / total)
+    assert chaos.bounds is not None
+    value, bounds = chaos.value / total, (chaos.bounds[0] / total, chaos.bounds[1] / total)
     excess = max(value, 1.0)
     return _Part(value, *bounds, (bounds[0] / excess, bounds[1] / excess))
 
@@ -300,8 +300,8 @@ def _remainder(parts: list[_Part]) -> _Part:
     return _Part(share, share - float(down), share + float(up), (nearest - float(down), nearest + float(up)))
 
 
-def _completing(rest: _Part, others: list[IntervalEstimate]) -> IntervalEstimate:
+def _completing(rest: _Part, others: list[Estimate]) -> Estimate:
     """The remainder to print: what the others, as printed, leave of 1; its interval holds it."""
     value = min(max(1.0 - sum(one.value for one in others), 0.0), 1.0)
     lower, upper = (min(max(bound, 0.0), 1.0) for bound in rest.printed)
-    return IntervalEstimate(value, min(lower, value), max(upper, value))
+    return Estimate(value, min(lower, value), max(upper, value))

@@ -152,7 +152,7 @@ def sites(
         from lithobrake.files.atomic import refuse_existing
         from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
         from lithobrake.progress import study_progress
-        from lithobrake.results.json_values import to_json
+        from lithobrake.results.result_files import json_values
 
         place = folder / "sites"
         written = () if force else (*site_map_files(place), site_cells_file(place))
@@ -165,4 +165,5 @@ def sites(
             )  # fmt: skip
         paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
     beside = ", ".join(one.name for one in paths[1:])
-    tell_result(json, to_json(found), [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"])
+    lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"]
+    tell_result(json, json_values(found), lines)

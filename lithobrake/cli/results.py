@@ -217,14 +217,14 @@ def compare(
     place = given_folder(out)
     with one_sentence():
         from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
-        from lithobrake.results.json_values import to_json
+        from lithobrake.results.result_files import json_values
 
         for path in comparison_files(place):
             refuse_written(path, force)
         comparison = compare_studies(first, second)
         page, numbers = write_compared(comparison, place)
     lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]
-    tell_result(json, to_json(comparison), lines)
+    tell_result(json, json_values(comparison), lines)
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:

@@ -55,7 +55,8 @@ def _generator(count: int) -> int:
     return min((one for one in range(1, count + 1) if math.gcd(one, count) == 1), key=lambda one: abs(one - golden))
 
 
-RUN_FLIGHTS_FILE, IMPACTS = "run_flights.csv", "run_impacts.csv"
+RUN_FLIGHTS_FILE: str = "run_flights.csv"
+IMPACTS: str = "run_impacts.csv"
 # What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
 FATES = (
     *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),

@@ -21,10 +21,10 @@ from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arrivals, TouchdownEmulator
 from lithobrake.pipeline.sky import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.results.run_results import ShareInterval
 from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteSpread
 from lithobrake.study.question_sections import SkyBody
 from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_REGION
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
@@ -170,7 +170,7 @@ def site_cells(
     )
 
 
-def all_at_rest(landers: SiteLanders, fitted: Refits) -> ShareInterval | None:
+def all_at_rest(landers: SiteLanders, fitted: Refits) -> Estimate | None:
     """Landers at rest over all cells that are answered, as large as each other; None where none is.
 
     All cells have the same landers, so their number counts in full between the refits, and bounds are wide.
@@ -182,11 +182,11 @@ def all_at_rest(landers: SiteLanders, fitted: Refits) -> ShareInterval | None:
     return share_of_known(end == JourneyEnd.AT_REST, end != UNKNOWN_END, refit, fitted)
 
 
-def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits) -> ShareInterval:
+def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits) -> Estimate:
     """Share of the landers of known end that have met an event, all [lander_count]; bounds hold for all landers."""
     everyone = np.ones(len(met), dtype=bool)
     least, most = (fitted.share(one, everyone, refit) for one in (met, met | ~known))
-    return ShareInterval(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper)
+    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper)
 
 
 def _ends(landers: SiteLanders, cell: int, fitted: Refits) -> SiteEnds:
@@ -261,10 +261,9 @@ def site_agreement(job: Job) -> tuple[SiteAgreement, ...]:
             continue
         latitude_deg, longitude_deg = (None, None) if place is None else regions.centres_deg[place].tolist()
         of_region = share_difference(landings[those], emulator[those], table.bed[those], why=why)
-        pair = (of_region.first, of_region.second)
-        first, second = (ShareInterval(one.value or 0.0, one.lower, one.upper) for one in pair)
-        difference = ShareInterval(of_region.value or 0.0, of_region.lower, of_region.upper)
-        found.append(SiteAgreement(latitude_deg, longitude_deg, int(those.sum()), first, second, difference))
+        # The map says why there are no intervals.
+        shares = (one.without_reason for one in (of_region.first, of_region.second, of_region.difference))
+        found.append(SiteAgreement(latitude_deg, longitude_deg, int(those.sum()), *shares))
     return tuple(found)
 
 

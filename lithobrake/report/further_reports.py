@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from lithobrake.files.atomic import write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Plot, Tile
 from lithobrake.report.figures.body_figures import agreement_figure, sites_figure
-from lithobrake.report.figures.option_figures import ShownDifference, difference_figure
+from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
 from lithobrake.report.pages.html import page
 from lithobrake.report.study_report import drawn_panels
 from lithobrake.report.words.numbers import bounded, factor, number, sentence, shown, unit, verdict
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
-from lithobrake.results.run_results import Estimate
 from lithobrake.results.site_results import SiteCell, SiteMap, SiteSpread
 from lithobrake.vocabulary.constants import HOUR
-from lithobrake.vocabulary.percentages import BoundedShare, percent, with_interval
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.percentages import percent, with_interval
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,15 +49,14 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
 
 
 def _comparison_tiles(comparison: StudyComparison) -> list[Tile]:
-    told = [(one, one.difference.value) for one in list(comparison.answers.values())[:TOLD]]
     return [
         Tile(
-            shown(value, factor(one), signed=True),
+            shown(one.difference.value, factor(one), signed=True),
             unit(one, of_difference=True),
             f"{one.words}, B minus A: {verdict(one)}",
         )
-        for one, value in told
-        if value is not None
+        for one in list(comparison.answers.values())[:TOLD]
+        if one.difference.is_known
     ]
 
 
@@ -76,21 +75,15 @@ def _comparison_caption(comparison: StudyComparison) -> str:
 
 
 def _draw(comparison: StudyComparison) -> "Figure":
-    answers = comparison.answers.values()
-    fractions = [_shown(one, 100.0) for one in answers if one.is_fraction and one.difference.value is not None]
-    others = [
-        _shown(one, 100.0 / abs(one.first.value))
-        for one in answers
-        if not one.is_fraction and one.first.value and one.difference.value is not None
-    ]
+    answers = [one for one in comparison.answers.values() if one.difference.is_known]
+    fractions = [_shown(one, 100.0) for one in answers if one.is_fraction]
+    others = [_shown(one, 100.0 / abs(one.first.value)) for one in answers if not one.is_fraction and one.first.value]
     return difference_figure([("percentage points", fractions), ("difference over the value of A [%]", others)])
 
 
-def _shown(one: ComparedAnswer, times: float) -> ShownDifference:
-    found = one.difference
-    lower, upper = (None if end is None else times * end for end in (found.lower, found.upper))
-    words = f"{bounded(found, factor(one), signed=True)} {unit(one, of_difference=True)}".strip()
-    return ShownDifference(one.words, times * (found.value or 0.0), lower, upper, words)
+def _shown(one: ComparedAnswer, times: float) -> DifferenceRow:
+    words = f"{bounded(one.difference, factor(one), signed=True)} {unit(one, of_difference=True)}".strip()
+    return DifferenceRow(one.words, one.difference.on_scale(lambda value: times * value), words)
 
 
 def _comparison_table(comparison: StudyComparison) -> PageTable:
@@ -163,13 +156,13 @@ def _warnings(site_map: SiteMap) -> list[str]:
 
 
 def _site_tiles(site_map: SiteMap) -> list[Tile]:
-    shares = [site.ends.at_rest.share for site in site_map.cells if site.ends is not None]
+    shares = [site.ends.at_rest.value for site in site_map.cells if site.ends is not None]
     if not shares or site_map.at_rest is None:
         return []
     best = sum(site.not_worse for site in site_map.cells)
     hours = site_map.duration_s / HOUR
     return [
-        Tile(percent(site_map.at_rest.share).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
+        Tile(percent(site_map.at_rest.value).removesuffix(" %"), "%", f"at rest within {hours:.3g} h, over all sites"),
         Tile(f"{100 * min(shares):.0f} to {100 * max(shares):.0f}", "%", "at rest, from site to site"),
         Tile(str(best), f"of {len(site_map.cells)}", "sites cannot be distinguished from the best"),
         Tile(str(site_map.answered), f"of {len(site_map.cells)}", "sites have a result"),
@@ -201,12 +194,10 @@ def _agreement(site_map: SiteMap) -> PageTable:
         if one.latitude_deg is not None and one.longitude_deg is not None:
             where = f"{one.latitude_deg:.0f}, {one.longitude_deg:.0f} deg"
         off = one.difference
-        bounds = (
-            "" if off.lower is None or off.upper is None else f" ({100 * off.lower:+.0f} to {100 * off.upper:+.0f})"
-        )
+        bounds = "" if off.bounds is None else f" ({' to '.join(f'{100 * end:+.0f}' for end in off.bounds)})"
         verdict = {True: "yes", False: "no", None: ""}[one.agrees]
         shares = with_interval(one.landings), with_interval(one.emulator)
-        rows.append([where, str(one.journeys), *shares, f"{100 * off.share:+.0f}{bounds}", verdict])
+        rows.append([where, str(one.journeys), *shares, f"{100 * off.value:+.0f}{bounds}", verdict])
     note = "Both columns have the same landers, so the difference has a smaller error than either fraction."
     return PageTable("Emulator and landings", columns, rows, note, numbers=frozenset(columns[1:2]))
 
@@ -220,7 +211,7 @@ def _best(site_map: SiteMap) -> PageTable:
 def _least(site: SiteCell) -> tuple[float, float]:
     assert site.ends is not None
     rests = site.ends.at_rest
-    return (rests.share if rests.lower is None else rests.lower), rests.share
+    return (rests.value if rests.lower is None else rests.lower), rests.value
 
 
 def _site_table(site_map: SiteMap, cells: "tuple[SiteCell, ...] | list[SiteCell]", title: str) -> PageTable:
@@ -251,17 +242,15 @@ def _row(site: SiteCell, names: tuple[str, ...]) -> list[str]:
     return [f"{site.latitude_deg:.0f}", f"{site.longitude_deg:.0f}", *of_landers, *ground, str(site.journeys)]
 
 
-def _share(share: BoundedShare) -> str:
+def _share(share: Estimate) -> str:
     return with_interval(share).replace(" %", "")
 
 
 def _estimate(found: Estimate | None, unit: float) -> str:
     if found is None:
         return ""
-    value = number(found.value / unit, 2)
-    if found.lower is None or found.upper is None:
-        return value
-    return f"{value} ({number(found.lower / unit, 2)} to {number(found.upper / unit, 2)})"
+    value, ends = number(found.value / unit, 2), " to ".join(number(end / unit, 2) for end in found.bounds or ())
+    return f"{value} ({ends})" if ends else value
 
 
 def _spread(found: SiteSpread, times: float) -> str:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from lithobrake.files.reading import DamagedFileError, reading
 from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
-from lithobrake.results.journey_results import EndShare, JourneyRest
-from lithobrake.results.json_values import from_json
+from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.model_results import EmulatorResults, OutputErrors
 from lithobrake.results.questions import RareLimitState
+from lithobrake.results.result_files import results_in
+from lithobrake.results.run_results import CountedShare
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
@@ -129,7 +130,7 @@ class RunsPage(PageData):
     @property
     def level(self) -> float:
         """That of all intervals."""
-        return self.results.returns.level
+        return self.results.returns.share.level
 
     @property
     def shown_landing(self) -> str:
@@ -171,7 +172,7 @@ class JourneyPage(RunsPage):
 
     journeys: Table
     touchdowns: Table
-    ends: Mapping[str, EndShare]
+    ends: Mapping[str, CountedShare]
     at_rest: JourneyRest
     explorer: ExplorerTables | None
 
@@ -216,11 +217,9 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
     if has_scenes:
         _refuse_without(found.folder, (LANDING_FILE, "beds/bed_0.h5"))
     vertices, faces = found.body_shape
-    with reading(found.folder / SUMMARY_FILE, found.remedy):
-        provenance = from_json(Provenance, found.summary["provenance"], "provenance")
     return {
         "study": found.study,
-        "provenance": provenance,
+        "provenance": found.summary.provenance,
         "study_text": found.study_text,
         "bed": found.bed_bodies(0) if has_scenes else None,
         "landing": found.median_landing if has_scenes else None,
@@ -278,6 +277,6 @@ def _scores(found: StudyResults) -> dict[str, dict[str, OutputErrors]]:
     """Errors by set of runs and output."""
     with reading(found.folder / SCORES_FILE, found.remedy):
         return {
-            stage: {name: from_json(OutputErrors, errors, f"{stage}.{name}") for name, errors in table.items()}
+            stage: {name: results_in(OutputErrors, errors, f"{stage}.{name}") for name, errors in table.items()}
             for stage, table in found.scores.items()
         }

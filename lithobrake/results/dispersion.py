@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from lithobrake.results.json_values import INLINE
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.vocabulary.inline_fields import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
 
@@ -25,7 +25,7 @@ class RestRegion:
 
 
 @dataclass(frozen=True)
-class ImpactNumber:
+class ImpactNumber(Inlined):
     """A number of the flights that end on the body: of the runs of a drawn study, or of samples."""
 
     quantiles: Mapping[str, float] = field(metadata=INLINE)
@@ -85,11 +85,11 @@ class FlightChecks:
 
 
 @dataclass(frozen=True)
-class FlightResults:
+class FlightResults(Inlined):
     """The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are."""
 
-    impacts: ImpactNumbers = field(metadata=INLINE)
-    checks: FlightChecks | None = field(metadata=INLINE)
+    impacts: ImpactNumbers = field(default=ImpactNumbers(), metadata=INLINE)
+    checks: FlightChecks | None = field(default=None, metadata=INLINE)
     __repr__ = short_repr
 
 
@@ -128,7 +128,7 @@ class WithoutScatter:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GroundResults:
+class GroundResults(Inlined):
     """Ends of the followed samples on one kind of ground (docs/flights.md): settled, lofted, outside, flying, escaped,
     partner, sliding or bouncing. The kinds are soil, hard ground, and in a drawn study hard ground with the restitution
     of the soil (equivalent). null if none were followed. Quantiles are of the landers at rest, and absent if there are
@@ -156,7 +156,7 @@ class GroundResults:
     of: str
     """which trajectories the table describes and what they depend on, in words: hard ground uses no soil, bed or
     emulator of the study"""
-    interval: Level | None = field(metadata=INLINE)
+    interval: Level | None = field(default=None, metadata=INLINE)
     """of the shares; none on the equivalent ground, and on the soil of a paper study"""
     regions: tuple[RestRegion, ...] = ()
     """smallest regions that hold 50 and 95 % of the landers at rest; empty for fewer than five, or on one line"""

@@ -4,45 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lithobrake.results.dispersion import GroundResults, LandingEllipses, RestRegion
+from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.estimate import Number, Share
 from lithobrake.vocabulary.plain_text import short_repr
 
 
 @dataclass(frozen=True)
-class EndShare:
-    """Journeys that ended in one way."""
-
-    count: int
-    """of the journeys"""
-    share: float
-    """of 1; the shares of all ends add up to 1"""
-    lower: float | None
-    """lower bound, over beds and impact points not in the study; null where there is none"""
-    upper: float | None
-    """upper bound"""
-    why: str | None = None
-    """why there is no interval, in a sentence"""
-
-
-@dataclass(frozen=True)
-class RestQuantile:
-    """A quantile over the landers at rest."""
-
-    value: float | None
-    """in the unit of its quantity; null where no lander rests"""
-    lower: float | None
-    """lower bound of its 90 % interval, over beds not in the study; null where there is none"""
-    upper: float | None
-    """upper bound"""
-    why: str | None = None
-    """why a bound is missing, in a sentence"""
-
-
-@dataclass(frozen=True)
 class RestQuantiles:
-    """A number of the landers at rest."""
+    """A number of the landers at rest; bounds over beds not in the study."""
 
-    median: RestQuantile
-    q95: RestQuantile
+    median: Number
+    q95: Number
     """95th percentile"""
 
 
@@ -83,7 +55,7 @@ class JourneyRest:
     """distance over the ground from the aim point [m]"""
     regions: tuple[RestRegion, ...]
     """regions that hold 50 and 95 %; empty where why_no_regions says why"""
-    faces: Mapping[str, EndShare]
+    faces: Mapping[str, CountedShare]
     """by the side of the lander that is down, by its own axes; empty for a sphere"""
     tilt_deg: RestQuantiles | None
     """angle between that side's axis and the plumb line [deg]; null for a sphere"""
@@ -105,17 +77,17 @@ class SideResults:
     """the side in words, of a box with the lengths of its face"""
     landings: int
     """first touchdowns in which this side faces the ground: its axis is the nearest to the normal"""
-    speed_ratio: RestQuantile
+    speed_ratio: Number
     """median of rebound speed / impact speed of these landings"""
-    returns: EndShare
+    returns: CountedShare
     """return fraction of these landings; count: landings of which all flights return"""
-    at_rest: EndShare | None = None
+    at_rest: CountedShare | None = None
     """with [journey]: fraction of these landers that comes to rest"""
-    time_s: RestQuantile | None = None
+    time_s: Number | None = None
     """with [journey]: median time to rest of these landers [s]"""
     touchdowns: int | None = None
     """with [journey]: all touchdowns in which this side faces the ground"""
-    rests: EndShare | None = None
+    rests: CountedShare | None = None
     """with [journey]: fraction of these touchdowns in which the lander comes to rest"""
 
 
@@ -127,9 +99,9 @@ class SoilResults:
     """fraction of the surface of the body"""
     touchdowns: int
     """touchdowns in it"""
-    rests: EndShare | None
+    rests: CountedShare | None
     """fraction of these touchdowns in which the lander comes to rest; null if there are none"""
-    at_rest: EndShare
+    at_rest: CountedShare
     """fraction of all journeys that end at rest there"""
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     """latitude and east longitude [deg] along its edges; none for the ground elsewhere"""
@@ -137,41 +109,27 @@ class SoilResults:
 
 
 @dataclass(frozen=True)
-class Probability:
-    """A mean over the landers at rest of a fraction of the time: the probability for one of them at any time."""
-
-    share: float
-    """of 1"""
-    lower: float | None
-    """lower bound of its 90 % interval, over beds not in the study; null where there is none"""
-    upper: float | None
-    """upper bound"""
-    why: str | None = None
-    """why there is no interval, in a sentence"""
-
-
-@dataclass(frozen=True)
 class SkyResults:
     """Visibility of the Sun, Earth or the orbiter for the landers at rest (sky.csv). Fractions are of a day of the
     small body, of a span of dates, or of the times of the orbiter's states."""
 
-    day_fraction: RestQuantile
+    day_fraction: Number
     """median over the landers at rest of the fraction of the time in which they see it, of 1"""
-    day_fraction_q05: RestQuantile
+    day_fraction_q05: Number
     """5th percentile of it"""
-    least_day_fraction: RestQuantile
+    least_day_fraction: Number
     """median over the landers at rest of that of their worst day in a span of dates"""
-    probability: Probability
-    """probability that a lander at rest sees it at a random time"""
-    never: EndShare
+    probability: Share
+    """probability that a lander at rest sees it at a random time: mean of the fraction of the time"""
+    never: CountedShare
     """landers at rest that never see it"""
-    sides: Mapping[str, RestQuantile]
+    sides: Mapping[str, Number]
     """by the side of the lander, by its own axes: median fraction of the time in which it is seen and that side faces
     it; empty for a sphere"""
-    side_probabilities: Mapping[str, Probability]
+    side_probabilities: Mapping[str, Share]
     """by side: probability that at a random time it is seen and the side faces it, so that a panel is lit or an antenna
     sees the orbiter; empty for a sphere"""
-    dark_sides: Mapping[str, EndShare]
+    dark_sides: Mapping[str, CountedShare]
     """by the side: landers at rest on which it never faces the body while that is seen; empty for a sphere"""
 
 
@@ -203,7 +161,7 @@ class EmulatedJourneys:
     unknown: float
     """fraction of the landers with unknown end: outside the training range when the largest number of landings was
     reached"""
-    ends: Mapping[str, EndShare]
+    ends: Mapping[str, CountedShare]
     """ends of the others, as in results.ends; bounds over refits to resampled beds, widened by the unknown fraction"""
     agrees: bool | None
     """whether the fractions of all ends agree with those of the journeys within their joint intervals; null without

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lithobrake.results.json_values import INLINE
+from lithobrake.vocabulary.inline_fields import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
 Ends = tuple[float | None, float | None]
@@ -119,7 +119,7 @@ class OutputErrors:
 
 
 @dataclass(frozen=True)
-class SampledOutput:
+class SampledOutput(Inlined):
     """An output over the samples of the refined expansion that leave, in its unit."""
 
     mean: float
@@ -170,7 +170,7 @@ class OutputScore:
 
 
 @dataclass(frozen=True)
-class EmulatorScores:
+class EmulatorScores(Inlined):
     """Scores on held-out beds."""
 
     joint: JointScore

@@ -1,44 +1,25 @@
 """What a study says of its limit states and delivery options, and of its difference to another study."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Annotated
 
-from lithobrake.results.run_results import Estimate, ShareInterval
 from lithobrake.study.question_sections import SIDE
+from lithobrake.vocabulary.estimate import Estimate, Keyed, Number, Share
+from lithobrake.vocabulary.inline_fields import INLINE, Inlined
+from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.plain_text import short_repr
 
-
-@dataclass(frozen=True)
-class LimitStateRuns:
-    """A limit state estimated from the runs, whichever source is used."""
-
-    share: float
-    """of the landings that meet it"""
-    lower: float | None
-    """lower bound, over beds and impact points not in the study; null where there is none"""
-    upper: float | None
-    """upper bound"""
-    from_: str
-    """of how many landings and beds"""
-    next_bed: tuple[float, float] | None
-    """prediction interval for a new bed: lower, upper; null where that is not known"""
-    if_missing: tuple[float, float]
-    """the fraction if none, and if all, of the landings without an outcome meet it, without sampling error"""
-    missing: float
-    """fraction of the landings for which it is unknown"""
+Probability = Annotated[Estimate, Keyed("probability", has_level=True, has_reason=False)]
 
 
 @dataclass(frozen=True)
-class LimitStateInput:
-    """An input among the runs that meet a limit state."""
+class LimitStateInput(Inlined):
+    """An input among the runs that meet a limit state; bounds of the distance are from resampled beds."""
 
-    distance: float
+    distance: Annotated[Estimate, Keyed("distance", has_reason=False)] = field(metadata=INLINE)
     """largest difference between the distribution function of the input among the runs that meet it and its input
     distribution"""
-    lower: float
-    """lower bound, from resampled beds"""
-    upper: float
-    """upper bound"""
     luck: float
     """distance that, without any effect, any of the inputs exceeds in one of ten studies"""
     median: float
@@ -50,23 +31,18 @@ class LimitStateInput:
 
 
 @dataclass(frozen=True)
-class LimitStateResult:
+class LimitStateResult(Inlined):
     """A limit state of the study file (docs/reliability.md)."""
 
     condition: str
     """as in the study file"""
-    probability: float
+    probability: Probability = field(metadata=INLINE)
     """share of the landings that meet it, over the input distributions of the study file"""
-    lower: float | None
-    """lower bound, over beds and impact points not in the study; null where why says that there is none"""
-    upper: float | None
-    """upper bound"""
-    level: float
-    """probability that the bounds of this table stand for"""
     source: str
     """runs, or emulator if the probability is too close to 0 or 1 for the runs"""
-    runs: LimitStateRuns
-    emulator: ShareInterval | None
+    runs: LandingFraction
+    """estimate from the runs, whichever source is used"""
+    emulator: Share | None
     """estimate from the emulator; null if there is none"""
     tail_limit: float
     """upper limit of the probability of an event that occurred in no run on this number of beds"""
@@ -82,19 +58,13 @@ class LimitStateResult:
 
 
 @dataclass(frozen=True)
-class RareLimitState:
+class RareLimitState(Inlined):
     """A rare limit state, by subset simulation with landings of its own (rare_*.json, docs/reliability.md)."""
 
     condition: str
     """as in the study file"""
-    probability: float
+    probability: Probability = field(metadata=INLINE)
     """of a landing that meets it; 0 where it was not reached"""
-    lower: float | None
-    """lower bound; null where there is none"""
-    upper: float | None
-    """upper bound"""
-    level: float
-    """probability that the bounds stand for"""
     origins: float
     """how many beds of one size the landings that meet it come from"""
     warning: str | None
@@ -120,14 +90,14 @@ class RareLimitState:
 class AimOnGround:
     """A delivery option on one ground: bounds over refits on soil, by the number of landers on hard ground."""
 
-    settled: ShareInterval
+    settled: Share
     """landers at rest where the ground holds them, after all bounces"""
     missing: float
     """share of the landers with an unknown outcome"""
-    distance_p95: Estimate | None
+    distance_p95: Number | None
     """95 % of those at rest lie within this distance over the ground [m]; null if none is at rest, and a bound is null
     if there are too few landers for it"""
-    time_p95: Estimate | None
+    time_p95: Number | None
     """95 % of those at rest are at rest within this time [s]; null and bounds as for distance_p95"""
     allowed: bool
     """whether the option satisfies the conditions on this ground"""
@@ -155,7 +125,7 @@ class BestAim:
     share_of_refits: float | None
     """fraction of the refits in which it is the best, which is not the probability that it is the best; null on hard
     ground"""
-    own: ShareInterval | None
+    own: Share | None
     """its fraction of landers at rest without the selection bias, with the error over refits of all options that cannot
     be distinguished from it; null on hard ground, and if refits give none"""
     not_worse: tuple[int, ...] | None
@@ -163,7 +133,7 @@ class BestAim:
     together; null in the same cases"""
     next: int | None
     """place of the second best; null in the same cases"""
-    difference: Estimate | None
+    difference: Number | None
     """its fraction minus that of the second, with bounds over refits; null if there is no second, and in the same
     cases"""
 
@@ -201,18 +171,6 @@ class AimResults:
 
 
 @dataclass(frozen=True)
-class ComparedNumber:
-    """A number of one of the studies, from the pairs alone."""
-
-    value: float | None
-    """in the unit of the answer; null where no run has it"""
-    lower: float | None
-    """lower bound, over beds and impact points not in the study; null where there is none"""
-    upper: float | None
-    """upper bound"""
-
-
-@dataclass(frozen=True)
 class ComparedAnswer:
     """An answer of both studies, and the second less the first."""
 
@@ -222,9 +180,11 @@ class ComparedAnswer:
     """of all its numbers; empty for a fraction of 1 and for a count"""
     is_fraction: bool
     """whether it is a fraction of all landers"""
-    first: ComparedNumber
-    second: ComparedNumber
-    difference: ComparedNumber
+    first: Number
+    """of the first study, from the pairs alone"""
+    second: Number
+    """of the second study, likewise"""
+    difference: Number
     """second less first; null where one of them is"""
     pairs: int
     """pairs of which both runs have an answer"""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.vocabulary.estimate import Number, Share
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import short_repr
 
@@ -136,17 +136,17 @@ class SiteEnds:
     other landers.
     """
 
-    at_rest: ShareInterval
+    at_rest: Share
     """landers at rest within the longest journey"""
-    partner: ShareInterval
+    partner: Share
     """landers that come down on the partner"""
-    escaped: ShareInterval
+    escaped: Share
     """landers that escape"""
-    under_way: ShareInterval
+    under_way: Share
     """landers still under way at its end"""
-    time_s: Estimate | None
+    time_s: Number | None
     """median time from the first touchdown to rest [s]; null where none rests"""
-    distance_m: Estimate | None
+    distance_m: Number | None
     """median way over the ground from the aim point to rest [m]; null where none rests"""
 
 
@@ -196,9 +196,8 @@ class SiteCell:
         row |= {"answered": int(self.ends is not None), "unknown": self.unknown, "beyond": self.beyond}
         for name in (*SHARES, *MEDIANS):
             found = None if self.ends is None else getattr(self.ends, name)
-            value = None if found is None else getattr(found, "share" if name in SHARES else "value")
-            bounds = (None, None) if found is None else (found.lower, found.upper)
-            row |= dict(zip((name, f"{name}_lower", f"{name}_upper"), (value, *bounds), strict=True))
+            numbers = (None, None, None) if found is None else (found.value, found.lower, found.upper)
+            row |= dict(zip((name, f"{name}_lower", f"{name}_upper"), numbers, strict=True))
         row["not_worse"] = int(self.not_worse)
         for name, spread in {"slope_deg": self.slope_deg, "gravity": self.gravity, **self.light}.items():
             row |= {name: spread.mean, f"{name}_5": spread.low, f"{name}_95": spread.high}
@@ -216,19 +215,18 @@ class SiteAgreement:
     """of the middle of the region; null for the whole body"""
     journeys: int
     """how many"""
-    landings: ShareInterval
+    landings: Share
     """by landings"""
-    emulator: ShareInterval
+    emulator: Share
     """by the emulator"""
-    difference: ShareInterval
+    difference: Share
     """emulator less landings, of the same landers"""
 
     @property
     def agrees(self) -> bool | None:
         """Whether the interval of the difference holds 0; None without an interval."""
-        if self.difference.lower is None or self.difference.upper is None:
-            return None
-        return self.difference.lower <= 0.0 <= self.difference.upper
+        bounds = self.difference.bounds
+        return None if bounds is None else bounds[0] <= 0.0 <= bounds[1]
 
 
 @dataclass(frozen=True)
@@ -259,7 +257,7 @@ class SiteMap:
     """touchdowns that it was fitted to"""
     area_m2: float
     """of a site, on the ball of the body's volume"""
-    at_rest: ShareInterval | None
+    at_rest: Share | None
     """landers at rest over all answered sites, as large as each other; null where none is answered"""
     cells: tuple[SiteCell, ...]
     agreement: tuple[SiteAgreement, ...]

@@ -101,8 +101,7 @@ class StudyFiles:
         self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
 
     @cached_property
-    def summary(self) -> dict[str, Any]:
-        """summary.json: the tables "study", "results" and "provenance" (docs/summary.md has every key)."""
+    def _content(self) -> dict[str, Any]:
         path, tables = self._file(SUMMARY_FILE), dict.fromkeys(("study", "results", "provenance"), dict)
         content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
         if content["format_version"] != SUMMARY_FORMAT:
@@ -114,7 +113,7 @@ class StudyFiles:
     @property
     def study(self) -> dict[str, Any]:
         """The study as it was understood, with all defaults, as the tables of its file."""
-        tables: dict[str, Any] = self.summary["study"]
+        tables: dict[str, Any] = self._content["study"]
         return tables
 
     @cached_property

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator, NamedSurrogate
     from lithobrake.results.questions import RareLimitState
-    from lithobrake.results.summary import DrawnResults, PaperResults
+    from lithobrake.results.summary import DrawnResults, PaperResults, Summary
     from lithobrake.touchdown import Outcome
 
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
@@ -71,21 +71,22 @@ class StudyResults(StudyTables):
     # What is light here stays light: a second terminal looks at a running study every few seconds.
 
     @cached_property
-    def results(self) -> "DrawnResults | PaperResults":
-        """The table "results" of the summary by attribute, with types."""
-        from lithobrake.results.json_values import from_json
-        from lithobrake.results.summary import DrawnResults, PaperResults
+    def summary(self) -> "Summary":
+        """summary.json by attribute: `study`, `results` and `provenance` (docs/summary.md has every key)."""
+        from lithobrake.results.summary import Summary
 
         with reading(self.folder / SUMMARY_FILE, self.remedy):
-            if self.study["design"]["method"] == "paper":
-                return from_json(PaperResults, self.summary["results"], "results")
-            return from_json(DrawnResults, self.summary["results"], "results")
+            return Summary.of_json(self._content)
+
+    @property
+    def results(self) -> "DrawnResults | PaperResults":
+        return self.summary.results
 
     @property
     def headline(self) -> list[str]:
         """The answer, and the most telling numbers behind it, each in a sentence."""
         with reading(self.folder / SUMMARY_FILE, self.remedy):
-            return [str(sentence) for sentence in self.summary["results"]["headline"]]
+            return [str(sentence) for sentence in self._content["results"]["headline"]]
 
     @cached_property
     def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
@@ -100,14 +101,14 @@ class StudyResults(StudyTables):
     @cached_property
     def rare(self) -> "dict[str, RareLimitState]":
         """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
-        from lithobrake.results.json_values import from_json
         from lithobrake.results.questions import RareLimitState
+        from lithobrake.results.result_files import results_in
 
         remedy, found = "make it again with: lithobrake rare", {}
         for path in sorted(self.folder.glob("rare_*.json")):
             content = read_json(self._file(path.name), dict, remedy)
             with reading(path, remedy):
-                found[path.stem.removeprefix("rare_")] = from_json(RareLimitState, content)
+                found[path.stem.removeprefix("rare_")] = results_in(RareLimitState, content)
         return found
 
     def journey(self, number: int) -> "StudyJourney":
@@ -214,7 +215,7 @@ class StudyResults(StudyTables):
         path = self._file(TOUCHDOWN_EMULATOR_FILE if is_of_journeys else EMULATOR_FILE)
         explorer = self.touchdown_explorer if is_of_journeys else None
         if is_of_journeys and explorer is None:
-            raise ValueError(f"{self.folder} has no emulator: {self.summary['results']['emulated']['why']}")
+            raise ValueError(f"{self.folder} has no emulator: {self._content['results']['emulated']['why']}")
         with reading(path, self.remedy):
             if explorer is not None:
                 return NamedEmulator(load(path), self._units, lambda: explorer.bound, explorer.attitude)
@@ -273,7 +274,7 @@ class StudyResults(StudyTables):
         answer = "not at its end"
         if (self.folder / SUMMARY_FILE).is_file():
             # A notebook shows this unasked, whatever has become of the summary.
-            given = self.summary.get("results")
+            given = self._content.get("results")
             sentences = given.get("answer") if isinstance(given, dict) else None
             answer = sentences[0] if isinstance(sentences, list) and sentences else "no answer in the summary"
         return in_lines(f"StudyResults of {self.folder}: {answer}", "  ")

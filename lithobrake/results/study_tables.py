@@ -137,7 +137,7 @@ class StudyTables(StudyFiles):
     def beds(self) -> "Table":
         """Numbers of each bed; a study whose touchdowns are made by its own program has none."""
         with reading(self.folder / SUMMARY_FILE, self.remedy):
-            beds: list[dict[str, Any]] = self.summary["results"]["beds"]
+            beds: list[dict[str, Any]] = self._content["results"]["beds"]
             columns = {name: [bed[name] for bed in beds] for name in (beds[0] if beds else ())}
         return self._described("bed", columns, BEDS)
 

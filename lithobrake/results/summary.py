@@ -5,7 +5,8 @@ SI where no unit is named.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
 
 from lithobrake.results.dispersion import (
     FlightResults,
@@ -18,7 +19,6 @@ from lithobrake.results.dispersion import (
 from lithobrake.results.journey_results import (
     DeliveryResults,
     EmulatedJourneys,
-    EndShare,
     JourneyRest,
     SideResults,
     SkyResults,
@@ -34,7 +34,9 @@ from lithobrake.results.model_results import (
     OutputErrors,
 )
 from lithobrake.results.questions import AimResults, LimitStateResult
+from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.run_results import (
+    CountedShare,
     LandingShares,
     OutputDirection,
     OutputEstimate,
@@ -63,7 +65,7 @@ class Estimates:
     __repr__ = short_repr
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DrawnResults:
     """Results of a drawn study, equal in two executions of one study."""
 
@@ -96,13 +98,13 @@ class DrawnResults:
     """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the main numbers, in sentences"""
-    sides: Mapping[str, SideResults] = field(default_factory=dict)
+    sides: Mapping[str, SideResults]
     """by the side of the lander that faces the ground at the first touchdown; empty for a sphere, a cube, and if
     attitudes are not known"""
-    end_variance_shares: Mapping[str, VarianceParts | None] = field(default_factory=dict)
+    end_variance_shares: Mapping[str, VarianceParts | None]
     """with [journey]: parts of the variance of the ends by inputs of the first touchdown: at_rest (0 or 1), and time_s
     and distance_m of the landers at rest; empty without [journey]"""
-    ends: Mapping[str, EndShare] | None = None
+    ends: Mapping[str, CountedShare] | None = None
     """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
     delivery: DeliveryResults | None = None
     """with [journey]: place and state of the first impacts"""
@@ -110,11 +112,11 @@ class DrawnResults:
     """with [journey]: how many were followed"""
     touchdowns: int | None = None
     """with [journey]: landings that were simulated for them"""
-    sky: Mapping[str, SkyResults] = field(default_factory=dict)
+    sky: Mapping[str, SkyResults]
     """visibility of sun, earth and orbiter for the landers at rest; empty without [sky]"""
     emulated: EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
-    soils: Mapping[str, SoilResults] = field(default_factory=dict)
+    soils: Mapping[str, SoilResults]
     """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
     regions: tuple[RestRegion, ...] = ()
     """smallest regions that contain 50 and 95 % of the next impacts of the samples; empty with [journey], and if there
@@ -210,3 +212,39 @@ class Provenance:
     """wall time of each stage when its files were made"""
     runs: RunTimes
     __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class Summary:
+    """summary.json. In brackets it has the JSON values of a part, `summary["results"]`, for scripts that read keys."""
+
+    format_version: int
+    """version of the format; files with different versions have different keys"""
+    study: Mapping[str, Any]
+    """the study with all defaults, as the tables of its file (every key: lithobrake new)"""
+    results: DrawnResults | PaperResults
+    """the results, equal in two executions of one study"""
+    provenance: Provenance
+    """origin of the results; everything that may differ between two executions of one study"""
+    __repr__ = short_repr
+
+    def __getitem__(self, part: str) -> Any:
+        """The JSON values of a part."""
+        value = getattr(self, part)
+        return json_values(value) if is_dataclass(value) else value
+
+    def to_json(self) -> dict[str, Any]:
+        """The JSON values of the file."""
+        return {part.name: self[part.name] for part in fields(self)}
+
+    @classmethod
+    def of_json(cls, content: Mapping[str, Any]) -> "Summary":
+        """Read from the JSON values of a file. Raises KeyError and ValueError as `results_in` does."""
+        is_paper = content["study"]["design"]["method"] == "paper"
+        results: DrawnResults | PaperResults = (
+            results_in(PaperResults, content["results"], "results")
+            if is_paper
+            else results_in(DrawnResults, content["results"], "results")
+        )
+        provenance = results_in(Provenance, content["provenance"], "provenance")
+        return cls(content["format_version"], content["study"], results, provenance)

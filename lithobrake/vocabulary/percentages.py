@@ -1,10 +1,10 @@
 """Shares in per cent, the same in every sentence and table: as many digits as the interval deserves."""
 
 import math
-from typing import Protocol
 
-# Probability with which every interval of an estimate holds the truth; results carry it, so that no reader has to ask.
-LEVEL = 0.9
+from lithobrake.vocabulary.estimate import LEVEL as LEVEL
+from lithobrake.vocabulary.estimate import Estimate
+
 # Of the intervals and limits of an expansion and its runs.
 EXPANSION_LEVEL = 0.95
 # Probabilities of the quantiles that tables show, and their words.
@@ -14,22 +14,6 @@ QUANTILE_WORDS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
 NARROW = 0.02
 # More digits than these say nothing of a share next to 0 or 1.
 MOST_DIGITS = 2
-
-
-class BoundedShare(Protocol):
-    """A share of one with the bounds of its interval, None where it has none."""
-
-    @property
-    def share(self) -> float:
-        """The share."""
-
-    @property
-    def lower(self) -> float | None:
-        """Its lower bound."""
-
-    @property
-    def upper(self) -> float | None:
-        """Its upper bound."""
 
 
 def percent(share: float, digits: int = 0) -> str:
@@ -60,26 +44,26 @@ def interval_digits(lower: float | None, upper: float | None) -> int:
     return int(lower is not None and upper is not None and upper - lower < NARROW)
 
 
-def with_interval(entry: BoundedShare, alone: int = 0, level: float | None = None) -> str:
+def with_interval(entry: Estimate, alone: int = 0, level: float | None = None) -> str:
     """A share with its interval, "71 % (68-73 %)", or "71 % (90 % interval 68-73 %)" where a level is to be named.
 
     alone: digits of a share without an interval.
     """
-    if entry.lower is None or entry.upper is None:
-        return percent(entry.share, alone)
-    digits = interval_digits(entry.lower, entry.upper)
+    if entry.bounds is None:
+        return percent(entry.value, alone)
+    digits = interval_digits(*entry.bounds)
     named = "" if level is None else f"{percent(level)} interval "
-    return f"{percent(entry.share, digits)} ({named}{span(entry.lower, entry.upper, digits)})"
+    return f"{percent(entry.value, digits)} ({named}{span(*entry.bounds, digits)})"
 
 
-def part(share: float, lower: float, upper: float, more: str = "") -> str:
+def part(share: Estimate, more: str = "") -> str:
     """A part of a variance, which cannot be told from nothing where it is 0 or less: "not detected (0-2 %)".
 
     more: words that stand behind the interval.
     """
-    digits = interval_digits(lower, upper)
-    shown = percent(min(share, 1.0), digits) if share > 0.0 else "not detected"
-    return f"{shown} ({span(lower, upper, digits)}{more})"
+    digits = interval_digits(share.lower, share.upper)
+    shown = percent(min(share.value, 1.0), digits) if share.value > 0.0 else "not detected"
+    return shown if share.bounds is None else f"{shown} ({span(*share.bounds, digits)}{more})"
 
 
 def _number(share: float, digits: int) -> str:

@@ -22,8 +22,8 @@ def test_the_input_that_makes_failures_is_found_and_the_other_not() -> None:
     among_failing = np.cumsum(chance) / chance.sum()
     exact = np.max(np.abs(among_failing - INPUTS["friction"].cdf(grid)))
     # About seventy runs fail: their distribution function is within 0.1 of its law in nine of ten studies.
-    assert found["friction"].distance == pytest.approx(exact, abs=0.1)
-    assert found["friction"].lower < exact < found["friction"].upper
+    assert found["friction"].distance.value == pytest.approx(exact, abs=0.1)
+    assert found["friction"].distance.lower < exact < found["friction"].distance.upper
     assert found["friction"].median == pytest.approx(grid[np.searchsorted(among_failing, 0.5)], abs=0.03)
     assert found["friction"].median_of_all == pytest.approx(0.5)
     assert found["young_modulus"].median_of_all == pytest.approx(1e7)
@@ -51,5 +51,5 @@ def test_runs_of_which_nobody_knows_and_studies_without_failure_say_nothing() ->
     failing = np.where(x[:, 0] > 0.7, 1.0, 0.0)
     unknown = np.where(np.arange(240) < 40, np.nan, failing)
     alone = failure_inputs(INPUTS, x[40:], failing[40:], BED[40:])
-    assert failure_inputs(INPUTS, x, unknown, BED)["friction"].distance == alone["friction"].distance
+    assert failure_inputs(INPUTS, x, unknown, BED)["friction"].distance.value == alone["friction"].distance.value
     assert failure_inputs(INPUTS, x, np.zeros(240), BED) == {}

@@ -28,20 +28,20 @@ def failing(count: int) -> np.ndarray:
 
 def test_the_runs_tell_what_at_least_a_fiftieth_of_them_meets() -> None:
     found, runs = failure_probability(failing(24), BED, drawn=(COUNTS, TOTALS)), share_estimate(failing(24), BED)
-    assert (found.source, found.why) == ("runs", None)
-    assert (found.probability, found.lower, found.upper) == (runs.share, runs.lower, runs.upper)
+    assert (found.source, found.by_runs.share.why_missing) == ("runs", None)
+    assert found.probability == runs.share
     assert found.by_emulator == refit_interval(COUNTS, TOTALS, 24)
 
 
 def test_the_emulator_tells_what_is_rarer_and_rules_out_no_more_than_so_many_beds() -> None:
     found, runs = failure_probability(failing(2), BED, drawn=(COUNTS // 4, TOTALS)), share_estimate(failing(2), BED)
     of_emulator = refit_interval(COUNTS // 4, TOTALS, 24)
-    assert (found.source, found.probability) == ("emulator", of_emulator.value)
+    assert (found.source, found.probability.value) == ("emulator", of_emulator.value)
     assert found.tail_limit == upper_limit(24, 0.9) == unseen_limit(BED)
-    assert of_emulator.upper < runs.upper == found.upper
-    assert found.lower == of_emulator.lower
+    assert of_emulator.upper < runs.share.upper == found.probability.upper
+    assert found.probability.lower == of_emulator.lower
     none = failure_probability(failing(0), BED, drawn=(COUNTS // 4, TOTALS))
-    assert none.upper == none.tail_limit == none.by_runs.upper
+    assert none.probability.upper == none.tail_limit == none.by_runs.share.upper
     # A study of 240 beds may rule out more than its runs do one by one.
     assert failure_probability(failing(2), np.arange(240), drawn=(np.arange(50) % 3 + 2, TOTALS)).tail_limit < 0.01
 
@@ -57,29 +57,35 @@ def test_runs_without_an_outcome_may_all_or_none_meet_the_limit_state(rare: bool
     assert found.by_runs.missing == 0.05
     assert found.source == "emulator"
     # Twelve of 240 may, beside a sampling error.
-    assert found.upper - found.lower > 0.05 + 0.01
-    assert found.lower <= 0.95 * found.by_emulator.lower
-    assert found.upper >= 0.95 * found.by_emulator.upper + 0.05
+    assert found.probability.upper - found.probability.lower > 0.05 + 0.01
+    assert found.probability.lower <= 0.95 * found.by_emulator.lower
+    assert found.probability.upper >= 0.95 * found.by_emulator.upper + 0.05
 
 
 def test_what_nearly_always_happens_is_as_rare_the_other_way_round() -> None:
     rare = failure_probability(failing(2), BED, drawn=(COUNTS // 4, TOTALS))
     sure = failure_probability(1.0 - failing(2), BED, drawn=(TOTALS - COUNTS // 4, TOTALS))
     assert sure.source == "emulator"
-    expected = [1.0 - bound for bound in (rare.upper, rare.lower)]
-    assert [sure.lower, sure.upper] == pytest.approx(expected, abs=1e-12)
+    expected = [1.0 - bound for bound in (rare.probability.upper, rare.probability.lower)]
+    assert [sure.probability.lower, sure.probability.upper] == pytest.approx(expected, abs=1e-12)
 
 
 def test_without_an_emulator_the_runs_tell_all() -> None:
     found = failure_probability(failing(0), BED)
-    assert (found.source, found.probability, found.lower, found.by_emulator) == ("runs", 0.0, 0.0, None)
-    assert found.upper == upper_limit(24, 0.9)
+    assert (found.source, found.probability.value, found.probability.lower, found.by_emulator) == (
+        "runs",
+        0.0,
+        0.0,
+        None,
+    )
+    assert found.probability.upper == upper_limit(24, 0.9)
 
 
 def test_one_bed_has_no_interval_whatever_an_emulator_says() -> None:
     found = failure_probability(failing(2), np.zeros(240), drawn=(COUNTS, TOTALS))
-    assert (found.lower, found.upper, found.source, found.by_emulator) == (None, None, "runs", None)
-    assert found.why.startswith("all runs landed on one bed")
+    assert (found.probability.lower, found.probability.upper, found.source) == (None, None, "runs")
+    assert found.by_emulator is None
+    assert found.by_runs.share.why_missing.startswith("all runs landed on one bed")
 
 
 def test_draws_of_which_nobody_knows_do_not_count() -> None:

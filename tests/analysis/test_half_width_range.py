@@ -62,7 +62,7 @@ def test_the_plain_interval_is_that_of_the_estimate() -> None:
         values = np.clip(random.normal(0.7, 0.2, 96), 0.0, 1.0)
         values[random.permutation(96)[:lost]] = np.nan
         found = share_estimate(values, BED)
-        assert plain_interval(values, BED) == pytest.approx((found.lower, found.upper))
+        assert plain_interval(values, BED) == pytest.approx(found.share.bounds)
     assert plain_interval(np.ones(5), np.zeros(5)) is None
 
 

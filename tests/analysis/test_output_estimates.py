@@ -49,7 +49,7 @@ def test_few_beds_give_no_interval_of_a_tail() -> None:
     for bed_count, told in ((9, False), (10, True)):
         low, middle, high = quantile_estimates(y, np.arange(90) % bed_count)
         for one in (low, high):
-            assert math.isfinite(one.lower) == math.isfinite(one.upper) == told
+            assert (one.lower is not None) == (one.upper is not None) == told
             assert math.isfinite(one.value)
         assert math.isfinite(middle.upper - middle.lower)
 
@@ -79,14 +79,14 @@ def test_an_end_that_cannot_be_told_has_a_reason() -> None:
     # Beds that differ: the share below the quantile may reach 1.
     apart = quantile_estimate(y + 5.0 * bed, bed, 0.95)
     assert apart.lower is not None
-    assert (apart.upper, apart.why) == (None, "the upper end lies beyond all 96 values")
+    assert (apart.upper, apart.why_missing) == (None, "the upper end lies beyond all 96 values")
     few = quantile_estimate(y, bed % 9, 0.95)
     assert (few.lower, few.upper) == (None, None)
-    assert "9 beds" in str(few.why)
-    assert "one bed" in str(quantile_estimate(y, np.zeros(96), 0.5).why)
-    assert quantile_estimate(y, bed, 0.5, why="one impact point").why == "one impact point"
+    assert "9 beds" in str(few.why_missing)
+    assert "one bed" in str(quantile_estimate(y, np.zeros(96), 0.5).why_missing)
+    assert quantile_estimate(y, bed, 0.5, why="one impact point").why_missing == "one impact point"
     none = quantile_estimate(np.full(96, np.nan), bed, 0.5)
-    assert (none.value, none.lower, none.why) == (None, None, "no run has this output")
+    assert (none.is_known, none.lower, none.why_missing) == (False, None, "no run has this output")
     with pytest.raises(ValueError, match="between 0 and 1"):
         quantile_estimate(y, bed, 1.0)
 

@@ -32,10 +32,10 @@ def test_intervals_hold_the_truth(correlation: float) -> None:
         share = share_difference(one < ndtri(0.5), two < ndtri(0.6), BED_OF_RUN)
         median = quantile_difference(np.exp(one), np.exp(two + 0.3), BED_OF_RUN, 0.5)
         for found in (share, median):
-            assert found.lower is not None
-            assert found.upper is not None
-        shares += share.lower <= 0.1 <= share.upper
-        medians += median.lower <= math.expm1(0.3) <= median.upper
+            assert found.difference.lower is not None
+            assert found.difference.upper is not None
+        shares += share.difference.lower <= 0.1 <= share.difference.upper
+        medians += median.difference.lower <= math.expm1(0.3) <= median.difference.upper
     assert min(shares, medians) >= 0.83 * 150
 
 
@@ -55,17 +55,17 @@ def test_pairs_that_go_together_save_landings() -> None:
 def test_a_study_against_itself_differs_by_nothing() -> None:
     one, _ = latent(np.random.default_rng(5), 0.0)
     found = quantile_difference(one, one, BED_OF_RUN, 0.5)
-    assert (found.value, found.correlation) == (0.0, pytest.approx(1.0))
-    assert found.upper == pytest.approx(-found.lower)
-    share = share_difference(one < 0.0, one < 0.0, BED_OF_RUN)
+    assert (found.difference.value, found.correlation) == (0.0, pytest.approx(1.0))
+    assert found.difference.upper == pytest.approx(-found.difference.lower)
+    share = share_difference(one < 0.0, one < 0.0, BED_OF_RUN).difference
     assert (share.value, share.lower, share.upper) == pytest.approx((0.0, 0.0, 0.0), abs=1e-7)
 
 
 def test_without_variation_there_is_no_correlation_and_the_interval_is_that_of_both() -> None:
     alike, mixed = np.ones(96), (np.arange(96) % 8 > 0).astype(float)
     found = share_difference(alike, mixed, BED_OF_RUN)
-    assert (found.correlation, found.value) == (None, pytest.approx(-0.125))
-    assert found.unpaired == (found.lower, found.upper)
+    assert (found.correlation, found.difference.value) == (None, pytest.approx(-0.125))
+    assert found.unpaired == (found.difference.lower, found.difference.upper)
     assert pair_correlation(alike, mixed, BED_OF_RUN) is None
 
 
@@ -76,12 +76,12 @@ def test_runs_without_an_answer_widen_it_and_count_as_no_pair() -> None:
     first[:10] = np.nan
     lacking = share_difference(first, second, BED_OF_RUN)
     assert (whole.pairs, lacking.pairs) == (96, 86)
-    assert lacking.upper - lacking.lower > whole.upper - whole.lower
+    assert lacking.difference.upper - lacking.difference.lower > whole.difference.upper - whole.difference.lower
 
 
 def test_a_reason_why_there_is_no_interval_is_kept_and_other_lengths_are_refused() -> None:
     one, two = latent(np.random.default_rng(7), 0.5)
     found = share_difference(one < 0.0, two < 0.0, BED_OF_RUN, why="one impact point")
-    assert (found.lower, found.upper, found.landings_saved) == (None, None, None)
+    assert (found.difference.lower, found.difference.upper, found.landings_saved) == (None, None, None)
     with pytest.raises(ValueError, match="first has 96 runs and second 95"):
         share_difference(one < 0.0, (two < 0.0)[:95], BED_OF_RUN)

@@ -61,8 +61,8 @@ def test_runs_go_on_until_the_interval_is_narrow_enough_and_then_it_holds_the_tr
         assert all((half_width_of(values[:n], bed[:n]) or 1.0) > half_width for n in path[:-1])
         assert all(1.1 * one - 5 <= other <= 2 * one for one, other in pairwise(path))
         estimate = share_estimate(values[:end], bed[:end])
-        assert estimate.upper is not None
-        held += estimate.lower <= exact <= estimate.upper
+        assert estimate.share.upper is not None
+        held += estimate.share.lower <= exact <= estimate.share.upper
         counts.append(end)
     # A nominal 90 %, looked at several times; 0.78 is 3 standard deviations of sixty studies below it.
     assert 0.78 <= held / STUDIES <= 1.0
@@ -115,5 +115,5 @@ def test_what_landings_without_an_outcome_hide_asks_for_no_more_runs() -> None:
     width = half_width_of(values, bed)
     assert width == pytest.approx(1.71 * 0.1 / math.sqrt(228), rel=0.2)
     found = share_estimate(values, bed)
-    assert 0.5 * (found.upper - found.lower) > 2.0 * width
+    assert 0.5 * (found.share.upper - found.share.lower) > 2.0 * width
     assert next_run_count(values, bed, 1.1 * width, 2400, lambda count: count // 10) is None

@@ -32,9 +32,11 @@ def test_with_a_run_a_bed_it_is_the_interval_of_student() -> None:
     h, _ = runs(30, 1)
     found = share_estimate(h, np.arange(30))
     half = stats.t.ppf(0.95, 29) * h.std(ddof=1) / math.sqrt(30)
-    assert (found.share, found.lower, found.upper) == pytest.approx((h.mean(), h.mean() - half, h.mean() + half))
-    assert (found.level, found.why, found.next_bed) == (LEVEL, None, None)
-    assert found.source == "30 landings on 30 beds"
+    assert (found.share.value, found.share.lower, found.share.upper) == pytest.approx(
+        (h.mean(), h.mean() - half, h.mean() + half)
+    )
+    assert (found.share.level, found.share.why_missing, found.next_bed) == (LEVEL, None, None)
+    assert found.from_ == "30 landings on 30 beds"
 
 
 def test_the_error_is_that_of_clusters_in_statsmodels() -> None:
@@ -52,21 +54,21 @@ def test_weighted_runs_are_those_of_weighted_least_squares() -> None:
     fit = statsmodels.WLS(h, np.ones(len(h)), weights=w).fit(cov_type="cluster", cov_kwds={"groups": bed})
     found = share_estimate(h, bed, weights=w)
     half = stats.t.ppf(0.95, 11) * float(fit.bse[0])
-    assert found.share == pytest.approx(float(fit.params[0]))
-    assert found.upper == pytest.approx(found.share + half, rel=1e-9)
+    assert found.share.value == pytest.approx(float(fit.params[0]))
+    assert found.share.upper == pytest.approx(found.share.value + half, rel=1e-9)
 
 
 def test_beds_that_differ_less_than_chance_do_not_narrow_the_interval() -> None:
     h = np.tile([0.3, 0.7], 20)
     found = share_estimate(h, np.repeat(np.arange(10), 4))
-    assert found.upper - found.share == pytest.approx(stats.t.ppf(0.95, 9) * h.std(ddof=1) / math.sqrt(40))
+    assert found.share.upper - found.share.value == pytest.approx(stats.t.ppf(0.95, 9) * h.std(ddof=1) / math.sqrt(40))
 
 
 @pytest.mark.parametrize("bed_count", [2, 3, 12])
 def test_the_next_bed_is_never_better_known_than_the_mean(bed_count: int) -> None:
     for seed in range(20):
         found = share_estimate(*runs(bed_count, 10, seed, bed_spread=0.0))
-        assert found.next_bed[0] <= found.lower < found.upper <= found.next_bed[1]
+        assert found.next_bed[0] <= found.share.lower < found.share.upper <= found.next_bed[1]
 
 
 def test_what_the_inputs_explain_is_taken_off_without_moving_the_mean() -> None:
@@ -75,8 +77,8 @@ def test_what_the_inputs_explain_is_taken_off_without_moving_the_mean() -> None:
     # Consecutive points of a sequence would be alike on every bed, and their sums over beds scatter little anyhow.
     h, bed = np.clip(h + 0.5 * (x[:, 0] - 0.55), 0.0, 1.0), np.random.default_rng(1).permutation(bed)
     plain, less = share_estimate(h, bed), share_estimate(h, bed, terms=regression_terms(INPUTS, x))
-    assert less.share == pytest.approx(plain.share, abs=0.01)
-    assert less.upper - less.lower < 0.8 * (plain.upper - plain.lower)
+    assert less.share.value == pytest.approx(plain.share.value, abs=0.01)
+    assert less.share.upper - less.share.lower < 0.8 * (plain.share.upper - plain.share.lower)
 
 
 def test_an_adaptive_design_is_weighted_back_to_the_law() -> None:
@@ -87,7 +89,7 @@ def test_an_adaptive_design_is_weighted_back_to_the_law() -> None:
         noisy = np.clip(u + 0.3 * rng.uniform(-1.0, 1.0, 200) * np.minimum(u, 1.0 - u), 0.0, 1.0)
         # Density of u: 1 by the law, 2 u as drawn.
         found = share_estimate(noisy, np.arange(200) % 10, terms=regression_terms(INPUTS, x), weights=0.5 / u)
-        shares.append(found.share)
+        shares.append(found.share.value)
     # The mean of a uniform number, within three standard errors of 40 studies.
     assert np.mean(shares) == pytest.approx(0.5, abs=3.0 * np.std(shares) / math.sqrt(40))
 
@@ -95,20 +97,20 @@ def test_an_adaptive_design_is_weighted_back_to_the_law() -> None:
 def test_one_bed_or_a_reason_gives_no_interval_and_says_why() -> None:
     h, bed = runs(12, 10)
     one = share_estimate(h, np.zeros(len(h)))
-    assert (one.lower, one.upper, one.next_bed) == (None, None, None)
-    assert "bed.bed_count" in one.why
+    assert (one.share.lower, one.share.upper, one.next_bed) == (None, None, None)
+    assert "bed.bed_count" in one.share.why_missing
     place = share_estimate(h, bed, why="all runs came down on one place")
-    assert (place.lower, place.why) == (None, "all runs came down on one place")
-    assert place.share == pytest.approx(h.mean())
+    assert (place.share.lower, place.share.why_missing) == (None, "all runs came down on one place")
+    assert place.share.value == pytest.approx(h.mean())
 
 
 def test_where_no_run_returns_the_upper_end_is_that_of_so_many_beds() -> None:
     bed = np.repeat(np.arange(12), 10)
     none = share_estimate(np.zeros(120), bed)
-    assert (none.share, none.lower) == (0.0, 0.0)
-    assert (1.0 - none.upper) ** 12 == pytest.approx(1.0 - LEVEL)
-    every = share_estimate(np.ones(120), bed)
-    assert (every.share, every.lower, every.upper) == pytest.approx((1.0, 1.0 - none.upper, 1.0))
+    assert (none.share.value, none.share.lower) == (0.0, 0.0)
+    assert (1.0 - none.share.upper) ** 12 == pytest.approx(1.0 - LEVEL)
+    every = share_estimate(np.ones(120), bed).share
+    assert (every.value, every.lower, every.upper) == pytest.approx((1.0, 1.0 - none.share.upper, 1.0))
 
 
 @pytest.mark.parametrize("rare", [0.02, 0.98])
@@ -116,36 +118,38 @@ def test_near_0_and_1_the_interval_stays_inside(rare: float) -> None:
     h = np.full(120, round(1.0 - rare))
     h[::50] = round(rare)
     found = share_estimate(h, np.repeat(np.arange(12), 10))
-    assert 0.0 < found.lower < found.share < found.upper < 1.0
+    assert 0.0 < found.share.lower < found.share.value < found.share.upper < 1.0
 
 
 def test_the_interval_is_that_of_all_the_landings_without_an_outcome_may_be() -> None:
     h, bed = runs(12, 10)
     h[::20] = np.nan
     found, known = share_estimate(h, bed), h[np.isfinite(h)]
-    assert (found.missing, found.source) == (0.05, "114 of 120 landings on 12 beds")
-    assert found.share == pytest.approx(known.mean())
+    assert (found.missing, found.from_) == (0.05, "114 of 120 landings on 12 beds")
+    assert found.share.value == pytest.approx(known.mean())
     assert found.if_missing == pytest.approx((known.sum() / 120, (known.sum() + 6) / 120))
     errors = [standard_error(np.where(np.isfinite(h), h, end), bed) for end in (0.0, 1.0)]
     # Imbens and Manski: the number of errors with which each fraction between both ends is held at the level.
-    factor = (found.if_missing[0] - found.lower) / errors[0]
-    assert found.upper == pytest.approx(found.if_missing[1] + factor * errors[1])
+    factor = (found.if_missing[0] - found.share.lower) / errors[0]
+    assert found.share.upper == pytest.approx(found.if_missing[1] + factor * errors[1])
     assert stats.t.cdf(factor + 0.05 / max(errors), 11) - stats.t.cdf(-factor, 11) == pytest.approx(LEVEL)
     assert stats.t.ppf(0.9, 11) < factor < stats.t.ppf(0.95, 11)
-    assert found.next_bed[0] < found.lower < found.upper < found.next_bed[1]
+    assert found.next_bed[0] < found.share.lower < found.share.upper < found.next_bed[1]
     whole = share_estimate(known, bed[np.isfinite(h)])
-    assert whole.if_missing == (whole.share, whole.share)
-    assert (whole.missing, whole.source) == (0.0, "114 landings on 12 beds")
-    assert found.lower < whole.lower < whole.upper < found.upper
+    assert whole.if_missing == (whole.share.value, whole.share.value)
+    assert (whole.missing, whole.from_) == (0.0, "114 landings on 12 beds")
+    assert found.share.lower < whole.share.lower < whole.share.upper < found.share.upper
 
 
 def test_one_landing_without_an_outcome_hardly_widens_the_interval() -> None:
     h, bed = runs(24, 30, bed_spread=0.0)
     whole = share_estimate(h, bed)
     found = share_estimate(np.where(np.arange(720) == 7, np.nan, h), bed)
-    assert found.source == "719 of 720 landings on 24 beds"
-    assert (found.lower, found.upper) == pytest.approx((whole.lower, whole.upper), abs=1.5 / 720)
-    assert 0.0 < (found.upper - found.lower) - (whole.upper - whole.lower) < 1.0 / 720
+    assert found.from_ == "719 of 720 landings on 24 beds"
+    assert (found.share.lower, found.share.upper) == pytest.approx(
+        (whole.share.lower, whole.share.upper), abs=1.5 / 720
+    )
+    assert 0.0 < (found.share.upper - found.share.lower) - (whole.share.upper - whole.share.lower) < 1.0 / 720
 
 
 def test_the_interval_holds_where_the_fast_ones_are_lost_and_none_of_them_returns() -> None:
@@ -159,7 +163,7 @@ def test_the_interval_holds_where_the_fast_ones_are_lost_and_none_of_them_return
             ("all", share_estimate(returns, bed)),
             ("answered", share_estimate(returns[known], bed[known])),
         ):
-            held[name] += found.lower <= 0.9 * 0.8 <= found.upper
+            held[name] += found.share.lower <= 0.9 * 0.8 <= found.share.upper
     # The truth is the lower end of what may be, so the interval misses at one side alone: at the level, within three
     # standard deviations of 200 studies.
     assert held["all"] / 200 == pytest.approx(LEVEL, abs=0.064)
@@ -171,11 +175,11 @@ def test_landings_without_an_outcome_take_the_mean_of_those_like_them_in_the_est
     h[:12], h[12:18] = np.nan, 0.0
     like = np.arange(120) < 18
     plain, found = share_estimate(h, bed), share_estimate(h, bed, like_missing=like)
-    assert plain.share == pytest.approx(np.nanmean(h))
-    assert found.share == pytest.approx(np.nansum(h) / 120)
-    assert (found.lower, found.upper) == (plain.lower, plain.upper)
+    assert plain.share.value == pytest.approx(np.nanmean(h))
+    assert found.share.value == pytest.approx(np.nansum(h) / 120)
+    assert (found.share.lower, found.share.upper) == (plain.share.lower, plain.share.upper)
     # Four like them say less than all.
-    assert share_estimate(h, bed, like_missing=np.arange(120) < 16).share == plain.share
+    assert share_estimate(h, bed, like_missing=np.arange(120) < 16).share.value == plain.share.value
 
 
 @pytest.mark.parametrize("end", [0.0, 1.0])
@@ -183,17 +187,16 @@ def test_the_estimate_lies_within_its_interval_where_all_with_an_outcome_end_ali
     h, bed = np.full(120, end), np.repeat(np.arange(12), 10)
     h[::40] = np.nan
     found = share_estimate(h, bed)
-    assert found.lower <= found.if_missing[0] <= found.share <= found.if_missing[1] <= found.upper
-    assert found.share == end
+    assert found.share.lower <= found.if_missing[0] <= found.share.value <= found.if_missing[1] <= found.share.upper
+    assert found.share.value == end
     # Three of 120 may be otherwise, and so may so many beds.
-    assert found.upper - found.lower >= 1.0 - 0.1 ** (1.0 / 12.0)
+    assert found.share.upper - found.share.lower >= 1.0 - 0.1 ** (1.0 / 12.0)
 
 
 def test_a_new_bed_may_lie_beyond_the_interval_of_the_share() -> None:
     h, bed = runs(12, 10)
-    found = share_estimate(h, bed, emulator=0.5)
-    assert found.emulator == 0.5
-    assert found.next_bed[0] < found.lower < found.share < found.upper < found.next_bed[1]
+    found = share_estimate(h, bed)
+    assert found.next_bed[0] < found.share.lower < found.share.value < found.share.upper < found.next_bed[1]
 
 
 def test_what_cannot_be_is_refused() -> None:
@@ -217,7 +220,7 @@ def test_half_widths_are_foreseen() -> None:
     widths = [share_estimate(*runs(24, 10, seed, bed_spread=0.03)) for seed in range(30)]
     spread = math.hypot(0.03, 0.1 / math.sqrt(3.0))
     expected = expected_half_width(240, 24, spread=spread, correlation=(0.03 / spread) ** 2)
-    assert np.mean([0.5 * (one.upper - one.lower) for one in widths]) == pytest.approx(expected, rel=0.05)
+    assert np.mean([0.5 * (one.share.upper - one.share.lower) for one in widths]) == pytest.approx(expected, rel=0.05)
     with pytest.raises(ValueError, match="a whole number from 1 to 5"):
         expected_half_width(5, 6)
     with pytest.raises(ValueError, match="half_width is 0"):

@@ -22,10 +22,10 @@ def test_probabilities_of_closed_form_are_met_and_their_bounds_hold(name: str) -
     margin, dimension, exact = LIMIT_STATES[name]
     found = [subset_simulation(margin, dimension, points_per_level=500, seed=seed) for seed in range(SEEDS)]
     told = np.mean([one.coefficient_of_variation for one in found])
-    mean = np.mean([one.probability for one in found])
+    mean = np.mean([one.probability.value for one in found])
     assert mean == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
     # A nominal 90 % interval holds in 0.75 to 1 of forty (three standard deviations).
-    assert np.mean([one.lower <= exact <= one.upper for one in found]) >= 0.75
+    assert np.mean([one.probability.lower <= exact <= one.probability.upper for one in found]) >= 0.75
     for one in found:
         assert (margin(one.failing) <= 0.0).all()
         assert one.thresholds[-1] == 0.0
@@ -36,7 +36,7 @@ def test_probabilities_of_closed_form_are_met_and_their_bounds_hold(name: str) -
 def test_openturns_agrees() -> None:
     pytest.importorskip("openturns", reason="openturns is not installed")
     margin, dimension, exact = LIMIT_STATES["linear, 2 inputs"]
-    ours = [subset_simulation(margin, dimension, seed=seed).probability for seed in range(20)]
+    ours = [subset_simulation(margin, dimension, seed=seed).probability.value for seed in range(20)]
     theirs = [openturns_subset(margin, dimension, 1000, seed)[0] for seed in range(8)]
     # Each scatters by about a quarter.
     assert np.mean(ours) == pytest.approx(np.mean(theirs), rel=3.0 * 0.27 * np.sqrt(1.0 / 20.0 + 1.0 / 8.0))
@@ -54,7 +54,7 @@ def test_kept_inputs_stay_along_a_chain() -> None:
     exact = stats.norm.sf(3.0 - beds).mean()
     found = [subset_simulation(margin, 2, kept=[0], points_per_level=500, seed=seed) for seed in range(SEEDS)]
     told = np.mean([one.coefficient_of_variation for one in found])
-    assert np.mean([one.probability for one in found]) == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
+    assert np.mean([one.probability.value for one in found]) == pytest.approx(exact, rel=3.0 * told / np.sqrt(SEEDS))
 
 
 @pytest.mark.parametrize(
@@ -65,14 +65,14 @@ def test_kept_inputs_stay_along_a_chain() -> None:
 def test_bounds_hold_where_chains_share_chance(noise_share: float, bed_share: float, bed_count: int) -> None:
     found = [with_chance(noise_share, bed_share, bed_count, 500, seed) for seed in range(SEEDS)]
     # Bounds from the correlation within chains alone held 0.6 of both.
-    assert np.mean([each.lower <= EXACT <= each.upper for each in found]) >= 0.75
+    assert np.mean([each.probability.lower <= EXACT <= each.probability.upper for each in found]) >= 0.75
 
 
 def test_shares_of_levels_make_the_probability_and_origins_count_those_that_led_to_it() -> None:
     margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
     found = subset_simulation(margin, dimension, points_per_level=500)
     assert len(found.shares) == len(found.thresholds)
-    assert found.probability == pytest.approx(np.prod(found.shares))
+    assert found.probability.value == pytest.approx(np.prod(found.shares))
     assert 1.0 <= found.origins <= 50.0
     # The first of two groups has all that fails.
     kept = {"kept": [0], "groups": lambda points: points[:, 0] > 0.0}
@@ -83,12 +83,12 @@ def test_shares_of_levels_make_the_probability_and_origins_count_those_that_led_
 def test_a_failure_that_is_common_takes_one_level() -> None:
     found = subset_simulation(lambda points: 0.5 - points[:, 0], 1, points_per_level=1000)
     assert (found.evaluation_count, found.thresholds.tolist()) == (1000, [0.0])
-    assert found.lower < stats.norm.sf(0.5) < found.upper
+    assert found.probability.lower < stats.norm.sf(0.5) < found.probability.upper
 
 
 def test_a_failure_that_cannot_be_has_probability_0_and_says_that_it_was_not_reached() -> None:
     found = subset_simulation(lambda points: np.ones(len(points)), 2)
-    assert (found.probability, found.lower, found.reached) == (0.0, 0.0, False)
+    assert (found.probability.value, found.probability.lower, found.reached) == (0.0, 0.0, False)
 
 
 def test_few_levels_end_with_what_their_points_show_of_a_rarer_failure() -> None:
@@ -96,15 +96,15 @@ def test_few_levels_end_with_what_their_points_show_of_a_rarer_failure() -> None
     # Two levels end at 1e-2, of which a tenth fails.
     found = [subset_simulation(margin, dimension, most_levels=2, seed=seed) for seed in range(10)]
     assert {len(one.thresholds) for one in found} == {3}
-    assert np.mean([one.probability for one in found]) == pytest.approx(exact, rel=3.0 * 0.27 / np.sqrt(10.0))
+    assert np.mean([one.probability.value for one in found]) == pytest.approx(exact, rel=3.0 * 0.27 / np.sqrt(10.0))
     never = subset_simulation(lambda points: 20.0 - points[:, 0], 2, most_levels=2)
-    assert (never.probability, never.reached, never.upper) == (0.0, False, pytest.approx(1e-2))
+    assert (never.probability.value, never.reached, never.probability.upper) == (0.0, False, pytest.approx(1e-2))
 
 
 def test_the_same_seed_gives_the_same_bits() -> None:
     margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
     first, again = (subset_simulation(margin, dimension, seed=3) for _ in range(2))
-    assert first.probability == again.probability
+    assert first.probability.value == again.probability.value
     assert np.array_equal(first.failing, again.failing)
 
 
@@ -126,7 +126,7 @@ def test_counts_that_cannot_be_are_refused(arguments: dict[str, object], words: 
 def test_a_count_may_be_a_whole_float() -> None:
     margin, dimension, _ = LIMIT_STATES["linear, 2 inputs"]
     of_float, of_int = (subset_simulation(margin, dimension, points_per_level=count) for count in (100.0, 100))
-    assert of_float.probability == of_int.probability
+    assert of_float.probability.value == of_int.probability.value
 
 
 def test_margins_that_are_no_numbers_are_refused() -> None:

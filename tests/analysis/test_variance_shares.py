@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from lithobrake.analysis import IntervalEstimate, VarianceShares, chaos_variance, soil_total_effect, variance_shares
+from lithobrake.analysis import VarianceShares, chaos_variance, soil_total_effect, variance_shares
 from lithobrake.analysis.confidence import bed_components, numbered_beds
 from lithobrake.chaos import Uniform, sobol_sequence
+from lithobrake.vocabulary.estimate import Estimate
 
 INPUTS = {"friction": Uniform(0.2, 0.9), "restitution": Uniform(0.3, 0.9), "speed": Uniform(0.05, 0.15)}
 SOIL = ("friction", "restitution")
@@ -241,7 +242,7 @@ def test_pairs_tell_the_total_effect_of_the_soil() -> None:
     def ishigami(x: np.ndarray) -> np.ndarray:
         return np.sin(x[0]) * (1.0 + 0.1 * x[2] ** 4) + 7.0 * np.sin(x[1]) ** 2
 
-    found: list[IntervalEstimate] = []
+    found: list[Estimate] = []
     for _ in range(200):
         pair = np.pi * rng.uniform(-1.0, 1.0, (3, 40))
         other = np.vstack([pair[:2], np.pi * rng.uniform(-1.0, 1.0, 40)])
@@ -251,7 +252,7 @@ def test_pairs_tell_the_total_effect_of_the_soil() -> None:
     assert np.mean([one.lower <= 0.2437 <= one.upper for one in found]) >= 0.78
     few = soil_total_effect([3.0, -2.0, 2.5], np.random.default_rng(3).standard_normal(60))
     assert few.lower < few.value == few.upper == 1.0
-    assert soil_total_effect(np.zeros(20), y) == IntervalEstimate(0.0, 0.0, 0.0)
+    assert soil_total_effect(np.zeros(20), y) == Estimate(0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match="two or more"):
         soil_total_effect([1.0], y)
 

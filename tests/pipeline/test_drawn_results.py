@@ -15,7 +15,7 @@ from lithobrake.pipeline.run_flights import run_sites
 from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.study import check_tables
 
 from ..report.page_scripts import answer_of, explorer_data, needs_node
@@ -145,7 +145,7 @@ def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: S
     assert np.isnan(drawn["speed_out"][~left]).all()
     velocity = np.column_stack([drawn[name] for name in VELOCITY])[left]
     assert np.linalg.norm(velocity, axis=1) == pytest.approx(drawn["speed_out"][left], rel=1e-12)
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     scores = results.summary["results"]["emulator"]["scores"]
     assert scores["speed_out"]["band_90"] == pytest.approx(0.9, abs=0.07)
     assert sum(scores["speed_out"]["pit"]) == model.runs.has_outputs.sum()

@@ -154,6 +154,6 @@ def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
     for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
         sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}
         flown = fly_starts(job, Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites), "")
-        found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left])
+        found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left]).share
         width.append(found.upper - found.lower)
     assert width[1] == pytest.approx(width[0], rel=0.03)

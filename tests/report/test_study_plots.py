@@ -17,7 +17,7 @@ def test_what_becomes_of_the_landings_is_that_of_the_summary(sequence_folder: Pa
     widths = {
         label.get_text(): bar.get_width() for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=True)
     }
-    assert widths["captured"] == pytest.approx(100 * results.results.shares.outcomes["captured"].share)
+    assert widths["captured"] == pytest.approx(100 * results.results.shares.outcomes["captured"].share.value)
     landings = results.plot.rebounds(Figure().subplots()).collections[0].get_offsets()
     assert len(landings) == results.results.runs.outcomes["clear"]
 

@@ -25,6 +25,7 @@ from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import SampledOutput
 from lithobrake.results.run_results import CountedShare
 from lithobrake.study import read_study
+from lithobrake.vocabulary.estimate import Estimate
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
@@ -62,7 +63,7 @@ def test_the_answer_of_a_paper_study_says_how_its_body_turns(paper: PaperPage, s
 def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
     results = paper.results
     assert all(sentence in captions.details(paper)[0] for sentence in results.answer)
-    assert f"{100 * results.returns.share:.1f} % of the landers" in captions.answer(paper)
+    assert f"{100 * results.returns.share.value:.1f} % of the landers" in captions.answer(paper)
     bed, design = results.beds[0], results.designs["screening"]
     for name in ("surface_height_m", "mean_diameter_m", "smallest_width_m", "smallest_depth_m"):
         assert f"{getattr(bed, name):.3g} m" in captions.bed(paper)
@@ -84,7 +85,7 @@ def test_ground_that_could_not_be_asked_says_why(paper: PaperPage) -> None:
     why, hard = rest.why_no_soil, rest.hard
     assert why.startswith("impact.incidence_deg")
     assert why in captions.rest(paper)
-    soil = replace(hard, outcomes={**hard.outcomes, "outside": CountedShare(3, 0.15, None, None)})
+    soil = replace(hard, outcomes={**hard.outcomes, "outside": CountedShare(3, Estimate(0.15, None, None))})
     both = replace(paper.results, rest=replace(rest, soil=soil))
     assert "15.0 %" in captions.rest(replace(paper, results=both))
 
@@ -99,7 +100,7 @@ def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) ->
 def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperPage) -> None:
     table, alone = table_of(paper, "After the first bounce"), paper.results.without_scatter
     assert table.columns[-1] == "without scatter"
-    assert table.rows[0][-1] == f"{100 * alone.shares.outcomes['impact'].share:.1f} %"
+    assert table.rows[0][-1] == f"{100 * alone.shares.outcomes['impact'].share.value:.1f} %"
 
 
 def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperPage) -> None:

@@ -82,10 +82,10 @@ def test_a_shape_may_have_blank_lines(folder: Path) -> None:
 @pytest.mark.parametrize("answer", [999, [], None, {"a": 1}])
 def test_a_notebook_shows_results_whatever_the_summary_says(folder: Path, answer: object) -> None:
     results = open_study(folder)
-    results.summary["results"]["answer"] = answer
+    results._content["results"]["answer"] = answer
     assert " ".join(repr(results).split()) == f"StudyResults of {folder}: no answer in the summary"
     assert "75 % return" in results._repr_html_()
-    results.summary["results"] = answer
+    results._content["results"] = answer
     assert " ".join(repr(results).split()).endswith("no answer in the summary")
 
 

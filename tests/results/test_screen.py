@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.results import Column, Table
-from lithobrake.results.json_values import from_json
+from lithobrake.results.result_files import results_in
 from lithobrake.results.summary import DrawnResults, PaperResults
 from lithobrake.vocabulary.plain_text import LINES, names_in_lines, short_repr
 
@@ -38,7 +38,7 @@ def test_results_fit_a_screen(study: str, kind: type) -> None:
     summary = json.loads((SHOWCASE / study / "summary.json").read_text(encoding="utf-8"))
     # What was kept of the paper's study is older than the rotation of the body.
     results = summary["results"]
-    found = from_json(kind, results | {"site": {"rotation": None} | results["site"]}, "results")
+    found = results_in(kind, results | {"site": {"rotation": None} | results["site"]}, "results")
     assert repr(found).startswith(f"{kind.__name__}\n  units ")
     assert fits(repr(found))
     # What stands on one line is wrapped by the console, and no more than a screen of it.

@@ -10,12 +10,12 @@ import pytest
 import result_models as models
 
 import lithobrake
-from lithobrake.results.json_values import from_json, to_json
 from lithobrake.results.model_results import OutputErrors
+from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.run_results import LandingShares
-from lithobrake.results.summary import PaperResults
+from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS, SHOWCASE = (Path(__file__).parents[2] / name for name in ("docs", "showcase"))
 
 
 @pytest.fixture(scope="module")
@@ -49,13 +49,13 @@ def leaves(value: Any, path: tuple[str, ...] = ()) -> set[str]:
 def test_every_number_of_a_summary_has_a_field_and_comes_back_as_it_was(folder: Path) -> None:
     results = lithobrake.open_study(folder)
     assert isinstance(results.results, PaperResults)
-    assert json.dumps(to_json(results.results)) == json.dumps(results.summary["results"])
+    assert json.dumps(json_values(results.results)) == json.dumps(results.summary["results"])
 
 
 def test_every_score_has_a_field(folder: Path) -> None:
     scores = json.loads((folder / "scores.json").read_text())
     for score in (score for table in scores.values() for score in table.values()):
-        assert json.dumps(to_json(from_json(OutputErrors, score))) == json.dumps(score)
+        assert json.dumps(json_values(results_in(OutputErrors, score))) == json.dumps(score)
 
 
 @pytest.mark.parametrize("name", ["screening.json", "refined.json"])
@@ -69,21 +69,21 @@ def test_every_key_of_an_expansion_is_described(name: str, folder: Path, script:
 def test_a_key_that_is_not_there_is_named_with_its_place(folder: Path) -> None:
     table = lithobrake.open_study(folder).summary["results"]
     with pytest.raises(KeyError, match=r"results\.returns\.share"):
-        from_json(PaperResults, table | {"returns": {}}, "results")
+        results_in(PaperResults, table | {"returns": {}}, "results")
 
 
 @pytest.mark.parametrize(("changes", "words"), [
-    ({"share": "much"}, r"shares\.impact\.share is 'much', and must be a number"),
-    ({"count": True}, r"shares\.impact\.count is True, and must be a whole number"),
-    ({"lower": "none"}, r"shares\.impact\.lower is 'none', and must be a number"),
+    ({"share": "much"}, r"shares\.impact\.share is 'much', and must be a valid number"),
+    ({"count": True}, r"shares\.impact\.count is True, and must be a valid integer"),
+    ({"lower": "none"}, r"shares\.impact\.lower is 'none', and must be a valid number"),
 ])  # fmt: skip
 def test_a_value_of_another_type_is_named_with_its_place(changes: dict[str, Any], words: str) -> None:
     entry = {"count": 1, "share": 0.5, "lower": None, "upper": None}
     counts = {"sample_count": 2, "flight_count": 1, "level": 0.9, "why": None}
     emulator = {**counts, "impact": entry}
-    assert from_json(LandingShares, {**counts, "impact": entry, "emulator": emulator}).outcomes["impact"].count == 1
+    assert results_in(LandingShares, {**counts, "impact": entry, "emulator": emulator}).outcomes["impact"].count == 1
     with pytest.raises(ValueError, match=words):
-        from_json(LandingShares, {**counts, "impact": entry | changes, "emulator": emulator}, "shares")
+        results_in(LandingShares, {**counts, "impact": entry | changes, "emulator": emulator}, "shares")
 
 
 def test_the_page_is_what_its_script_makes(script: dict[str, Any]) -> None:
@@ -103,3 +103,16 @@ def test_a_quantity_without_its_unit_in_the_name_has_it_in_the_words(heading: st
         unit in next(line for line in section.splitlines() if line.startswith(f"| `{key}` |"))
         or key == "effective_acceleration_along_heading"
     )
+
+
+@pytest.mark.parametrize("name", ["first_bounce", "mission"])
+def test_the_files_of_a_showcase_come_back_as_they_were(name: str) -> None:
+    folder = SHOWCASE / name
+    summary, estimates = (json.loads((folder / file).read_text()) for file in ("summary.json", "estimates.json"))
+    parts = (
+        (DrawnResults, summary["results"]),
+        (Provenance, summary["provenance"]),
+        (Estimates, estimates),
+    )
+    for kind, content in parts:
+        assert json.dumps(json_values(results_in(kind, content))) == json.dumps(content)

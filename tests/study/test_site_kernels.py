@@ -11,7 +11,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
@@ -47,7 +47,7 @@ def test_the_numbers_of_kernels_are_those_of_the_study_and_of_its_summary(folder
     assert Site(found).medians["partner_longitude_deg"] == place.longitude_deg
     assert Site(found).body.spin_period == period
     told = site_results(Site(found))
-    assert to_json(told.kernels) == {"spin_period_s": period, "pole_right_ascension_deg": 69.327,
+    assert json_values(told.kernels) == {"spin_period_s": period, "pole_right_ascension_deg": 69.327,
         "pole_declination_deg": -72.725, "prime_meridian_deg": 120.0, "partner_longitude_deg": place.longitude_deg,
         "partner_latitude_deg": place.latitude_deg, "partner_distance_m": place.distance,
         "partner_period_s": place.period}  # fmt: skip

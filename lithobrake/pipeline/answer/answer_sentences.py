@@ -4,15 +4,16 @@ from collections.abc import Mapping
 
 from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.run_answers import missing_words, scope
-from lithobrake.results.journey_results import EndShare, JourneyRest, RestQuantile, SkyResults, SoilResults
+from lithobrake.results.journey_results import JourneyRest, SkyResults, SoilResults
 from lithobrake.results.questions import LimitStateResult
-from lithobrake.results.run_results import OutputEstimate, ReturnFraction, RunResults, VarianceParts
+from lithobrake.results.run_results import CountedShare, OutputEstimate, ReturnFraction, RunResults, VarianceParts
 from lithobrake.results.summary import DrawnResults
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import CENTIMETRES, HOUR
 from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import CAPTURED, FlightStatus, JourneyEnd, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import interval_digits, percent, rare_percent, with_interval
+from lithobrake.vocabulary.percentages import interval_digits, part, percent, rare_percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
 
 
@@ -21,28 +22,28 @@ def journey_answer(study: Study, results: DrawnResults) -> list[str]:
     ends, rest = results.ends, results.rest
     if ends is None or study.journey is None or not isinstance(rest, JourneyRest):
         return []
-    at_rest = ends[JourneyEnd.AT_REST]
+    at_rest = ends[JourneyEnd.AT_REST].share
     hours = f"{study.journey.duration / HOUR:.3g} h"
     level = None if at_rest.lower is None else LEVEL
     said = [
         f"{with_interval(at_rest, level=level)} of the landers come to rest within {hours} ({results.journeys} "
         f"journeys, {results.touchdowns} simulated landings, {results.runs.beds} beds).{_other_journey_ends(ends)}"
     ]
-    if at_rest.why is not None:
-        said.append(at_rest.why)
+    if at_rest.why_missing is not None:
+        said.append(at_rest.why_missing)
     return [*said, *_rest(rest), *_sky(results.sky), *_soils(results.soils)]
 
 
-def _other_journey_ends(ends: Mapping[str, EndShare]) -> str:
+def _other_journey_ends(ends: Mapping[str, CountedShare]) -> str:
     """The shares of the other ends that occurred."""
     words = {end.value: end.label for end in JourneyEnd if end != JourneyEnd.AT_REST}
-    listed = [f"{with_interval(one)} {words[name]}" for name, one in ends.items() if name in words and one.count]
+    listed = [f"{with_interval(one.share)} {words[name]}" for name, one in ends.items() if name in words and one.count]
     return f" Other ends: {', '.join(listed)}." if listed else ""
 
 
 def _rest(rest: JourneyRest) -> list[str]:
     """When and where those at rest came to rest, and on which side they lie."""
-    if rest.time_s.median.value is None:
+    if not rest.time_s.median.is_known:
         return []
     said = [
         f"Time from the first touchdown to rest: median {_journey_hours(rest.time_s.median)}, 95 % within "
@@ -58,8 +59,8 @@ def _rest(rest: JourneyRest) -> list[str]:
             f"{_rounded(most.largest_extent_m)} m across."
         )
     if rest.faces:
-        listed = sorted(rest.faces.items(), key=lambda one: -one[1].share)
-        said.append("Side down: " + ", ".join(f"{name} {with_interval(one)}" for name, one in listed) + ".")
+        listed = sorted(rest.faces.items(), key=lambda one: -one[1].share.value)
+        said.append("Side down: " + ", ".join(f"{name} {with_interval(one.share)}" for name, one in listed) + ".")
     return said
 
 
@@ -67,7 +68,7 @@ def _sky(sky: Mapping[str, SkyResults]) -> list[str]:
     """For which part of the time those at rest see the Sun, Earth and the orbiter."""
     listed = [
         f"{SKY_WORDS[name]} {_with_bounds(one.day_fraction, 0.01)} % of the time"
-        + (f" (never by {with_interval(one.never)})" if one.never.count else "")
+        + (f" (never by {with_interval(one.never.share)})" if one.never.count else "")
         for name, one in sky.items()
     ]
     return [f"Visible from the place of rest, median: {', '.join(listed)}."] if listed else []
@@ -77,31 +78,29 @@ def _soils(soils: Mapping[str, SoilResults]) -> list[str]:
     """How many touchdowns there are on the soil of each region, and how many of them end at rest."""
     listed = [
         f"{name} ({percent(one.area_share)} of the surface) {one.touchdowns} touchdowns"
-        + (f", {with_interval(one.rests)} of which come to rest" if one.rests else "")
+        + (f", {with_interval(one.rests.share)} of which come to rest" if one.rests else "")
         for name, one in soils.items()
     ]
     return [f"By soil: {'; '.join(listed)}."] if listed else []
 
 
-def _journey_hours(one: RestQuantile) -> str:
+def _journey_hours(one: Estimate) -> str:
     """A time with its interval, in minutes below two hours."""
-    size, unit = (60.0, "min") if (one.value or 0.0) < 2.0 * HOUR else (HOUR, "h")
+    size, unit = (60.0, "min") if one.value < 2.0 * HOUR else (HOUR, "h")
     return f"{_with_bounds(one, size)} {unit}"
 
 
-def _metres(one: RestQuantile) -> str:
+def _metres(one: Estimate) -> str:
     return f"{_with_bounds(one, 1.0)} m"
 
 
-def _count(one: RestQuantile) -> str:
+def _count(one: Estimate) -> str:
     return _with_bounds(one, 1.0)
 
 
-def _with_bounds(one: RestQuantile, size: float) -> str:
-    value = _rounded((one.value or 0.0) / size)
-    if one.lower is None or one.upper is None:
-        return value
-    return f"{value} ({_rounded(one.lower / size)}-{_rounded(one.upper / size)})"
+def _with_bounds(one: Estimate, size: float) -> str:
+    value = _rounded(one.value / size)
+    return value if one.bounds is None else f"{value} ({'-'.join(_rounded(end / size) for end in one.bounds)})"
 
 
 def _rounded(value: float) -> str:
@@ -151,18 +150,19 @@ def drawn_headline(results: DrawnResults) -> list[str]:
 
 def limit_statement(name: str, found: LimitStateResult) -> str:
     """The probability of a limit state in a sentence: its interval, where it comes from, and correlated inputs."""
-    begin = f"{name} ({found.condition}): {rare_percent(found.probability)} of the landings"
-    if found.lower is None or found.upper is None:
+    begin = f"{name} ({found.condition}): {rare_percent(found.probability.value)} of the landings"
+    bounds = found.probability.bounds
+    if bounds is None:
         return f"{begin}, from {found.runs.from_}; no interval: {found.why}"
-    said = f"{begin} ({percent(found.level)} interval {rare_percent(found.lower)} to {rare_percent(found.upper)})"
+    said = f"{begin} ({percent(found.probability.level)} interval {' to '.join(map(rare_percent, bounds))})"
     if found.source == "emulator":
         said += f", from the emulator, since {found.failing_runs:.3g} landings that meet it are too few for an estimate"
-        if found.probability < found.tail_limit:
+        if found.probability.value < found.tail_limit:
             said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
     made = [key for key, one in found.inputs.items() if one.found]
-    made.sort(key=lambda key: -found.inputs[key].distance)
+    made.sort(key=lambda key: -found.inputs[key].distance.value)
     none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
 
@@ -173,7 +173,7 @@ def _share(study: Study, results: DrawnResults) -> list[str]:
     again = f"impact the surface again within {hours(study.flight.duration)}"
     again += " or are captured where the ground holds them" if results.site.holds else ""
     # The level of an interval is named once in a sentence.
-    share = with_interval(returns, level=None if "interval" in rest else returns.level)
+    share = with_interval(returns.share, level=None if "interval" in rest else returns.share.level)
     said = f"{rest}{share}{'' if rest else ' of the landings'} {again}"
     if returns.why is not None:
         return [f"{scope(study).where}: {said}; from {returns.from_}.", returns.why]
@@ -193,7 +193,7 @@ def _at_rest(study: Study, results: DrawnResults) -> str:
     if ground is None:
         return "" if results.site.holds else "None of the landings remains at the site; "
     outcomes = grounds[ground].outcomes
-    settled, unknown = outcomes[JourneyStatus.SETTLED], outcomes[JourneyStatus.OUTSIDE].share
+    settled, unknown = outcomes[JourneyStatus.SETTLED].share, outcomes[JourneyStatus.OUTSIDE].share.value
     lost = f" ({percent(unknown)} have an unknown outcome)" if unknown > 0.0 else ""
     return (
         f"{with_interval(settled, level=LEVEL)} of the landings come to rest {GROUNDS[ground]} within "
@@ -207,7 +207,7 @@ def _missing(runs: RunResults, returns: ReturnFraction) -> list[str]:
     if not lost.count:
         return []
     low, high = (percent(bound, interval_digits(*returns.if_missing)) for bound in returns.if_missing)
-    covers = "" if returns.lower is None else "; the interval covers both"
+    covers = "" if returns.share.lower is None else "; the interval covers both"
     return [
         f"{lost.count} of {runs.count} landings have no outcome ({missing_words(lost.outcomes)}): the return fraction "
         f"is {low} if none of these return and {high} if all do{covers}."
@@ -225,7 +225,7 @@ def _others(study: Study, results: DrawnResults) -> str:
         ways[FlightStatus.PARTNER] = "impact the partner"
     if outcomes[CAPTURED].count and not results.site.holds:
         ways[CAPTURED] = "are captured and lifted off again"
-    listed = [f"{with_interval(outcomes[name])} {words}" for name, words in ways.items()]
+    listed = [f"{with_interval(outcomes[name].share)} {words}" for name, words in ways.items()]
     return f"Of all landings {', '.join(listed)}."
 
 
@@ -244,8 +244,8 @@ def _speed(speed: OutputEstimate | None) -> list[str]:
         return []
     low, middle, high = speed.quantiles.values()
     interval = ""
-    if middle.lower is not None and middle.upper is not None:
-        ends = f"{CENTIMETRES * middle.lower:.3g} to {CENTIMETRES * middle.upper:.3g} cm/s"
+    if middle.bounds is not None:
+        ends = " to ".join(f"{CENTIMETRES * end:.3g}" for end in middle.bounds) + " cm/s"
         interval = f", {percent(LEVEL)} interval {ends}"
     return [
         f"Rebound speed of {speed.of}: median {CENTIMETRES * middle.value:.3g} cm/s{interval}; 5th to 95th "
@@ -258,7 +258,7 @@ def _scatter(record: VarianceParts | None) -> list[str]:
     if record is None:
         return []
     listed = [
-        f"{PARTS[name]} {'at least ' if name in FLOORS and one.share > 0.0 else ''}{one.words()}"
+        f"{PARTS[name]} {'at least ' if name in FLOORS and one.value > 0.0 else ''}{part(one)}"
         for name, one in record.parts.items()
     ]
     return [

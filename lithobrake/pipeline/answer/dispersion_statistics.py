@@ -1,7 +1,6 @@
 """What became of the landers: shares, times, speeds, ellipses, the site, and where they come down first."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,11 +26,12 @@ from lithobrake.results.dispersion import (
     RestResults,
 )
 from lithobrake.results.journey_results import DeliveryResults
-from lithobrake.results.json_values import from_json
+from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
 from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
@@ -124,7 +124,7 @@ def impact_numbers(rows: Rows) -> ImpactNumbers:
 
 def flight_checks(job: Job) -> FlightChecks:
     """How exact the flights of a study are."""
-    return from_json(FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
+    return results_in(FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
 
 
 def ellipses(site: Site, rows: Rows, status: str) -> LandingEllipses | None:
@@ -186,7 +186,7 @@ def _with_sampling_intervals(found: GroundResults) -> GroundResults:
 
     def bounded(one: CountedShare) -> CountedShare:
         lower, upper = wilson_interval(one.count, found.sample_count, NORMAL_QUANTILE_90)
-        return replace(one, lower=lower, upper=upper)
+        return one.within(lower, upper)
 
     return found.with_counts({name: bounded(one) for name, one in found.counts.items()}, Level(LEVEL, None))
 
@@ -219,7 +219,7 @@ def _ends(
 
 def proportion(count: int, total: int) -> CountedShare:
     """A count and its share of a total; no interval, which would have to hold for other beds and places."""
-    return CountedShare(count, count / total, None, None)
+    return CountedShare(count, Estimate(count / total, None, None))
 
 
 POSITION = tuple(f"position_{axis}" for axis in "xyz")

@@ -1,11 +1,12 @@
 """Shares and ends of journeys that the emulator gives, with intervals from its refits."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis import IntervalEstimate, quantile_within, refit_interval, upper_limit
+from lithobrake.analysis import quantile_within, refit_interval, upper_limit
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
@@ -13,21 +14,21 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import why_no_interval
-from lithobrake.pipeline.answer.typed_estimates import finite_estimate
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, FRESH, OWN, most_landings
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
-from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys, EndShare
-from lithobrake.results.run_results import CountedShare, Estimate, ShareInterval
+from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study import Study
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
-Shares = Mapping[str, EndShare]
+Shares = Mapping[str, CountedShare]
 EMULATED_ENDS = tuple(end.value for end in JourneyEnd if end != JourneyEnd.FAILED)
 
 
@@ -73,7 +74,7 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
     return EmulatedJourneys(None, *counts, unknown, ends, agrees, control, _statement(ends, agrees, unknown)), shares
 
 
-def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, EndShare]:
+def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, CountedShare]:
     """Shares of the landers of known end, with bounds that hold whatever becomes of the others."""
     totals, known = np.bincount(fresh.refit, minlength=REFIT_COUNT), fresh.end != UNKNOWN_END
     why, beds = why_no_interval(study), len(np.unique(table.bed))
@@ -82,13 +83,13 @@ def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> di
         met = fresh.end == end
         share, count = float(met.sum() / max(known.sum(), 1)), int(met.sum())
         if why is not None or totals.min() < 2:
-            found[end] = EndShare(count, share, None, None, why)
+            found[end] = CountedShare(count, Estimate(share, None, None, why_missing=why))
             continue
         least, most = (
             refit_interval(np.bincount(fresh.refit[one], minlength=REFIT_COUNT), totals, beds)
             for one in (met, met | ~known)
         )
-        found[end] = EndShare(count, share, least.lower, most.upper)
+        found[end] = CountedShare(count, Estimate(share, least.lower, most.upper))
     return found
 
 
@@ -96,11 +97,10 @@ def _agrees(landings: Shares, emulator: Shares) -> bool | None:
     """Whether no end differs by more than both intervals together allow; None without intervals."""
     agreed = []
     for end in EMULATED_ENDS:
-        one, other = landings[end], emulator[end]
-        if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
+        bounds = difference_bounds(landings[end].share, emulator[end].share)
+        if bounds is None:
             return None
-        lower, upper = difference_bounds((one.share, one.lower, one.upper), (other.share, other.lower, other.upper))
-        agreed.append(lower <= 0.0 <= upper)
+        agreed.append(bounds[0] <= 0.0 <= bounds[1])
     return all(agreed)
 
 
@@ -109,8 +109,8 @@ def _narrowed(
 ) -> tuple[ControlVariate | None, Shares]:
     """Shares with what the emulator predicts of each journey taken off, where that narrows the share at rest."""
     rests, met = JourneyEnd.AT_REST.value, [end for end, one in plain.items() if one.count]
-    at_rest = plain[rests]
-    if at_rest.lower is None or at_rest.upper is None or len(met) < 2 or rests not in met:
+    before = plain[rests].share.half_width
+    if before is None or len(met) < 2 or rests not in met:
         return None, plain
     if len(own.end) != COPIES * len(table.end):
         return None, plain
@@ -125,10 +125,8 @@ def _narrowed(
     if min(means) <= 0.0 or max(means) >= 1.0:
         return None, plain
     found = {**plain, **{end: end_share(table.end == end, table.bed, explained=taken[end]) for end in met}}
-    narrow = found[rests]
-    assert narrow.lower is not None
-    assert narrow.upper is not None
-    before, after = 0.5 * (at_rest.upper - at_rest.lower), 0.5 * (narrow.upper - narrow.lower)
+    after = found[rests].share.half_width
+    assert after is not None
     return ControlVariate(after < before, before, after), found if after < before else plain
 
 
@@ -149,7 +147,7 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
 def _statement(ends: Shares, agrees: bool | None, unknown: float) -> str:
     """Whether emulator and landings agree, in a sentence."""
     at_rest = ends[JourneyEnd.AT_REST]
-    said = f"The emulator of all touchdowns gives {with_interval(at_rest)} at rest"
+    said = f"The emulator of all touchdowns gives {with_interval(at_rest.share)} at rest"
     more = f" and {percent(unknown)} with an unknown outcome" if unknown >= 0.005 else ""
     if agrees is None:
         return f"{said}{more}."
@@ -175,10 +173,10 @@ class Refits:
             return found
         for name, event in met.items():
             one = refit_interval(np.bincount(refit[event], minlength=REFIT_COUNT), totals, self.bed_count)
-            found[name] = replace(found[name], lower=one.lower, upper=one.upper)
+            found[name] = found[name].within(one.lower, one.upper)
         return found
 
-    def share(self, met: np.ndarray, of: np.ndarray, refit: np.ndarray) -> ShareInterval:
+    def share(self, met: np.ndarray, of: np.ndarray, refit: np.ndarray) -> Estimate:
         """Share of some landers that have met an event, with its bounds where there are any, all [lander_count].
 
         of: which landers it is a share of; refit: that each has met.
@@ -188,22 +186,21 @@ class Refits:
         # Of one lander of a refit no scatter within it can be told; of few refits none between them.
         told = totals >= 2
         if self.why is not None or told.sum() < REFIT_COUNT // 2:
-            return ShareInterval(share, None, None)
-        found = refit_interval(counts[told], totals[told], self.bed_count)
-        return ShareInterval(share, found.lower, found.upper)
+            return Estimate(share, None, None)
+        return replace(refit_interval(counts[told], totals[told], self.bed_count), value=share)
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many beds can say of it."""
         limit = upper_limit(self.bed_count, LEVEL)
         for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
             one = counts[outcome.value]
-            if one.upper is not None:
-                counts[outcome.value] = replace(one, lower=0.0, upper=max(one.upper, limit))
+            if one.share.upper is not None:
+                counts[outcome.value] = one.within(0.0, max(one.share.upper, limit))
         return counts
 
 
 def quantile_of_some(
-    values: np.ndarray, which: np.ndarray, level: float, share: Callable[[np.ndarray], ShareInterval]
+    values: np.ndarray, which: np.ndarray, level: float, share: Callable[[np.ndarray], Estimate]
 ) -> Estimate | None:
     """A quantile of the values of some landers, both [lander_count], with its interval; None where there are none.
 
@@ -213,9 +210,12 @@ def quantile_of_some(
         return None
     point = quantile_within(values[which], level, (level, level))[0]
     below = share(which & (values <= point))
-    if below.lower is None or below.upper is None:
+    if below.bounds is None:
         return Estimate(quantile_within(values[which], level, (0.0, 1.0))[0], None, None)
-    return finite_estimate(IntervalEstimate(*quantile_within(values[which], level, (below.lower, below.upper))))
+    value, *bounds = quantile_within(values[which], level, below.bounds)
+    # Few landers give no interval of a tail.
+    lower, upper = (end if math.isfinite(end) else None for end in bounds)
+    return Estimate(value, lower, upper)
 
 
 def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, np.ndarray]:

@@ -12,18 +12,11 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
-from lithobrake.results.journey_results import (
-    EndShare,
-    JourneyRest,
-    Probability,
-    RestQuantile,
-    RestQuantiles,
-    SideResults,
-    SkyResults,
-    SoilResults,
-)
+from lithobrake.results.journey_results import JourneyRest, RestQuantiles, SideResults, SkyResults, SoilResults
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words, sides_down
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, SIDES, SOIL
@@ -74,7 +67,7 @@ class JourneyTable:
         return at_rest
 
 
-def end_shares(study: Study, table: JourneyTable) -> dict[str, EndShare]:
+def end_shares(study: Study, table: JourneyTable) -> dict[str, CountedShare]:
     """The share of each end; they add up to 1."""
     why = why_no_interval(study)
     return {end.value: end_share(table.end == end.value, table.bed, why) for end in JourneyEnd}
@@ -87,7 +80,9 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     def quantiles(name: str) -> RestQuantiles:
         values = np.where(rests, table.numbers[name], np.nan)
         counts = name == "contacts"
-        return RestQuantiles(*(rest_quantile(values, table.bed, level, why, counts=counts) for level in (MEDIAN, HIGH)))
+        return RestQuantiles(
+            *(quantile_estimate(values, table.bed, level, counts=counts, why=why) for level in (MEDIAN, HIGH))
+        )
 
     density = highest_density(table.position[rests], SHARES)
     faces = table.face[rests]
@@ -104,26 +99,15 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     )
 
 
-def rest_quantile(
-    values: np.ndarray, bed: np.ndarray, level: float, why: str | None, *, counts: bool = False
-) -> RestQuantile:  # fmt: skip
-    """A quantile of values [count], NaN where there is none, with its interval over beds.
-
-    why: there is no interval; counts: whether the values are whole numbers.
-    """
-    one = quantile_estimate(values, bed, level, counts=counts, why=why)
-    return RestQuantile(one.value, one.lower, one.upper, one.why)
-
-
 def end_share(
     met: np.ndarray, bed: np.ndarray, why: str | None = None, explained: np.ndarray | None = None
-) -> EndShare:  # fmt: skip
+) -> CountedShare:  # fmt: skip
     """The share of the journeys that have met an event [journey_count], with its interval over beds.
 
     explained: what something else predicts of each, of mean 0 over all journeys; taken off. why: there is no interval.
     """
     found = share_estimate(met.astype(float), bed, explained=explained, why=why)
-    return EndShare(int(met.sum()), found.share, found.lower, found.upper, found.why)
+    return CountedShare(int(met.sum()), found.share)
 
 
 Sides = dict[str, SideResults]
@@ -139,12 +123,12 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
     found = {}
     for name in _named(side):
         own = side == name
-        share = share_estimate(returns[own], bed[own], why=why)
+        share = share_estimate(returns[own], bed[own], why=why).share
         found[name] = SideResults(
             words=side_words(study.lander, name),
             landings=int(own.sum()),
-            speed_ratio=rest_quantile(ratio[own], bed[own], MEDIAN, why),
-            returns=EndShare(int((returns[own] == 1.0).sum()), share.share, share.lower, share.upper, share.why),
+            speed_ratio=quantile_estimate(ratio[own], bed[own], MEDIAN, why=why),
+            returns=CountedShare(int((returns[own] == 1.0).sum()), share),
         )
     return found
 
@@ -160,7 +144,7 @@ def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: Desi
         found[name] = replace(
             one,
             at_rest=end_share(table.rests[own], table.bed[own], why),
-            time_s=rest_quantile(time, table.bed[own], MEDIAN, why),
+            time_s=quantile_estimate(time, table.bed[own], MEDIAN, why=why),
             touchdowns=int(those.sum()),
             rests=end_share(captured[those], touchdowns.inputs["bed"][those], why),
         )
@@ -216,19 +200,18 @@ def _of(study: Study, rows: list[dict[str, str]], table: JourneyTable) -> SkyRes
     def column(name: str) -> np.ndarray:
         return np.array([float(row[name] or "nan") for row in rows])
 
-    def probability(values: np.ndarray) -> Probability:
-        found = share_estimate(values, bed, why=why)
-        return Probability(found.share, found.lower, found.upper, found.why)
+    def probability(values: np.ndarray) -> Estimate:
+        return share_estimate(values, bed, why=why).share
 
     seen = column("day_fraction")
     sides = {side: column(f"side_{side}") for side in SIDES if rows[0][f"side_{side}"]}
     return SkyResults(
-        day_fraction=rest_quantile(seen, bed, MEDIAN, why),
-        day_fraction_q05=rest_quantile(seen, bed, LOW, why),
-        least_day_fraction=rest_quantile(column("least_day_fraction"), bed, MEDIAN, why),
+        day_fraction=quantile_estimate(seen, bed, MEDIAN, why=why),
+        day_fraction_q05=quantile_estimate(seen, bed, LOW, why=why),
+        least_day_fraction=quantile_estimate(column("least_day_fraction"), bed, MEDIAN, why=why),
         probability=probability(seen),
         never=end_share(seen == 0.0, bed, why),
-        sides={side: rest_quantile(values, bed, MEDIAN, why) for side, values in sides.items()},
+        sides={side: quantile_estimate(values, bed, MEDIAN, why=why) for side, values in sides.items()},
         side_probabilities={side: probability(values) for side, values in sides.items()},
         dark_sides={side: end_share(values == 0.0, bed, why) for side, values in sides.items()},
     )

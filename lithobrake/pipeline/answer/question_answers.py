@@ -20,20 +20,20 @@ from lithobrake.pipeline.answer.answer_sentences import limit_statement
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
-from lithobrake.pipeline.answer.typed_estimates import finite_estimate, limit_state, share_interval
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
-from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim, LimitStateResult
-from lithobrake.results.run_results import CountedShare, Estimate, ShareInterval
+from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim, LimitStateInput, LimitStateResult
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words
 from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.constants import HOUR
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.outcomes import (
     CAPTURED,
@@ -69,8 +69,7 @@ def limit_state_results(
     for name, state in states.items():
         one, of_word = _one(study, name, state, runs, fates, of_samples), _of_one_word(state, shares)
         if of_word is not None:
-            one = replace(one, probability=of_word.share, lower=of_word.lower, upper=of_word.upper)
-            one = replace(one, runs=replace(one.runs, **vars(of_word)))
+            one = replace(one, probability=of_word, runs=replace(one.runs, share=of_word))
         found[name] = replace(one, statement=limit_statement(name, one))
     return found
 
@@ -102,15 +101,26 @@ def _one(
     )
     several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
     of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
-    return limit_state(state.text, found, float(np.nansum(failing)), of_inputs)
+    return LimitStateResult(
+        condition=state.text,
+        probability=found.probability,
+        source=found.source,
+        runs=found.by_runs,
+        emulator=found.by_emulator,
+        tail_limit=found.tail_limit,
+        why=found.by_runs.share.why_missing,
+        failing_runs=float(np.nansum(failing)),
+        inputs={key: LimitStateInput(**vars(one), found=one.found) for key, one in of_inputs.items()},
+        statement="",
+    )
 
 
-def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> ShareInterval | None:
+def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> Estimate | None:
     """Probability and bounds of a limit state that is a fate, or its opposite; None of another."""
     if state.outputs or len(state.fates) != 1:
         return None
     (word,) = state.fates
-    one = shares[word]
+    one = shares[word].share
     so, otherwise = (
         limit_state_met(state, {CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
     )
@@ -118,8 +128,8 @@ def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> Share
         return None
     if otherwise:
         lower, upper = (None if end is None else 1.0 - end for end in (one.upper, one.lower))
-        return ShareInterval(1.0 - one.share, lower, upper)
-    return ShareInterval(one.share, one.lower, one.upper)
+        return Estimate(1.0 - one.value, lower, upper)
+    return one
 
 
 def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:
@@ -243,18 +253,18 @@ def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGro
     )
 
 
-def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> ShareInterval:
+def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> Estimate:
     """Share of some landers that have met an event, with its bounds: over refits on soil, by their number on hard."""
     if ground == "hard":
         share = float(met.sum() / of.sum())
-        return ShareInterval(share, *wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
+        return Estimate(share, *wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
     return fitted.share(met, of, refit)
 
 
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:
     """Whether an aim and what comes of it keep all limits."""
     known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
-    known |= dict.fromkeys(RESTS, part.settled.share) | {"missing": part.missing}
+    known |= dict.fromkeys(RESTS, part.settled.value) | {"missing": part.missing}
     far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
     known |= {name: None if one is None else one.value for name, one in far.items()}
     return all(limit.keeps(known[limit.name]) for limit in limits)
@@ -269,7 +279,7 @@ def _best(
     there is no share of refits and no interval.
     """
     allowed = [part.allowed for part in parts]
-    shares = np.where(allowed, [part.settled.share for part in parts], -1.0)
+    shares = np.where(allowed, [part.settled.value for part in parts], -1.0)
     if shares.max() <= 0.0:
         return parts, None
     if bed_count is None:
@@ -278,9 +288,8 @@ def _best(
     found = best_choice(landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1), bed_count, allowed)
     parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
     others = tuple(aim for aim in found.not_worse if aim != found.best)
-    difference = None if found.difference is None else finite_estimate(found.difference)
     share = float(found.shares[found.best])
-    return parts, BestAim(found.best, share, share_interval(found.own), others, found.runner_up, difference)
+    return parts, BestAim(found.best, share, found.own, others, found.runner_up, found.difference)
 
 
 def aim_statement(table: AimResults) -> str:
@@ -324,8 +333,8 @@ def _alike(table: AimResults, places: Sequence[int], count: int, within: str) ->
 
 def _rivals(table: AimResults, best: int) -> str:
     """How many other options would be better if all landers of unknown outcome were at rest there."""
-    least = table.aims[best].soil.settled.share
-    count = sum(one.soil.settled.share + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
+    least = table.aims[best].soil.settled.value
+    count = sum(one.soil.settled.value + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
     return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from lithobrake.analysis import (
     LEVEL,
-    IntervalEstimate,
     chaos_variance,
     direction_estimate,
     mean_estimate,
@@ -28,14 +27,6 @@ from lithobrake.pipeline.answer.run_answers import (
     missing_warning,
     why_no_interval,
 )
-from lithobrake.pipeline.answer.typed_estimates import (
-    counted,
-    direction,
-    finite_estimate,
-    fraction,
-    variance_part,
-    variance_parts,
-)
 from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
@@ -43,10 +34,9 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.results.run_results import (
     CountedShare,
-    Estimate,
     OutputDirection,
     OutputEstimate,
     ReturnFraction,
@@ -57,8 +47,17 @@ from lithobrake.results.run_results import (
 )
 from lithobrake.results.summary import Estimates
 from lithobrake.study import Study
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.material import SURFACE_PROPERTIES
-from lithobrake.vocabulary.outcomes import CAPTURED, LOFTED, RETURNS, SETTLED, FlightStatus, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import (
+    CAPTURED,
+    LOFTED,
+    RETURNS,
+    SETTLED,
+    FlightStatus,
+    TouchdownOutcome,
+)
 from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import ARRIVAL, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 from lithobrake.vocabulary.study_files import ESTIMATES_FILE
@@ -73,7 +72,7 @@ PARTS = (*FlightStatus, CAPTURED)
 
 def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> ReturnFraction:
     """The return fraction with its interval, which covers whatever became of the landings without an outcome."""
-    return _share(study, runs, flights.returns)
+    return ReturnFraction.of(_share(study, runs, flights.returns))
 
 
 def run_shares(study: Study, runs: DesignRuns, flights: RunFlights, returns: ReturnFraction) -> RunShares:
@@ -86,14 +85,14 @@ def run_shares(study: Study, runs: DesignRuns, flights: RunFlights, returns: Ret
     counts, found = flights.fates.sum(axis=1), {}
     for name, ended in _events(flights.fates).items():
         share = np.where(counts > 0, ended / np.maximum(counts, 1), np.nan)
-        found[name] = counted(int(ended.sum()), _share(study, runs, share))
-    found[RETURNS] = counted(round(float(np.nansum(flights.returns * FLIGHT_COUNT))), returns)
+        found[name] = _counted(int(ended.sum()), _share(study, runs, share))
+    found[RETURNS] = _counted(round(float(np.nansum(flights.returns * FLIGHT_COUNT))), returns)
     _balance(found)
     why = why_no_interval(study)
     for outcome in (*LOST, MISSING):
         met = ~np.isin(runs.outcomes, KNOWN) if outcome == MISSING else np.array(runs.outcomes) == outcome
-        known = fraction(share_estimate(met.astype(float), runs.inputs["bed"], why=why))
-        found[str(outcome)] = counted(FLIGHT_COUNT * int(met.sum()), known)
+        known = share_estimate(met.astype(float), runs.inputs["bed"], why=why)
+        found[str(outcome)] = _counted(FLIGHT_COUNT * int(met.sum()), known)
     flown = int(flights.fates[:, : len(FlightStatus)].sum())
     return RunShares(FLIGHT_COUNT * runs.run_count, flown, LEVEL, why, found)
 
@@ -109,15 +108,15 @@ def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> 
         ends: list[tuple[float, float] | None] = [None] * len(QUANTILES)
         if why is None and several:
             found = quantile_estimates(values, bed, QUANTILES)
-            points, ends = [one.value for one in found], [_bounds(one) for one in found]
+            points, ends = [one.value for one in found], [one.bounds for one in found]
         quantiles, intervals = (dict(zip(keys, one, strict=True)) for one in (points, ends))
         table[name] = ImpactNumber(quantiles, intervals, landings)
     return ImpactNumbers(**table)
 
 
-def _bounds(one: IntervalEstimate) -> tuple[float, float] | None:
-    """Bounds of a quantile; few beds give none of a tail."""
-    return (one.lower, one.upper) if np.isfinite([one.lower, one.upper]).all() else None
+def _counted(count: int, found: LandingFraction) -> CountedShare:
+    """A fraction of the landings beside the flights that it comes from; the table says why it has no interval."""
+    return CountedShare(count, found.share.without_reason)
 
 
 def _events(fates: np.ndarray) -> dict[str, np.ndarray]:
@@ -133,24 +132,24 @@ def _balance(table: dict[str, CountedShare]) -> None:
     Source: [Deming-1940].
     """
     names = [*(str(name) for name in PARTS if name not in (FlightStatus.IMPACT, CAPTURED)), LOFTED]
-    weights = np.array([table[name].share * (1.0 - table[name].share) for name in names])
-    left = 1.0 - table[RETURNS].share - sum(table[name].share for name in names)
+    weights = np.array([table[name].share.value * (1.0 - table[name].share.value) for name in names])
+    left = 1.0 - table[RETURNS].share.value - sum(table[name].share.value for name in names)
     if weights.sum() > 0.0:
         for name, part in zip(names, (left * weights / weights.sum()).tolist(), strict=True):
-            table[name] = _moved(table[name], max(table[name].share + part, 0.0))
-    impact, settled = FlightStatus.IMPACT.value, table[SETTLED].share
-    table[impact] = _moved(table[impact], max(table[RETURNS].share - settled, 0.0))
-    table[CAPTURED] = _moved(table[CAPTURED], settled + table[LOFTED].share)
+            table[name] = _moved(table[name], max(table[name].share.value + part, 0.0))
+    impact, settled = FlightStatus.IMPACT.value, table[SETTLED].share.value
+    table[impact] = _moved(table[impact], max(table[RETURNS].share.value - settled, 0.0))
+    table[CAPTURED] = _moved(table[CAPTURED], settled + table[LOFTED].share.value)
 
 
 def _moved(one: CountedShare, share: float) -> CountedShare:
     """Another share, which its interval always holds."""
-    if one.lower is None or one.upper is None:
-        return replace(one, share=share)
-    return replace(one, share=share, lower=min(one.lower, share), upper=max(one.upper, share))
+    bounds = one.share.bounds
+    lower, upper = (None, None) if bounds is None else (min(bounds[0], share), max(bounds[1], share))
+    return replace(one, share=replace(one.share, value=share, lower=lower, upper=upper))
 
 
-def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> ReturnFraction:
+def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
     inputs = DrawnDesign(study).inputs
     if study.soil:
@@ -158,7 +157,7 @@ def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> ReturnFraction:
         inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
     terms = regression_terms(inputs, runs.columns(list(inputs)))
     bed, why = runs.inputs["bed"], why_no_interval(study)
-    return fraction(share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why))
+    return share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why)
 
 
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
@@ -239,7 +238,7 @@ def _parts(
     soil = [key for key in laws if key.startswith(SOIL)]
     attitude = independent_terms(job.design, runs.inputs)
     found = variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
-    return None if found is None else variance_parts(found, of)
+    return None if found is None else VarianceParts.of_shares(found, of)
 
 
 ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
@@ -271,7 +270,7 @@ def estimate(job: Job) -> None:
         runs=_counts(job, runs, values),
         sides=first_sides(study, runs, returns),
     )
-    job.folder.write_json(ESTIMATES_FILE, to_json(estimates))
+    job.folder.write_json(ESTIMATES_FILE, json_values(estimates))
 
 
 def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
@@ -286,11 +285,11 @@ def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str)
     Of the azimuth, which has neither beginning nor end, mean direction and resultant length. of: landings it describes.
     """
     if name == AZIMUTH_OUT:
-        return direction(direction_estimate(y, bed, why=why), of)
+        return OutputDirection(**vars(direction_estimate(y, bed, why=why)), of=of)
     known = y[np.isfinite(y)]
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
-        mean, *quantiles = map(finite_estimate, (mean_estimate(y, bed), *quantile_estimates(y, bed, QUANTILES)))
+        mean, *quantiles = mean_estimate(y, bed), *quantile_estimates(y, bed, QUANTILES)
     else:
         points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
         mean, *quantiles = (Estimate(float(point), None, None) for point in points)
@@ -345,8 +344,7 @@ def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> SideRuns:
         pairs, twins = (_differences(job, design, name, y) for design in ("soil_pairs", "twins"))
         known = np.isfinite(y)
         if np.isfinite(pairs).sum() >= 2 and known.sum() >= 2 and np.ptp(y[known]) > 0.0:
-            effects[name] = variance_part(soil_total_effect(pairs, y))
+            effects[name] = soil_total_effect(pairs, y)
         if np.isfinite(twins).any():
-            one = chaos_variance(twins)
-            chaos[name] = Estimate(one.value**0.5, one.lower**0.5, one.upper**0.5)
+            chaos[name] = chaos_variance(twins).on_scale(lambda variance: variance**0.5)
     return SideRuns(soil_pairs, twin_count, job.study.design.twin_shift, effects, chaos)

@@ -43,12 +43,12 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.results.dispersion import FlightResults, RestResults
-from lithobrake.results.json_values import from_json, to_json
 from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, MonteCarlo, OutputScore
+from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import EmulatorShares, LandingShares, Level, OutputRange, ReturnFraction
 from lithobrake.results.site_results import BedNumbers
 from lithobrake.results.study_files import SUMMARY_FORMAT
-from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes
+from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes, Summary
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent
@@ -114,12 +114,8 @@ def outputs_of_runs(runs: DesignRuns) -> dict[str, OutputRange]:
 
 def write_summary_file(job: Job, results: DrawnResults | PaperResults, asked: int, runs: DesignRuns) -> None:
     """Write summary.json. Times, host, folders and versions stand in provenance only; asked, runs: as provenance."""
-    tables = {
-        "study": study_tables(job.study, job.tables),
-        "results": results,
-        "provenance": provenance(job, asked, runs),
-    }
-    job.folder.write_json(SUMMARY_FILE, {"format_version": SUMMARY_FORMAT, **to_json(tables)})
+    summary = Summary(SUMMARY_FORMAT, study_tables(job.study, job.tables), results, provenance(job, asked, runs))
+    job.folder.write_json(SUMMARY_FILE, summary.to_json())
 
 
 def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
@@ -152,7 +148,7 @@ def write_results(job: Job, completed: Completed) -> None:
     side = job.study.design.side_runs
     runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
     distinct = DesignRuns.distinct(runs)
-    estimates = from_json(Estimates, job.folder.read_json(ESTIMATES_FILE), "estimates")
+    estimates = results_in(Estimates, job.folder.read_json(ESTIMATES_FILE), "estimates")
     results = completed(job, results_of_landings(job, estimates, distinct), runs[0], estimates)
     results = replace(results, answer=tuple(drawn_answer(job.study, results)))
     results = replace(results, headline=tuple(drawn_headline(results)))
@@ -185,6 +181,9 @@ def results_of_landings(job: Job, estimates: Estimates, distinct: DesignRuns) ->
         answer=(),
         headline=(),
         sides=estimates.sides,
+        end_variance_shares={},
+        sky={},
+        soils={},
     )
 
 
@@ -276,11 +275,10 @@ def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorRe
 
 def _disagreement(returns: ReturnFraction) -> str | None:
     """That runs and emulator disagree, in a sentence; None where they agree, or no interval says how far they may."""
-    if returns.lower is None or returns.upper is None or returns.emulator is None:
+    bounds = returns.share.bounds
+    if bounds is None or returns.emulator is None or bounds[0] <= returns.emulator <= bounds[1]:
         return None
-    if returns.lower <= returns.emulator <= returns.upper:
-        return None
-    low, high = (f"{100 * end:.1f}" for end in (returns.lower, returns.upper))
+    low, high = (f"{100 * end:.1f}" for end in bounds)
     return (
         f"The emulator gives a return fraction of {percent(returns.emulator, 1)}, outside the interval of the runs "
         f"({low} to {high} %): do not rely on results of the emulator (flights, landing regions, rest); make more runs"

@@ -20,8 +20,8 @@ from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.json_values import to_json
-from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.questions import ComparedAnswer, StudyComparison
+from lithobrake.results.result_files import json_values
 from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
@@ -126,7 +126,7 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
     page, numbers = comparison_files(out)
     texts = [intact_file(Path(name), STUDY_FILE, REMEDY).read_text(encoding="utf-8") for name in comparison.names]
     write_comparison(comparison, texts, out)
-    write_json(numbers, to_json(comparison))
+    write_json(numbers, json_values(comparison))
     return page, numbers
 
 
@@ -258,8 +258,8 @@ def _quantiles(
 
 
 def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
-    first, second = (ComparedNumber(one.value, one.lower, one.upper) for one in (found.first, found.second))
-    difference = ComparedNumber(found.value, found.lower, found.upper)
+    # The comparison says why there are no intervals.
+    first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
     saved = found.landings_saved
     return ComparedAnswer(
         words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved

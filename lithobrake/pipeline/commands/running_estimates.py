@@ -3,7 +3,7 @@
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,13 +11,14 @@ from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.percentages import percent, with_interval
 from lithobrake.vocabulary.quantities import OVER_RIM
 from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
-    from lithobrake.analysis import IntervalEstimate, ShareEstimate
+    from lithobrake.vocabulary.landing_fraction import LandingFraction
 
 # The share of a lander that is captured, by how its touchdown ended; no other end has one.
 CAPTURED = {TouchdownOutcome.CAPTURED.value: 1.0, TouchdownOutcome.CLEAR.value: 0.0}
@@ -35,31 +36,35 @@ class RunningEstimates:
     returns    the return fraction; None before the runs have flown
     """
 
-    captured: "ShareEstimate | None"
-    speed_out: "IntervalEstimate | None"
-    returns: "ShareEstimate | None" = None
+    captured: "LandingFraction | None"
+    speed_out: Estimate | None
+    returns: "LandingFraction | None" = None
 
     def lines(self) -> list[str]:
         """The estimates in words."""
         if self.captured is None:
             return []
-        lines = [f"so far, from {self.captured.source}:", f"  captured: {_share(self.captured)}"]
+        lines = [f"so far, from {self.captured.from_}:", f"  captured: {_share(self.captured)}"]
         if self.speed_out is not None:
-            value, lower, upper = self.speed_out.value, self.speed_out.lower, self.speed_out.upper
-            level = percent(self.speed_out.level)
-            lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {lower:.4g} to {upper:.4g})")
+            value, level = self.speed_out.value, percent(self.speed_out.level)
+            ends = " to ".join(f"{end:.4g}" for end in self.speed_out.bounds or ())
+            lines.append(f"  mean speed_out: {value:.4g} m/s ({level}: {ends})")
         return [*lines, f"  {NO_FLIGHTS}" if self.returns is None else f"  return fraction: {_share(self.returns)}"]
 
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         # Who only looks at lines does not wait for these.
-        from lithobrake.pipeline.answer.typed_estimates import fraction
-        from lithobrake.results.json_values import to_json
+        from lithobrake.results.result_files import json_values
+        from lithobrake.results.run_results import ReturnFraction
 
+        captured, returns = (
+            None if one is None else json_values(ReturnFraction.of(one)) for one in (self.captured, self.returns)
+        )
+        speed = self.speed_out
         return {
-            TouchdownOutcome.CAPTURED.value: None if self.captured is None else to_json(fraction(self.captured)),
-            "speed_out": None if self.speed_out is None else asdict(self.speed_out),
-            "returns": None if self.returns is None else to_json(fraction(self.returns)),
+            TouchdownOutcome.CAPTURED.value: captured,
+            "speed_out": None if speed is None else {**json_values(speed), "level": speed.level},
+            "returns": returns,
             "why_no_returns": NO_FLIGHTS if self.returns is None else None,
         }
 
@@ -93,10 +98,10 @@ def running_estimates(records: Sequence[Record], flown: Mapping[str, float]) -> 
     )
 
 
-def _share(found: "ShareEstimate") -> str:
+def _share(found: "LandingFraction") -> str:
     """A share with its interval, which holds whatever became of landings without an outcome, or why it has none."""
-    why = "" if found.why is None else f", without an interval: {found.why}"
-    return f"{with_interval(found, level=found.level)}{why}"
+    share, why = found.share, found.share.why_missing
+    return with_interval(share, level=share.level) + ("" if why is None else f", without an interval: {why}")
 
 
 NUMBER, TOUCHDOWN = "journey", "touchdown"

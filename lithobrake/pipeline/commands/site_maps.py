@@ -29,7 +29,7 @@ from lithobrake.pipeline.site_grid import (
 )
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.results.site_results import SiteMap
 from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.constants import HOUR
@@ -56,7 +56,7 @@ def _statement(found: SiteMap) -> str:
             f"None of {total} sites has a result: their impacts are outside the range of the touchdowns of the study "
             f"({found.cells[0].beyond}). Deliver the landers of the study all over the body."
         )
-    shares = [site.ends.at_rest.share for site in answered if site.ends is not None]
+    shares = [site.ends.at_rest.value for site in answered if site.ends is not None]
     where = f"all {total} sites" if len(answered) == total else f"the {len(answered)} of {total} sites with a result"
     said = (
         f"Within {found.duration_s / HOUR:.3g} h {with_interval(found.at_rest, level=found.level)} of the landers come "
@@ -66,7 +66,7 @@ def _statement(found: SiteMap) -> str:
     if best and len(best) == len(answered) > 1:
         said += " No site can be distinguished from the best."
     elif best:
-        site = max(best, key=lambda one: one.ends.at_rest.share if one.ends else 0.0)
+        site = max(best, key=lambda one: one.ends.at_rest.value if one.ends else 0.0)
         count = f"{len(best)} sites" if len(best) > 1 else "One site"
         cannot = "cannot be distinguished from the best" if len(best) > 1 else "is better than every other"
         said += f" {count} {cannot}, at {place_words(site.latitude_deg, site.longitude_deg)}."
@@ -212,7 +212,7 @@ def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Pat
 
     page, numbers, table = site_map_files(place)
     write_sites(site_map, study_text, place)
-    write_json(numbers, to_json(site_map))
+    write_json(numbers, json_values(site_map))
     rows = [cell.row for cell in site_map.cells]
     write_rows(table, rows[0], ([row[name] for name in rows[0]] for row in rows))
     return page, numbers, table

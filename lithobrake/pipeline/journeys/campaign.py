@@ -49,7 +49,7 @@ def _descent(descents: Descents, number: int, touches_down: bool) -> dict[str, A
     )  # fmt: skip
 
 
-JOURNEY_FILES = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
+JOURNEY_FILES: tuple[str, ...] = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
 
 
 def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:

@@ -74,7 +74,7 @@ def write_reason(job: Job, why: str) -> None:
         file.attrs["why"] = why
 
 
-EMULATED_FILES = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
+EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
 # Landers that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL
 from lithobrake.pipeline.answer.dispersion_statistics import (
     Rows,
     ellipses,
@@ -27,7 +26,6 @@ from lithobrake.pipeline.paper.expansions import kept_inputs, replicate_count
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import MISSING, Samples
 from lithobrake.results.dispersion import FlightResults, WithoutScatter
-from lithobrake.results.json_values import from_json
 from lithobrake.results.model_results import (
     DesignCounts,
     ExpansionResults,
@@ -37,12 +35,14 @@ from lithobrake.results.model_results import (
     OutputFit,
     SampledOutput,
 )
+from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import ReturnFraction, SampleShares
 from lithobrake.results.summary import PaperResults
 from lithobrake.results.telling_numbers import MainInput, TellingNumbers
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.percentages import QUANTILES, percent
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
@@ -60,18 +60,19 @@ def answer(study: Study, results: PaperResults) -> list[str]:
     ways = {FlightStatus.ESCAPED: "escape", FlightStatus.FLYING: f"are still flying after {limit}"}
     if outcomes[FlightStatus.PARTNER].count:
         ways[FlightStatus.PARTNER] = "impact the partner"
-    beside = [f"{percent(outcomes[status].share, 1)} {words}" for status, words in ways.items()]
+    beside = [f"{percent(outcomes[status].share.value, 1)} {words}" for status, words in ways.items()]
     captured = outcomes[SampleOutcome.CAPTURED]
     if captured.count and not site.holds:
-        beside.append(f"{percent(captured.share, 1)} are captured and lifted off again")
-    returning = percent(outcomes["returns"].share, 1)
+        beside.append(f"{percent(captured.share.value, 1)} are captured and lifted off again")
+    returning = percent(outcomes["returns"].share.value, 1)
     sentences = [f"{scope(study).where}: {returning} of the landers {down}; {', '.join(beside)}.", scope(study).why]
     if outcomes["missing"].count:
-        lost = [f"{percent(outcomes[outcome].share, 1)} {outcome.label}" for outcome in MISSING]
+        lost = [f"{percent(outcomes[outcome].share.value, 1)} {outcome.label}" for outcome in MISSING]
         low, high = (percent(bound, 1) for bound in results.returns.if_missing)
+        missing = percent(outcomes["missing"].share.value, 1)
         sentences.append(
-            f"{percent(outcomes['missing'].share, 1)} of the samples have no outcome ({', '.join(lost)}): the return "
-            f"fraction is {low} if none of these return and {high} if all do."
+            f"{missing} of the samples have no outcome ({', '.join(lost)}): the return fraction is {low} if none of "
+            f"these return and {high} if all do."
         )
     return [*sentences, *site.sentences]
 
@@ -220,12 +221,9 @@ def _without_scatter(
 
 def return_fraction(study: Study, table: SampleShares, run_count: int) -> ReturnFraction:
     """The return fraction, without an interval, which runs on one bed or at one place do not give."""
-    share, missing = table.outcomes["returns"].share, table.outcomes["missing"].share
+    share, missing = (table.outcomes[name].share.value for name in ("returns", "missing"))
     return ReturnFraction(
-        share=share,
-        lower=None,
-        upper=None,
-        level=LEVEL,
+        share=Estimate(share, None, None, why_missing=scope(study).why),
         from_=f"{table.sample_count} samples of an expansion fitted to {run_count} landings {scope(study).landings}",
         next_bed=None,
         if_missing=(share, share + missing),
@@ -239,7 +237,7 @@ def _scores(job: Job) -> dict[str, dict[str, OutputErrors]]:
     """Scores by set of runs and output, less the errors of each run."""
     return {
         stage: {
-            output: replace(from_json(OutputErrors, score, f"{stage}.{output}"), ape=None)
+            output: replace(results_in(OutputErrors, score, f"{stage}.{output}"), ape=None)
             for output, score in table.items()
         }
         for stage, table in job.folder.read_json(SCORES_FILE).items()
@@ -294,6 +292,12 @@ def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) 
         columns = zip(surrogate.output_names, np.moveaxis(table, 1, 0).tolist(), strict=True)
         return {output: dict(zip(inputs, column, strict=True)) for output, column in columns}
 
+    def intervals(table: np.ndarray) -> dict[str, dict[str, tuple[float, float]]]:
+        lower, upper = (by_output(end) for end in table)
+        return {
+            output: {name: (low, upper[output][name]) for name, low in ends.items()} for output, ends in lower.items()
+        }
+
     return ExpansionResults(
         inputs=tuple(inputs),
         term_count=len(surrogate.multi_indices),
@@ -303,8 +307,8 @@ def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) 
         std=_by_output(surrogate, np.sqrt(np.asarray(surrogate.variance))),
         sobol_first=by_output(estimates["first"][0]),
         sobol_total=by_output(estimates["total"][0]),
-        sobol_first_interval=by_output(np.moveaxis(estimates["first"][1:], 0, -1)),
-        sobol_total_interval=by_output(np.moveaxis(estimates["total"][1:], 0, -1)),
+        sobol_first_interval=intervals(estimates["first"][1:]),
+        sobol_total_interval=intervals(estimates["total"][1:]),
     )
 
 

@@ -20,10 +20,10 @@ from lithobrake.report.figures.ground_map import SITE_STYLE, density_colours, ma
 from lithobrake.report.figures.hulls import Camera, frame_axes
 from lithobrake.report.figures.map_frames import degrees, draw_bar
 from lithobrake.report.figures.style import INK, QUIET, RULE, SITE, TRAINING
-from lithobrake.results.run_results import ShareInterval
 from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteMap
 from lithobrake.vocabulary.arrays import Array, Integers
 from lithobrake.vocabulary.constants import HOUR
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus
 from lithobrake.vocabulary.percentages import percent
 
@@ -136,16 +136,16 @@ class SiteSheet:
 def sheets(site_map: SiteMap) -> list[SiteSheet]:
     """The maps of a body, each with its unit."""
     rests = [site.ends.at_rest for site in site_map.cells if site.ends is not None]
-    lowest = min((one.share if one.lower is None else one.lower for one in rests), default=0.0)
+    lowest = min((one.value if one.lower is None else one.lower for one in rests), default=0.0)
     whole = (10.0 * math.floor(10.0 * lowest), 100.0)
-    found = [SiteSheet("at rest [%]", _of_ends(lambda ends: 100.0 * ends.at_rest.share), GOOD, whole, is_marked=True)]
+    found = [SiteSheet("at rest [%]", _of_ends(lambda ends: 100.0 * ends.at_rest.value), GOOD, whole, is_marked=True)]
     if site_map.why is None:
         least = _of_ends(lambda ends: 100.0 * (ends.at_rest.lower or 0.0))
         found += [SiteSheet(f"at rest, at least ({percent(site_map.level)} interval) [%]", least, GOOD, whole)]
     found += [
         SiteSheet("median time to rest [h]", _median("time_s", HOUR), BAD),
         SiteSheet("median distance from the aim point [m]", _median("distance_m", 1.0), BAD),
-        SiteSheet("escaped or on the partner [%]", _of_ends(lambda e: 100 * (e.escaped.share + e.partner.share)), BAD),
+        SiteSheet("escaped or on the partner [%]", _of_ends(lambda e: 100 * (e.escaped.value + e.partner.value)), BAD),
         SiteSheet("slope against gravity [deg]", lambda site: site.slope_deg.mean, GROUND),
     ]
     names = site_map.cells[0].light
@@ -299,11 +299,11 @@ def agreement_figure(regions: Sequence[SiteAgreement], level: float) -> Figure:
     axes.plot([0.0, 100.0], [0.0, 100.0], color=RULE, linewidth=1.0, zorder=1)
     lowest = 100.0
     for one in regions:
-        lowest = min([lowest, 100.0 * one.landings.share, 100.0 * one.emulator.share, *_lower(one)])
+        lowest = min([lowest, 100.0 * one.landings.value, 100.0 * one.emulator.value, *_lower(one)])
         is_whole = one.latitude_deg is None
         axes.errorbar(
-            [100.0 * one.emulator.share],
-            [100.0 * one.landings.share],
+            [100.0 * one.emulator.value],
+            [100.0 * one.landings.value],
             xerr=_bars(one.emulator),
             yerr=_bars(one.landings),
             fmt="o",
@@ -320,11 +320,11 @@ def agreement_figure(regions: Sequence[SiteAgreement], level: float) -> Figure:
     return figure
 
 
-def _bars(share: ShareInterval) -> list[list[float]] | None:
+def _bars(share: Estimate) -> list[list[float]] | None:
     """Lengths of the bars below and above a share, in per cent; None where it has no interval."""
-    if share.lower is None or share.upper is None:
+    if share.bounds is None:
         return None
-    return [[100.0 * (share.share - share.lower)], [100.0 * (share.upper - share.share)]]
+    return [[100.0 * abs(end - share.value)] for end in share.bounds]
 
 
 def _lower(one: SiteAgreement) -> list[float]:

@@ -1,5 +1,6 @@
 """Delivery options as maps, differences between studies, and the way down to rare limit states."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -14,11 +15,9 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.style import INK, INPUT_COLOURS, LANDER, QUIET, RULE, SITE
 from lithobrake.report.words.labels import input_label
 from lithobrake.results.questions import AimResult, AimResults, RareLimitState
-from lithobrake.results.run_results import Estimate, ShareInterval
 from lithobrake.vocabulary.constants import HOUR
+from lithobrake.vocabulary.estimate import Estimate
 
-# A number and its bounds.
-Reading = tuple[float, float | None, float | None]
 # One for all maps; colours darker than this part of their scale have white figures.
 COLOURS, DARK = "Blues", 0.55
 
@@ -33,31 +32,27 @@ class AimRow:
     title: str
     ground: str
     scale: tuple[float, float] | None
-    read: Callable[[AimResult], Reading]
+    read: Callable[[AimResult], Estimate]
 
 
-def _percentages(share: ShareInterval) -> Reading:
-    low, high = (None if end is None else 100 * end for end in (share.lower, share.upper))
-    return 100 * share.share, low, high
+def _percentages(share: Estimate) -> Estimate:
+    return share.on_scale(lambda one: 100 * one)
 
 
-def _on_hard_ground(aim: AimResult) -> Reading:
+def _on_hard_ground(aim: AimResult) -> Estimate:
     return _NONE if aim.hard is None else _percentages(aim.hard.settled)
 
 
-def _within(found: Estimate | None, unit: float) -> Reading:
-    if found is None:
-        return _NONE
-    low, high = (None if end is None else end / unit for end in (found.lower, found.upper))
-    return found.value / unit, low, high
+def _within(found: Estimate | None, unit: float) -> Estimate:
+    return _NONE if found is None else found.on_scale(lambda one: one / unit)
 
 
-_NONE: Reading = (float("nan"), None, None)
+_NONE = Estimate(math.nan, None, None)
 # Maps in per cent share one scale, from nothing to all: colours differ as much as the shares do.
 WHOLE = (0.0, 100.0)
 ROWS = (
     AimRow("at rest on soil [%]", "soil", WHOLE, lambda aim: _percentages(aim.soil.settled)),
-    AimRow("unknown outcome on soil [%]", "soil", WHOLE, lambda aim: (100 * aim.soil.missing, None, None)),
+    AimRow("unknown outcome on soil [%]", "soil", WHOLE, lambda aim: Estimate(100 * aim.soil.missing, None, None)),
     AimRow("95 % rest within [m]", "soil", None, lambda aim: _within(aim.soil.distance_p95, 1.0)),
     AimRow("95 % rest within [h]", "soil", None, lambda aim: _within(aim.soil.time_p95, HOUR)),
     AimRow("at rest on hard ground [%]", "hard", WHOLE, _on_hard_ground),
@@ -81,7 +76,7 @@ def aim_figure(table: AimResults) -> Figure:
     figure = Figure(figsize=layout.size)
     for number, row in enumerate(rows):
         read = [row.read(aim) for aim in table.aims]
-        scale = row.scale or _ends(np.array([one[0] for one in read]))
+        scale = row.scale or _ends(np.array([one.value for one in read]))
         for column, panel in enumerate(panels.tolist()):
             axes = figure.add_axes(layout.place(number, column))
             shown = np.flatnonzero(places[:, 2] == panel)
@@ -159,14 +154,15 @@ class _Cells:
         return [(int(column), int(row)) for column, row in found]
 
 
-def _draw(axes: Axes, cells: _Cells, read: Sequence[Reading], scale: tuple[float, float]) -> AxesImage:
+def _draw(axes: Axes, cells: _Cells, read: Sequence[Estimate], scale: tuple[float, float]) -> AxesImage:
     """Colour the cells by their number, and write it there with its bounds."""
     table = np.full((len(cells.up), len(cells.across)), np.nan)
-    for (column, row), (value, _, _) in zip(cells.places, read, strict=True):
-        table[row, column] = value
+    for (column, row), one in zip(cells.places, read, strict=True):
+        table[row, column] = one.value
     span = scale[1] - scale[0] or 1.0
     drawn = axes.imshow(table, origin="lower", aspect="auto", cmap=COLOURS, vmin=scale[0], vmax=scale[0] + span)
-    for (column, row), (value, low, high) in zip(cells.places, read, strict=True):
+    for (column, row), one in zip(cells.places, read, strict=True):
+        value, low, high = one.value, one.lower, one.upper
         ink = "white" if (value - scale[0]) / span > DARK else "black"
         text = "none" if np.isnan(value) else f"{value:.0f}" if scale == WHOLE else f"{value:.3g}"
         axes.text(column, row + 0.16, text, ha="center", va="center", fontsize=9, color=ink)
@@ -212,17 +208,15 @@ def _label(
 
 
 @dataclass(frozen=True)
-class ShownDifference:
-    """A difference as it is drawn: its name, value and bounds in the unit of the axis, and its figure in words."""
+class DifferenceRow:
+    """A row of the figure: its name, the difference in the unit of the axis, and its figure in words."""
 
     name: str
-    value: float
-    lower: float | None
-    upper: float | None
+    difference: Estimate
     words: str
 
 
-def difference_figure(groups: Sequence[tuple[str, Sequence[ShownDifference]]]) -> Figure:
+def difference_figure(groups: Sequence[tuple[str, Sequence[DifferenceRow]]]) -> Figure:
     """Draw groups of differences below each other, each under the label of its axis."""
     shown = [(label, rows) for label, rows in groups if rows]
     heights = [len(rows) + 1.2 for _, rows in shown]
@@ -234,16 +228,17 @@ def difference_figure(groups: Sequence[tuple[str, Sequence[ShownDifference]]]) -
     return figure
 
 
-def _draw_difference(axes: Axes, label: str, rows: Sequence[ShownDifference]) -> None:
+def _draw_difference(axes: Axes, label: str, rows: Sequence[DifferenceRow]) -> None:
     axes.axvline(0.0, color=RULE, linewidth=1.0, zorder=0)
     for y, row in zip(range(len(rows) - 1, -1, -1), rows, strict=True):
-        if row.lower is not None and row.upper is not None:
-            axes.plot([row.lower, row.upper], [y, y], color=LANDER, linewidth=2.4, solid_capstyle="butt")
-        axes.plot(row.value, y, "o", color=INK, markersize=4.5)
+        if row.difference.bounds is not None:
+            axes.plot(row.difference.bounds, [y, y], color=LANDER, linewidth=2.4, solid_capstyle="butt")
+        axes.plot(row.difference.value, y, "o", color=INK, markersize=4.5)
         axes.text(1.03, y, row.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
     axes.set_yticks(range(len(rows) - 1, -1, -1), [row.name for row in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
-    reach = max(max(abs(end) for end in (row.value, row.lower or 0.0, row.upper or 0.0)) for row in rows) or 1.0
+    found = [row.difference for row in rows]
+    reach = max(abs(end or 0.0) for one in found for end in (one.value, one.lower, one.upper)) or 1.0
     axes.set_xlim(-1.08 * reach, 1.08 * reach)
     axes.set_xlabel(label)
     axes.xaxis.label.set_color(QUIET)
@@ -260,9 +255,10 @@ def rare_figure(rare: Mapping[str, RareLimitState]) -> Figure:
     for (name, found), colour in zip(rare.items(), _colours(len(rare)), strict=True):
         left = np.cumprod(found.shares)
         axes.plot(found.thresholds, left, "-o", color=colour, linewidth=1.4, markersize=5.0, label=name)
-        if found.reached and found.lower is not None and found.upper is not None:
-            bounds = [[left[-1] - found.lower], [found.upper - left[-1]]]
-            axes.errorbar(0.0, left[-1], bounds, color=colour, capsize=4.0, linewidth=1.4)
+        bounds = found.probability.bounds
+        if found.reached and bounds is not None:
+            bars = [[left[-1] - bounds[0]], [bounds[1] - left[-1]]]
+            axes.errorbar(0.0, left[-1], bars, color=colour, capsize=4.0, linewidth=1.4)
     axes.axvline(0.0, color=RULE, linewidth=0.8, zorder=0)
     axes.set_yscale("log")
     axes.invert_xaxis()

@@ -31,7 +31,7 @@ from lithobrake.report.figures.ground_map import (
     region_style,
 )
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
-from lithobrake.report.figures.share_figures import Share, draw_shares
+from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
 from lithobrake.vocabulary.arrays import Array
@@ -124,7 +124,7 @@ def local_figure(shown: PlaceMap) -> Figure:
     return figure
 
 
-def outcomes_figure(shown: PlaceMap, shares: list[Share], whole: str) -> Figure:
+def outcomes_figure(shown: PlaceMap, shares: list[ShareBar], whole: str) -> Figure:
     """Draw the share of each outcome, and both halves of the body where the map about the aim point leaves places out.
 
     whole: what the shares are of.
@@ -279,7 +279,7 @@ class RestMap:
     title: str
     places: Places
     regions: Regions
-    shares: list[Share]
+    shares: list[ShareBar]
     whole: str
 
 

@@ -17,7 +17,7 @@ from lithobrake.report.words.labels import input_label, long_part_words, output,
 from lithobrake.results.run_results import VarianceParts
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, percent
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, part, percent
 
 # In inches: a bed's row, and what stands above and below the rows.
 BED_HEIGHT, MARGINS = 0.115, 1.07
@@ -177,12 +177,12 @@ def pieces(record: VarianceParts, colours: Mapping[str, str]) -> list[Piece]:
 
     What inputs do alone is estimated with scatter, and drawn smaller where together it is more than the soil does.
     """
-    alone = {name: max(one.share, 0.0) for name, one in record.soil_by_input.items()}
-    soil, total = record.soil.share, sum(alone.values())
+    alone = {name: max(one.value, 0.0) for name, one in record.soil_by_input.items()}
+    soil, total = record.soil.value, sum(alone.values())
     scale = min(1.0, soil / total) if total > 0.0 else 0.0
     found = [Piece(name, scale * share, colours[name]) for name, share in alone.items()]
     found.append(Piece("interactions", soil - scale * total, "white", "...."))
-    return found + [Piece(name, one.share, *LOOKS[name]) for name, one in record.parts.items() if name in LOOKS]
+    return found + [Piece(name, one.value, *LOOKS[name]) for name, one in record.parts.items() if name in LOOKS]
 
 
 def variance_figure(shares: Mapping[str, VarianceParts | None], words: Mapping[str, str], level: float) -> Figure:
@@ -236,10 +236,10 @@ def part_handles(records: Sequence[VarianceParts]) -> list[Patch]:
     handles = [Patch(facecolor=colours[name], label=input_label(name)) for name in names]
     if names:
         handles.append(Patch(facecolor="white", edgecolor=QUIET, hatch="....", label="soil inputs together"))
-    for part, (colour, hatch) in LOOKS.items():
-        known = [record for record in records if part in record.parts]
+    for name, (colour, hatch) in LOOKS.items():
+        known = [record for record in records if name in record.parts]
         if known:
-            label = long_part_words(known[0], part)
+            label = long_part_words(known[0], name)
             handles.append(Patch(facecolor=colour, edgecolor=QUIET if hatch else colour, hatch=hatch, label=label))
     return handles
 
@@ -247,27 +247,34 @@ def part_handles(records: Sequence[VarianceParts]) -> list[Patch]:
 def _bar(axes: Axes, row: int, parts: Sequence[Piece]) -> None:
     """Stack the pieces."""
     end = 0.0
-    for part in parts:
-        edge = QUIET if part.hatch else "white"
+    for piece in parts:
+        edge = QUIET if piece.hatch else "white"
         axes.barh(
-            row, part.share, left=end, height=0.52, color=part.colour, hatch=part.hatch, edgecolor=edge, linewidth=0.6
+            row,
+            piece.share,
+            left=end,
+            height=0.52,
+            color=piece.colour,
+            hatch=piece.hatch,
+            edgecolor=edge,
+            linewidth=0.6,
         )
-        if part.share >= ROOM:
+        if piece.share >= ROOM:
             light = sum(
                 value * weight
-                for value, weight in zip(matplotlib.colors.to_rgb(part.colour), (0.3, 0.59, 0.11), strict=True)
+                for value, weight in zip(matplotlib.colors.to_rgb(piece.colour), (0.3, 0.59, 0.11), strict=True)
             )
             axes.text(
-                end + 0.5 * part.share,
+                end + 0.5 * piece.share,
                 row,
-                f"{100 * part.share:.0f}",
+                f"{100 * piece.share:.0f}",
                 ha="center",
                 va="center_baseline",
                 fontsize=8,
                 color="white" if light < 0.62 else INK,
-                bbox={"facecolor": part.colour, "edgecolor": "none", "pad": 0.8} if part.hatch else None,
+                bbox={"facecolor": piece.colour, "edgecolor": "none", "pad": 0.8} if piece.hatch else None,
             )
-        end += part.share
+        end += piece.share
 
 
 def _intervals(axes: Axes, row: int, record: VarianceParts) -> None:
@@ -275,13 +282,13 @@ def _intervals(axes: Axes, row: int, record: VarianceParts) -> None:
     parts = record.parts
     step = 0.84 / max(len(parts), 5)
     start = row - 0.5 * step * (len(parts) - 1)
-    for index, (part, share) in enumerate(parts.items()):
+    for index, (name, share) in enumerate(parts.items()):
         y = start + step * index
-        axes.plot([share.lower, share.upper], [y, y], color=QUIET, linewidth=1.3, solid_capstyle="butt", clip_on=False)
-        axes.plot(share.share, y, "o", color=INK, markersize=3.6, clip_on=False)
+        axes.plot(share.bounds or (), [y, y], color=QUIET, linewidth=1.3, solid_capstyle="butt", clip_on=False)
+        axes.plot(share.value, y, "o", color=INK, markersize=3.6, clip_on=False)
         side = axes.get_yaxis_transform()
-        axes.text(-0.04, y, part_words(record, part), transform=side, ha="right", va="center_baseline", fontsize=7.5)
-        axes.text(1.05, y, share.words(), transform=side, va="center_baseline", fontsize=7.5)
+        axes.text(-0.04, y, part_words(record, name), transform=side, ha="right", va="center_baseline", fontsize=7.5)
+        axes.text(1.05, y, part(share), transform=side, va="center_baseline", fontsize=7.5)
 
 
 def _dress(axes: Axes, title: str, row_count: int) -> None:

@@ -13,54 +13,52 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.style import INK, QUIET, TRAINING
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
+from lithobrake.vocabulary.percentages import percent, with_interval
 
 # Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
 LONGEST = 56
 
 
 @dataclass(frozen=True)
-class Share:
-    """A share of the samples with its interval, if it has one, all in [0, 1]; upper alone: no run had it.
+class ShareBar:
+    """A bar of the figure: a share of the samples within [0, 1]; with an upper bound alone no run had it.
 
-    level: probability that the interval stands for; colour: of its bar; digits: of its figure in per cent where it has
-    no interval.
+    colour: of its bar; digits: of its figure in per cent where it has no interval.
     """
 
     name: str
-    share: float
-    lower: float | None = None
-    upper: float | None = None
-    level: float = LEVEL
+    share: Estimate
     colour: str = TRAINING
     digits: int = 0
 
     @property
     def words(self) -> str:
         """The share in per cent, with its interval or its limit."""
-        if self.lower is None and self.upper is not None:
-            return f"at most {percent(self.upper, 1)}"
-        return with_interval(self, self.digits)
+        if self.share.lower is None and self.share.upper is not None:
+            return f"at most {percent(self.share.upper, 1)}"
+        return with_interval(self.share, self.digits)
 
 
-def draw_shares(axes: Axes, shares: list[Share], whole: str) -> None:
+def draw_shares(axes: Axes, bars: list[ShareBar], whole: str) -> None:
     """One bar an outcome, the interval of a share that has one, and in the margin to the right its figure in per cent.
 
     whole: what they are shares of, "all samples".
     """
-    place = np.arange(len(shares))[::-1]
+    place = np.arange(len(bars))[::-1]
     words = f"share of {whole} [%]"
-    for y, share in zip(place, shares, strict=True):
-        axes.barh(y, 100 * share.share, color=share.colour, height=0.68)
+    for y, bar in zip(place, bars, strict=True):
+        share = bar.share
+        axes.barh(y, 100 * share.value, color=bar.colour, height=0.68)
         if share.upper is not None:
             ends = [100 * (share.lower or 0.0), 100 * share.upper]
             # At the very ends of the axis a clipped line would look as if there were no interval.
             axes.plot(ends, [y, y], color=INK, linewidth=1.4, solid_capstyle="butt", clip_on=False)
         if share.lower is not None:
             words = f"share of {whole} [%], with {percent(share.level)} interval"
-        axes.text(1.025, y, share.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
-    axes.set_yticks(place, [share.name for share in shares])
+        axes.text(1.025, y, bar.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
+    axes.set_yticks(place, [bar.name for bar in bars])
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
     axes.set_xlabel(fill(words, LONGEST))
@@ -111,7 +109,7 @@ def draw_spread(axes: Axes, one: RestSpread) -> None:
     axes.set_ylim(0.0, 104.0)
     axes.set_yticks([0, 25, 50, 75, 95])
     for share, found in quantiles.items():
-        if found.value is None:
+        if not found.is_known:
             continue
         axes.plot(found.value * one.factor, share, "o", color=INK, markersize=4.5, clip_on=False, zorder=4)
         if found.lower is not None or found.upper is not None:
@@ -155,7 +153,7 @@ def draw_counts(axes: Axes, values: Array, end: NDArray[np.str_], words: Mapping
     axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=5))
 
 
-def attitude_figure(faces: list[Share], whole: str, tilt: RestSpread) -> Figure:
+def attitude_figure(faces: list[ShareBar], whole: str, tilt: RestSpread) -> Figure:
     """Draw the share of each side that is down, and the distribution function of its tilt."""
     rows = 0.24 * len(faces)
     height = max(2.9, rows + 0.9)

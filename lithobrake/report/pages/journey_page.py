@@ -14,7 +14,7 @@ from lithobrake.report.figures.map_frames import track_map
 from lithobrake.report.figures.option_figures import aim_figure
 from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure, outcomes_figure, places_by_end
 from lithobrake.report.figures.run_figures import variance_figure
-from lithobrake.report.figures.share_figures import RestSpread, Share, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.live.body_view import end_views
 from lithobrake.report.live.explorer import deflated, script_data, touchdown_sections
@@ -31,7 +31,6 @@ from lithobrake.report.words import journey_captions as words
 from lithobrake.report.words.drawn_captions import aims
 from lithobrake.report.words.journey_captions import END_WORDS
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
-from lithobrake.results.journey_results import EndShare
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL
 
@@ -143,13 +142,9 @@ def _draw_ends(data: JourneyPage) -> "Figure":
     return variance_figure(known, words.END_ROWS, LEVEL)
 
 
-def _share(name: str, one: EndShare, colour: str) -> Share:
-    return Share(name, one.share, one.lower, one.upper, LEVEL, colour)
-
-
-def end_shares(data: JourneyPage) -> list[Share]:
+def end_shares(data: JourneyPage) -> list[ShareBar]:
     """How the journeys end, as bars have it."""
-    return [_share(END_WORDS[name], one, END_COLOURS[name]) for name, one in data.ends.items()]
+    return [ShareBar(END_WORDS[name], one.share, END_COLOURS[name]) for name, one in data.ends.items()]
 
 
 def _draw_times(data: JourneyPage) -> "Figure":
@@ -178,10 +173,10 @@ def _draw_attitude(data: JourneyPage) -> "Figure | None":
     return None if tilt is None else attitude_figure(side_shares(data), "those at rest", tilt)
 
 
-def side_shares(data: JourneyPage) -> list[Share]:
+def side_shares(data: JourneyPage) -> list[ShareBar]:
     """The sides that are down, the most frequent first; none for a ball."""
-    sides = sorted(data.at_rest.faces.items(), key=lambda one: -one[1].share)
-    return [_share(name, one, END_COLOURS[JourneyEnd.AT_REST]) for name, one in sides]
+    sides = sorted(data.at_rest.faces.items(), key=lambda one: -one[1].share.value)
+    return [ShareBar(name, one.share, END_COLOURS[JourneyEnd.AT_REST]) for name, one in sides]
 
 
 def tilt_spread(data: JourneyPage) -> RestSpread | None:

@@ -18,7 +18,7 @@ from lithobrake.report.figures.place_map import (
     outcomes_figure,
     rest_figure,
 )
-from lithobrake.report.figures.share_figures import Share
+from lithobrake.report.figures.share_figures import ShareBar
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.report.tables.dispersion_tables import GROUND_WORDS, followed, parts, place_tables, site_tables
@@ -93,7 +93,7 @@ def draw_outcomes(data: SampledPage) -> "Figure":
     return outcomes_figure(impacts(data), impact_shares(data), whole_words(data))
 
 
-def impact_shares(data: SampledPage) -> list[Share]:
+def impact_shares(data: SampledPage) -> list[ShareBar]:
     """What becomes of the landings after the first bounce, as bars have it."""
     table, limit = data.results.shares, hours(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long).format(hours=limit) for key, long in parts(data).items()}
@@ -113,11 +113,10 @@ def _aim(data: PageData) -> tuple[tuple[float, float], float]:
     return (site.latitude_deg, site.longitude_deg), float(np.linalg.norm(site.place_m))
 
 
-def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> Share:
+def _share(data: SampledPage, fate: str, words: str, entry: CountedShare) -> ShareBar:
     """A share of the summary, with its interval or its limit where it has one."""
-    limit = entry.upper_limit
-    lower, upper = (entry.lower, entry.upper) if limit is None else (None, limit)
-    return Share(words, entry.share, lower, upper, data.level, FATE_COLOURS[fate], data.digits)
+    limited = entry if entry.upper_limit is None else entry.within(None, entry.upper_limit)
+    return ShareBar(words, limited.share, FATE_COLOURS[fate], data.digits)
 
 
 def whole_words(data: SampledPage) -> str:

@@ -9,7 +9,7 @@ from lithobrake.report.words.captions import thousands
 from lithobrake.report.words.numbers import area, flat, number
 from lithobrake.results.dispersion import GroundResults, ImpactNumber
 from lithobrake.results.journey_results import JourneyRest
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.results.run_results import CountedShare, EmulatorShares
 from lithobrake.vocabulary.durations import hours
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
@@ -92,7 +92,7 @@ def _outcomes_of_landings(data: DrawnPage) -> PageTable:
     shown = whole | {key: known[key] for key in SUMS if key in known}
     shown |= {key: f"(of these: {known[key]})" for key in LOST if key in known and shares.outcomes[key].count}
     rows = [
-        [words.format(hours=limit), with_interval(shares.outcomes[key]), _by_emulator(shares.emulator, key)]
+        [words.format(hours=limit), with_interval(shares.outcomes[key].share), _by_emulator(shares.emulator, key)]
         for key, words in shown.items()
     ]
     flown = 0 if shares.emulator is None else shares.emulator.flight_count
@@ -140,7 +140,8 @@ def _outcomes_of_samples(data: SampledPage) -> PageTable:
 
 def _share(entry: CountedShare, alone: int) -> str:
     """A share, with its interval if it has one, or the largest that an outcome may have which no run had."""
-    return with_interval(entry, alone) if entry.upper_limit is None else f"at most {percent(entry.upper_limit, 1)}"
+    limit = entry.upper_limit
+    return with_interval(entry.share, alone) if limit is None else f"at most {percent(limit, 1)}"
 
 
 def _flights(data: PageData) -> PageTable:
@@ -244,5 +245,5 @@ def _regions(data: SampledPage) -> PageTable:
 
 
 def _site(data: PageData) -> PageTable:
-    rows = flat(to_json(data.results.site), alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
+    rows = flat(json_values(data.results.site), alike=(("extents_m", "centroid_m", "place_m"), ACCELERATIONS))
     return PageTable("Site and body", ["name", "value"], rows, "m, kg, s, m/s2; degrees where named.")

@@ -23,35 +23,36 @@ from lithobrake.report.words.drawn_captions import (
 from lithobrake.report.words.journey_captions import quantile_words
 from lithobrake.report.words.labels import PART_WORDS, long_part_words, output
 from lithobrake.report.words.numbers import number, table_cell
-from lithobrake.results.run_results import Estimate, SideRuns, VarianceParts
+from lithobrake.results.run_results import SideRuns, VarianceParts
 from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import RETURNS, JourneyStatus
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, interval_digits, percent, span, with_interval
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, interval_digits, part, percent, span, with_interval
 
 
 def tiles(data: DrawnPage) -> list[Tile]:
     """The return fraction, and the most informative numbers beside it."""
     results, returns = data.results, data.results.returns
-    digits = interval_digits(returns.lower, returns.upper)
+    digits = interval_digits(returns.share.lower, returns.share.upper)
     alone = "of these landings, without an interval: other beds, impact points or attitudes would change this number"
-    sure = f"({interval(returns, data.level)})" if has_interval(data) else alone
-    share = percent(returns.share, digits).removesuffix(" %")
+    sure = f"({interval(returns.share)})" if has_interval(data) else alone
+    share = percent(returns.share.value, digits).removesuffix(" %")
     found = [Tile(share, "%", f"of the landings {action(data)} {sure}"), *_at_rest(data)]
     if "speed_out" in results.spreads:
         median = results.spreads["speed_out"].quantiles["0.5"]
         words = "rebound speed, median of those that leave"
-        if median.lower is not None and median.upper is not None:
-            ends = " to ".join(number(CENTIMETRES * end) for end in (median.lower, median.upper))
+        if median.bounds is not None:
+            ends = " to ".join(number(CENTIMETRES * end) for end in median.bounds)
             words += f" ({percent(data.level)} interval {ends})"
         found.append(Tile(number(CENTIMETRES * median.value), "cm/s", words))
     parts = results.variance_shares["speed_out"]
     if parts is not None:
-        value, _, unit = parts.soil.words().partition(" (")[0].partition(" %")
+        value, _, unit = part(parts.soil).partition(" (")[0].partition(" %")
         is_found = value[0].isdigit()
         words = "at least of the variance of the rebound speed is explained by soil"
         words = words if is_found else "effect of the soil on the variance of the rebound speed"
-        found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil, data.level)})"))
+        found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval(parts.soil)})"))
     band = data.emulator.scores.outputs.get("speed_out")
     if band:
         words = f"of the rebound speeds on {left_out(data)} lay within the {percent(BAND)} bands of the emulator"
@@ -63,8 +64,8 @@ def _at_rest(data: DrawnPage) -> list[Tile]:
     """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
     found, limit = followed(data), hours(data.study["rest"]["duration"])
     for ground, table in found.items():
-        share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED]).partition(" %")
-        unknown = table.outcomes[JourneyStatus.OUTSIDE].share
+        share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED].share).partition(" %")
+        unknown = table.outcomes[JourneyStatus.OUTSIDE].share.value
         lost = f"; {percent(unknown)} have an unknown outcome" if unknown > 0.0 else ""
         return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
     return []
@@ -95,11 +96,11 @@ def _with_rows(*found: PageTable) -> list[PageTable]:
 
 def _answer(data: RunsPage) -> PageTable:
     returns, missing = data.results.returns, data.results.runs.missing.count
-    digits = interval_digits(returns.lower, returns.upper)
-    rows = [[f"return fraction: landings that {action(data)}", percent(returns.share, digits)]]
-    if returns.lower is not None and returns.upper is not None:
-        held = f"{percent(data.level)} interval"
-        rows.append([held, span(returns.lower, returns.upper)])
+    bounds = returns.share.bounds
+    digits = interval_digits(*(bounds or (None, None)))
+    rows = [[f"return fraction: landings that {action(data)}", percent(returns.share.value, digits)]]
+    if bounds is not None:
+        rows.append([f"{percent(data.level)} interval", span(*bounds)])
     if returns.next_bed is not None:
         rows.append([f"prediction interval for a new bed{_bed_size(data)}", span(*returns.next_bed)])
     if missing:
@@ -165,9 +166,7 @@ def _estimate(entry: Estimate | None, factor: float) -> str:
     if entry is None:
         return ""
     value = table_cell(entry.value * factor)
-    if entry.lower is None or entry.upper is None:
-        return value
-    return f"{value} ({number(entry.lower * factor)} to {number(entry.upper * factor)})"
+    return value if entry.bounds is None else f"{value} ({' to '.join(number(end * factor) for end in entry.bounds)})"
 
 
 def _variance(data: RunsPage) -> PageTable:
@@ -194,7 +193,7 @@ def _sides(data: RunsPage) -> PageTable:
     """What becomes of the landers by the side that faces the ground; of journeys the first touchdown."""
     columns = ["side toward the ground", "landings", "median rebound speed over impact speed", "return fraction"]
     rows = [
-        [one.words, str(one.landings), quantile_words(one.speed_ratio), with_interval(one.returns)]
+        [one.words, str(one.landings), quantile_words(one.speed_ratio), with_interval(one.returns.share)]
         for one in data.results.sides.values()
     ]
     note = (
@@ -209,7 +208,7 @@ def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[
     if record is None:
         return ["not known"] * (2 + len(inputs) + len(names))
     found = [record.soil, record.soil_doubled, *map(record.soil_by_input.get, inputs), *map(record.parts.get, names)]
-    return ["" if one is None else one.words() for one in found]
+    return ["" if one is None else part(one) for one in found]
 
 
 def _runs(data: RunsPage) -> PageTable:
@@ -236,7 +235,7 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
         rows.append(
             [
                 output_words(name),
-                effects[name].words() if name in effects else "",
+                part(effects[name]) if name in effects else "",
                 _estimate(chaos.get(name), factor),
                 unit,
             ]

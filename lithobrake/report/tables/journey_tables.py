@@ -8,7 +8,8 @@ from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.drawn_captions import as_sentence, interval
 from lithobrake.report.words.journey_captions import END_WORDS, emulator_words, quantile_words, time_unit
 from lithobrake.report.words.numbers import area, number
-from lithobrake.results.journey_results import EndShare, RestQuantiles
+from lithobrake.results.journey_results import RestQuantiles
+from lithobrake.results.run_results import CountedShare
 from lithobrake.vocabulary.constants import MINUTE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, with_interval
@@ -22,10 +23,10 @@ RENAMED = {"The answer": "Return fraction"}
 def tiles(data: JourneyPage) -> list[Tile]:
     """At rest, the likeliest other end, when and where; the share of each end where no lander rests."""
     count, ends = len(data.journeys["end"]), data.ends
-    if data.at_rest.time_s.median.value is None:
+    if not data.at_rest.time_s.median.is_known:
         return [_end_tile(name, one, count) for name, one in ends.items()]
     others = {name: one for name, one in ends.items() if name != JourneyEnd.AT_REST}
-    other = max(others, key=lambda name: (others[name].share, others[name].upper or 0.0))
+    other = max(others, key=lambda name: (others[name].share.value, others[name].share.upper or 0.0))
     found = [_end_tile(name, ends[name], count) for name in (JourneyEnd.AT_REST, other)]
     rest, (size, unit) = data.at_rest, time_unit(data)
     found.append(_quantile_tile(rest.time_s, unit, "median time to rest", size))
@@ -41,9 +42,9 @@ def tiles(data: JourneyPage) -> list[Tile]:
     return found
 
 
-def _end_tile(name: str, one: EndShare, count: int) -> Tile:
-    value = percent(one.share, interval_digits(one.lower, one.upper)).removesuffix(" %")
-    sure = interval(one, LEVEL)
+def _end_tile(name: str, one: CountedShare, count: int) -> Tile:
+    share = one.share
+    value, sure = percent(share.value, interval_digits(share.lower, share.upper)).removesuffix(" %"), interval(share)
     words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({sure})" if sure else "")
     # An end that did not occur has no colour.
     return Tile(value, "%", words, name if one.count else "")
@@ -78,9 +79,9 @@ def _numbers(data: JourneyPage) -> PageTable:
         rows.append(_row("tilt of the side that is down [deg]", rest.tilt_deg))
     note = f"From {rest.of}; in brackets {percent(LEVEL)} intervals."
     if rest.faces:
-        sides = sorted(rest.faces.items(), key=lambda one: -one[1].share)
-        note += f" Side down: {', '.join(f'{name} {with_interval(one)}' for name, one in sides)}."
-    has_rest = rest.time_s.median.value is not None
+        sides = sorted(rest.faces.items(), key=lambda one: -one[1].share.value)
+        note += f" Side down: {', '.join(f'{name} {with_interval(one.share)}' for name, one in sides)}."
+    has_rest = rest.time_s.median.is_known
     return PageTable("When and how they rest", columns, rows if has_rest else [], note, frozenset(columns[1:]))
 
 
@@ -103,13 +104,13 @@ def _sky(data: JourneyPage) -> PageTable:
     columns += ["never seen by", "sides that face it most, probability", "side that most often never faces it"]
     rows = []
     for name, one in data.results.sky.items():
-        best = sorted(one.side_probabilities.items(), key=lambda item: -item[1].share)[:2]
-        dark = max(one.dark_sides.items(), key=lambda item: item[1].share, default=None)
+        best = sorted(one.side_probabilities.items(), key=lambda item: -item[1].value)[:2]
+        dark = max(one.dark_sides.items(), key=lambda item: item[1].share.value, default=None)
         rows.append([
             SKY_WORDS[name], quantile_words(one.day_fraction, 0.01), quantile_words(one.day_fraction_q05, 0.01),
-            with_interval(one.probability), with_interval(one.never),
+            with_interval(one.probability), with_interval(one.never.share),
             "; ".join(f"{side} {with_interval(value)}" for side, value in best),
-            f"{dark[0]} on {with_interval(dark[1])}" if dark else "",
+            f"{dark[0]} on {with_interval(dark[1].share)}" if dark else "",
         ])  # fmt: skip
     note = (
         "Of the landers at rest, over a day of the body, the dates of the study, or the positions of the orbiter; "
@@ -147,8 +148,8 @@ def side_tables(data: JourneyPage) -> list[PageTable]:
     columns += ["median rebound speed over impact speed", "all touchdowns", "of these at rest"]
     rows = [
         [
-            one.words, str(one.landings), with_interval(one.at_rest), quantile_words(one.time_s, size),
-            quantile_words(one.speed_ratio), str(one.touchdowns), with_interval(one.rests),
+            one.words, str(one.landings), with_interval(one.at_rest.share), quantile_words(one.time_s, size),
+            quantile_words(one.speed_ratio), str(one.touchdowns), with_interval(one.rests.share),
         ]
         for one in data.results.sides.values()
         if one.at_rest and one.time_s and one.rests
@@ -165,8 +166,8 @@ def soil_tables(data: JourneyPage) -> list[PageTable]:
     columns = ["soil", "part of the surface", "touchdowns", "of these at rest", "journeys that end at rest there"]
     rows = [
         [
-            name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests) if one.rests else "",
-            with_interval(one.at_rest),
+            name, percent(one.area_share), str(one.touchdowns), with_interval(one.rests.share) if one.rests else "",
+            with_interval(one.at_rest.share),
         ]
         for name, one in data.results.soils.items()
     ]  # fmt: skip
@@ -196,9 +197,9 @@ def _ends(data: JourneyPage) -> PageTable:
     rows = []
     for name, one in data.ends.items():
         each = number(float(touchdowns[ended == name].mean()), 2) if one.count else ""
-        beside = [with_interval(by_emulator[name])] if by_emulator else []
-        rows.append([END_WORDS[name], str(one.count), with_interval(one), each, *beside])
-    why = next((one.why for one in data.ends.values() if one.why), None)
+        beside = [with_interval(by_emulator[name].share)] if by_emulator else []
+        rows.append([END_WORDS[name], str(one.count), with_interval(one.share), each, *beside])
+    why = next((one.share.why_missing for one in data.ends.values() if one.share.why_missing), None)
     said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in data.ends.items() if one.count]
     more = [*([as_sentence(why)] if why else []), *emulator_words(data)]
     note = " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + more)

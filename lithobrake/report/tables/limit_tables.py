@@ -21,14 +21,17 @@ def limit_state_tables(data: DrawnPage) -> list[PageTable]:
 
 
 def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
-    level = percent(next(iter(states.values())).level)
+    level = percent(next(iter(states.values())).probability.level)
     columns = ["limit state", "condition", "probability [%]", f"{level} interval [%]", "source", "runs that meet it"]
     rows = [
         [
             name,
             state.condition,
-            _percentage(state.probability),
-            " to ".join(_percentage(end) for end in (state.lower, state.upper) if end is not None) or "none",
+            _percentage(state.probability.value),
+            " to ".join(
+                _percentage(end) for end in (state.probability.lower, state.probability.upper) if end is not None
+            )
+            or "none",
             SOURCES[state.source],
             number(state.failing_runs),
         ]
@@ -42,12 +45,12 @@ def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:
     """Inputs among the runs that meet a limit state, furthest from their distribution first."""
     rows = []
     for name, state in states.items():
-        found = sorted(state.inputs.items(), key=lambda entry: -entry[1].distance)
+        found = sorted(state.inputs.items(), key=lambda entry: -entry[1].distance.value)
         rows += [
             [
                 name if place == 0 else "",
                 input_words(key),
-                f"{fixed(one.distance)} ({fixed(one.lower)} to {fixed(one.upper)})",
+                f"{fixed(one.distance.value)} ({' to '.join(map(fixed, one.distance.bounds or ()))})",
                 fixed(one.luck),
                 table_cell(one.median),
                 table_cell(one.median_of_all),
@@ -81,14 +84,15 @@ def rare_tables(rare: RareResults) -> list[PageTable]:
 
 
 def _rare_probabilities(rare: RareResults) -> PageTable:
-    level = percent(next(iter(rare.values())).level)
+    level = percent(next(iter(rare.values())).probability.level)
     columns = ["limit state", "condition", "probability", f"{level} interval", "landings", "beds", "origins"]
     rows = [
         [
             name,
             found.condition,
-            number(found.probability) if found.reached else f"below {number(found.rarest)}",
-            " to ".join(number(end) for end in (found.lower, found.upper) if end is not None) or "none",
+            number(found.probability.value) if found.reached else f"below {number(found.rarest)}",
+            " to ".join(number(end) for end in (found.probability.lower, found.probability.upper) if end is not None)
+            or "none",
             number(found.landings),
             number(found.beds),
             fixed(found.origins, 1),

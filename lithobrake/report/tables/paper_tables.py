@@ -8,8 +8,8 @@ from lithobrake.report.page_data import PageData, PaperPage
 from lithobrake.report.words.captions import action, input_words
 from lithobrake.report.words.labels import PAPER_OUTPUTS, output
 from lithobrake.report.words.numbers import fixed, flat, number, show, table_cell, unit_scales
-from lithobrake.results.json_values import to_json
 from lithobrake.results.model_results import Ends
+from lithobrake.results.result_files import json_values
 from lithobrake.results.telling_numbers import TellingNumbers
 from lithobrake.vocabulary.percentages import percent
 
@@ -37,7 +37,7 @@ def tiles(data: PaperPage) -> list[Tile]:
     noise = main.noise_share
     found = [
         Tile(
-            percent(data.results.returns.share, data.digits).removesuffix(" %"),
+            percent(data.results.returns.share.value, data.digits).removesuffix(" %"),
             "%",
             f"of the landings {action(data)}; {_scope(data)}",
         ),
@@ -100,7 +100,7 @@ def method_tables(data: PaperPage) -> list[PageTable]:
 
 def provenance(data: PageData) -> list[PageTable]:
     """Where the numbers come from: seed, times, versions."""
-    rows = [("seed", show(data.study["seed"])), *flat(to_json(data.provenance))]
+    rows = [("seed", show(data.study["seed"])), *flat(json_values(data.provenance))]
     return [
         PageTable(
             "Execution",

@@ -48,9 +48,9 @@ def answer(data: SampledPage) -> str:
     returns = data.results.returns
     if isinstance(data, PaperPage):
         where, _, _ = data.results.answer[0].partition(":")
-        return f"{where}: {percent(returns.share, data.digits)} of the landers {action(data)}."
-    level = None if returns.lower is None else data.level
-    return f"{with_interval(returns, level=level)} of the landings {action(data)}."
+        return f"{where}: {percent(returns.share.value, data.digits)} of the landers {action(data)}."
+    level = None if returns.share.lower is None else data.level
+    return f"{with_interval(returns.share, level=level)} of the landings {action(data)}."
 
 
 def action(data: PageData) -> str:
@@ -251,7 +251,7 @@ def outcomes(data: SampledPage) -> str:
     extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
     outward = site.effective_acceleration_outward
     direction = "outward" if outward > 0 else "inward"
-    down = with_interval(shares.outcomes[FlightStatus.IMPACT], data.digits)
+    down = with_interval(shares.outcomes[FlightStatus.IMPACT].share, data.digits)
     return (
         f"{down} of the landings impact the surface again within {hours(data.study['flight']['duration'])} (body: "
         f"{number(site.mass_kg)} kg, {extents} m, one turn in {site.spin_period_s / 3600:.4g} h; at the site gravity "
@@ -271,12 +271,13 @@ def rest(data: SampledPage) -> str:
         return ""
     soil, hard = table.soil, table.hard
     limit = hours(data.study["rest"]["duration"])
-    settled = with_interval(hard.outcomes[JourneyStatus.SETTLED], data.digits)
+    settled = with_interval(hard.outcomes[JourneyStatus.SETTLED].share, data.digits)
     words = f"Followed from bounce to bounce for up to {limit}, {settled} come to rest on hard ground"
     if soil is None:
         return f"{words}; unknown on the soil: {table.why_no_soil}."
     settled_on_soil, outside = (
-        with_interval(soil.outcomes[status], data.digits) for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
+        with_interval(soil.outcomes[status].share, data.digits)
+        for status in (JourneyStatus.SETTLED, JourneyStatus.OUTSIDE)
     )
     return (
         f"{words}, {settled_on_soil} on the soil. On the soil {outside} have an unknown outcome "

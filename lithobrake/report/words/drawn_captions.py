@@ -7,9 +7,10 @@ from lithobrake.report.words.captions import BAND, band_luck, input_words, listi
 from lithobrake.report.words.labels import output, part_words
 from lithobrake.report.words.numbers import number
 from lithobrake.results.questions import AimResults, RareLimitState
-from lithobrake.results.run_results import Estimate, VarianceParts
+from lithobrake.results.run_results import VarianceParts
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import RETURNS, TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, BoundedShare, interval_digits, percent, span
+from lithobrake.vocabulary.percentages import QUANTILE_WORDS, interval_digits, part, percent, span
 
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
@@ -17,14 +18,12 @@ FEW_BEDS = 12
 
 def has_interval(data: PageData) -> bool:
     """Whether the runs tell how sure the share is."""
-    return data.results.returns.lower is not None
+    return data.results.returns.share.lower is not None
 
 
-def interval(entry: BoundedShare, level: float) -> str:
+def interval(entry: Estimate) -> str:
     """The interval of an entry with its level, "90 % interval 68-73 %"; empty where it has none."""
-    if entry.lower is None or entry.upper is None:
-        return ""
-    return f"{percent(level)} interval {span(entry.lower, entry.upper)}"
+    return "" if entry.bounds is None else f"{percent(entry.level)} interval {span(*entry.bounds)}"
 
 
 def drawn_things(data: RunsPage) -> list[str]:
@@ -134,7 +133,7 @@ def runs(data: RunsPage) -> str:
     said.append(missing_sentence(data))
     record = data.results.variance_shares["speed_out"]
     if record:
-        said.append(f"Right: the same speeds by bed; share of their variance between beds: {record.bed.words()}.")
+        said.append(f"Right: the same speeds by bed; share of their variance between beds: {part(record.bed)}.")
     return " ".join(filter(None, said))
 
 
@@ -156,9 +155,8 @@ def _quantiles(data: RunsPage) -> str:
 
 def _ends(data: RunsPage, entry: Estimate, factor: float) -> str:
     """The interval of a number in brackets, where it has one."""
-    if entry.lower is None or entry.upper is None:
-        return ""
-    return f" ({percent(data.level)} interval {number(entry.lower * factor)} to {number(entry.upper * factor)})"
+    ends = " to ".join(number(end * factor) for end in entry.bounds or ())
+    return f" ({percent(data.level)} interval {ends})" if ends else ""
 
 
 def variance(data: RunsPage) -> str:
@@ -172,7 +170,7 @@ def variance(data: RunsPage) -> str:
         f"{scatter_words(records[first])} ({percent(data.level)} intervals)."
     ]
     if others:
-        soils = [f"{records[name].soil.words()} of the {output_words(name)}" for name in others]
+        soils = [f"{part(records[name].soil)} of the {output_words(name)}" for name in others]
         said.append(f"Soil, at least: {listing(soils)}.")
     said.append(floor_words(records[first]))
     if all(record.chaos is None for record in records.values()):
@@ -183,7 +181,7 @@ def variance(data: RunsPage) -> str:
 def floor_words(record: VarianceParts) -> str:
     """Of which degree the parts are lower bounds, and for which ranges."""
     doubled = record.soil_doubled
-    explains = f"at least {doubled.words()}" if doubled.share > 0.0 else doubled.words()
+    explains = f"at least {part(doubled)}" if doubled.value > 0.0 else part(doubled)
     return (
         f"Soil, delivery and attitude: {record.terms}, for the ranges of the study file; their other effects "
         f"are in everything else. Soil with ranges twice as wide: {explains}."
@@ -202,26 +200,26 @@ def scatter_words(record: VarianceParts) -> str:
         more = _main_input(record) if name == "soil" else ""
         whose = words.get(name, part_words(record, name).replace(", chaos", " with chaos").replace(",", ""))
         # What is not detected is not "at least" so much.
-        found.append(f"{whose if share.share > 0.0 else NAMES.get(name, whose)} {share.words(more)}")
+        found.append(f"{whose if share.value > 0.0 else NAMES.get(name, whose)} {part(share, more)}")
     return listing(found)
 
 
 def detected_words(record: VarianceParts) -> str:
     """What of an output's variance is detected, likewise, but for everything else."""
-    detected = {name: one for name, one in record.parts.items() if one.share > 0.0 and name != "place"}
+    detected = {name: one for name, one in record.parts.items() if one.value > 0.0 and name != "place"}
     if not detected:
         return "none is detected"
     whose = [
-        f"{NAMES.get(name, name)}{' at least' if name != 'bed' else ''} {one.words()}" for name, one in detected.items()
+        f"{NAMES.get(name, name)}{' at least' if name != 'bed' else ''} {part(one)}" for name, one in detected.items()
     ]
     return listing(whose)
 
 
 def _main_input(record: VarianceParts) -> str:
     """Which input makes most of what the soil does, where one does and the soil does something."""
-    alone = {name: share.share for name, share in record.soil_by_input.items()}
+    alone = {name: share.value for name, share in record.soil_by_input.items()}
     name = max(alone, key=lambda one: alone[one], default="")
-    is_main = bool(name) and alone[name] > MAIN * record.soil.share and record.soil_by_input[name].lower > 0.0
+    is_main = bool(name) and alone[name] > MAIN * record.soil.value and (record.soil_by_input[name].lower or 0.0) > 0.0
     return f"; most of it {input_words(name)}" if is_main else ""
 
 
@@ -273,7 +271,7 @@ def aims(data: RunsPage, table: AimResults) -> str:
 def rare_caption(rare: Mapping[str, RareLimitState]) -> str:
     """The sentence of the figure."""
     named = ", ".join(f"{name} ({found.condition})" for name, found in rare.items())
-    level = percent(next(iter(rare.values())).level)
+    level = percent(next(iter(rare.values())).probability.level)
     return (
         f"Subset simulation with landings of {named}: each point is a level, and the next level starts "
         f"from the landings beyond its threshold; at 0 the limit state is reached. Bars are {level} intervals."

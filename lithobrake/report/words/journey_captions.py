@@ -4,9 +4,9 @@ from lithobrake.report.page_data import JourneyPage
 from lithobrake.report.words.captions import place_words
 from lithobrake.report.words.drawn_captions import detected_words, floor_words, landing_warnings, variance
 from lithobrake.report.words.numbers import area, number
-from lithobrake.results.journey_results import RestQuantile
 from lithobrake.vocabulary.constants import HOUR, MINUTE
 from lithobrake.vocabulary.durations import hours
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, percent, with_interval
 
@@ -24,7 +24,7 @@ END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m":
 
 def answer(data: JourneyPage) -> str:
     """How many landers come to rest, in one line."""
-    at_rest = data.ends[JourneyEnd.AT_REST]
+    at_rest = data.ends[JourneyEnd.AT_REST].share
     level = None if at_rest.lower is None else LEVEL
     return f"{with_interval(at_rest, level=level)} of the landers come to rest within {_limit(data)}."
 
@@ -71,7 +71,8 @@ def outcomes(data: JourneyPage, *, has_map: bool) -> str:
     if not has_places(data):
         return ""
     total = len(data.journeys["end"])
-    words = f"{with_interval(data.ends[JourneyEnd.AT_REST])} of {total} landers come to rest within {_limit(data)}."
+    at_rest = with_interval(data.ends[JourneyEnd.AT_REST].share)
+    words = f"{at_rest} of {total} landers come to rest within {_limit(data)}."
     if not has_map:
         return words
     return (
@@ -92,7 +93,7 @@ def _delivery(data: JourneyPage) -> list[str]:
 def times(data: JourneyPage) -> str:
     """The figure of times and distances."""
     time, distance = data.at_rest.time_s, data.at_rest.distance_m
-    if time.median.value is None or distance.median.value is None:
+    if not (time.median.is_known and distance.median.is_known):
         return ""
     size, unit = time_unit(data)
     return (
@@ -112,7 +113,7 @@ def counts(data: JourneyPage) -> str:
         f"{journeys} journeys with {total:.0f} touchdowns, {number(total / journeys, 2)} each. A touchdown is one "
         "simulated landing and may have several contacts with hops between them."
     )
-    if contacts.value is None:
+    if not contacts.is_known:
         return said
     return f"{said} Landers at rest: median {quantile_words(contacts)} contacts."
 
@@ -120,11 +121,11 @@ def counts(data: JourneyPage) -> str:
 def attitude(data: JourneyPage) -> str:
     """The figure of sides and tilts."""
     tilt = data.at_rest.tilt_deg
-    if not data.at_rest.faces or tilt is None or tilt.median.value is None:
+    if not data.at_rest.faces or tilt is None or not tilt.median.is_known:
         return ""
-    name, most = max(data.at_rest.faces.items(), key=lambda one: one[1].share)
+    name, most = max(data.at_rest.faces.items(), key=lambda one: one[1].share.value)
     return (
-        f"The side {name} is down most often, for {with_interval(most)} of the landers at rest. Tilt of its "
+        f"The side {name} is down most often, for {with_interval(most.share)} of the landers at rest. Tilt of its "
         f"axis from the plumb line: median {quantile_words(tilt.median)} deg, 95th percentile "
         f"{quantile_words(tilt.q95)} deg. Brackets and bars: {percent(LEVEL)} intervals."
     )
@@ -174,9 +175,9 @@ def emulator_words(data: JourneyPage) -> list[str]:
     ]
 
 
-def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
+def quantile_words(one: Estimate, size: float = 1.0) -> str:
     """A quantile with its interval, "27 (23-32)", or with the bound that is known."""
-    value = number((one.value or 0.0) / size, 2)
+    value = number(one.value / size if one.is_known else 0.0, 2)
     low, high = ("" if end is None else number(end / size, 2) for end in (one.lower, one.upper))
     if low and high:
         return f"{value} ({low}-{high})"
@@ -185,7 +186,8 @@ def quantile_words(one: RestQuantile, size: float = 1.0) -> str:
 
 def time_unit(data: JourneyPage) -> tuple[float, str]:
     """The unit of times to rest [s], and its sign: minutes where nearly all are below five hours."""
-    return (MINUTE, "min") if (data.at_rest.time_s.q95.value or 0.0) < 5.0 * HOUR else (HOUR, "h")
+    late = data.at_rest.time_s.q95
+    return (HOUR, "h") if late.is_known and late.value >= 5.0 * HOUR else (MINUTE, "min")
 
 
 def _limit(data: JourneyPage) -> str:

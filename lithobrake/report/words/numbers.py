@@ -5,7 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 from lithobrake.results.model_results import OutputErrors
-from lithobrake.results.questions import ComparedAnswer, ComparedNumber, StudyComparison
+from lithobrake.results.questions import ComparedAnswer, StudyComparison
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.percentages import percent
 
 # Of the largest number beside it: what the rounding of doubles may add up to over some million steps of time.
@@ -126,9 +127,9 @@ def unit(answer: ComparedAnswer, *, of_difference: bool = False) -> str:
     return answer.unit
 
 
-def bounded(one: ComparedNumber, times: float, *, signed: bool = False) -> str:
+def bounded(one: Estimate, times: float, *, signed: bool = False) -> str:
     """A number with its interval, "12.3 (10.1 to 14.2)"; "none" where there is none."""
-    if one.value is None:
+    if not one.is_known:
         return "none"
     ends = [shown(end, times, signed=signed) if end is not None else "no bound" for end in (one.lower, one.upper)]
     has_interval = one.lower is not None or one.upper is not None
@@ -143,12 +144,12 @@ def shown(value: float, times: float, *, signed: bool = False) -> str:
 
 def verdict(answer: ComparedAnswer) -> str:
     """Whether the difference can be told from none."""
-    found = answer.difference
-    if found.value is None or found.lower is None or found.upper is None:
+    bounds = answer.difference.bounds
+    if bounds is None:
         return "no interval"
-    if found.lower > 0.0:
+    if bounds[0] > 0.0:
         return "larger in B"
-    return "smaller in B" if found.upper < 0.0 else "no difference detected"
+    return "smaller in B" if bounds[1] < 0.0 else "no difference detected"
 
 
 def sentence(comparison: StudyComparison, name: str) -> str:

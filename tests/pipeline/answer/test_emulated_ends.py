@@ -7,7 +7,8 @@ from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, _agrees, _na
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES
-from lithobrake.results.journey_results import EndShare
+from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 BEDS, JOURNEYS, FRESH, STUDIES = 24, 96, 2000, 120
@@ -48,7 +49,7 @@ def study(
     return table, emulated(np.arange(FRESH), refit, fresh), emulated(which, own, again)
 
 
-def plain_shares(table: JourneyTable) -> dict[str, EndShare]:
+def plain_shares(table: JourneyTable) -> dict[str, CountedShare]:
     return {end: end_share(table.end == end, table.bed) for end in ENDS.tolist()}
 
 
@@ -66,11 +67,11 @@ def test_narrowed_shares_hold_the_truth(slope: float, predicted: float, narrows:
         table, fresh, own = study(slope, predicted, random)
         plain = plain_shares(table)
         control, shares = _narrowed(table, plain, fresh, own)
-        lower, upper = shares[REST].lower, shares[REST].upper
+        lower, upper = shares[REST].share.lower, shares[REST].share.upper
         assert upper is not None
-        assert sum(one.share for one in shares.values()) == pytest.approx(1.0, abs=1e-12)
+        assert sum(one.share.value for one in shares.values()) == pytest.approx(1.0, abs=1e-12)
         held.append(lower <= truth <= upper)
-        errors.append((shares[REST].share - truth, plain[REST].share - truth))
+        errors.append((shares[REST].share.value - truth, plain[REST].share.value - truth))
         ratios.append(control.half_width_with / control.half_width if control and control.is_used else 1.0)
     assert 0.85 <= np.mean(held) <= 0.97
     narrowed, plain_errors = np.std(errors, axis=0)
@@ -83,8 +84,8 @@ def test_narrowed_shares_hold_the_truth(slope: float, predicted: float, narrows:
     assert abs(np.mean(errors, axis=0)[0]) < 3.0 * narrowed / np.sqrt(STUDIES)
 
 
-def share(value: float, half: float) -> EndShare:
-    return EndShare(0, value, value - half, value + half)
+def share(value: float, half: float) -> CountedShare:
+    return CountedShare(0, Estimate(value, value - half, value + half))
 
 
 def test_ends_agree_within_their_intervals_together() -> None:
@@ -92,4 +93,4 @@ def test_ends_agree_within_their_intervals_together() -> None:
     landings = nothing | {REST: share(0.8, 0.06), ESCAPED: share(0.2, 0.06)}
     assert _agrees(landings, nothing | {REST: share(0.89, 0.08), ESCAPED: share(0.11, 0.08)})
     assert not _agrees(landings, nothing | {REST: share(0.91, 0.08), ESCAPED: share(0.09, 0.08)})
-    assert _agrees(landings, nothing | {REST: EndShare(0, 0.8, None, None)}) is None
+    assert _agrees(landings, nothing | {REST: CountedShare(0, Estimate(0.8, None, None))}) is None

@@ -8,7 +8,7 @@ import pytest
 
 import lithobrake
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
 from ..synthetic_lander import SyntheticLander, synthetic_tables
@@ -75,7 +75,7 @@ def test_inputs_stand_beside_what_luck_would_do(found: dict[str, Any]) -> None:
 
 
 def test_every_key_is_described_and_the_page_has_the_sentences(results: StudyResults, found: dict[str, Any]) -> None:
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     for name, state in found.items():
         assert state["statement"].startswith(f"{name} ({state['condition']}): ")

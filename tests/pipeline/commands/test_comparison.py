@@ -15,8 +15,8 @@ from lithobrake.cli import app
 from lithobrake.pipeline import StudyFolder, compare_studies, study_status
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
 from lithobrake.pipeline.commands.running_estimates import running_estimates
-from lithobrake.results.json_values import from_json
 from lithobrake.results.questions import StudyComparison
+from lithobrake.results.result_files import results_in
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 
@@ -66,7 +66,7 @@ def test_runs_without_an_answer_widen_it_and_one_bed_has_no_interval() -> None:
     runs = [record(run) for run in range(59)] + [record(59, outcome="left_sideways")]
     found = running_estimates(runs, {})
     assert found.captured.if_missing == pytest.approx((12 / 60, 13 / 60))
-    assert found.captured.lower < 12 / 60 < 13 / 60 < found.captured.upper
+    assert found.captured.share.lower < 12 / 60 < 13 / 60 < found.captured.share.upper
     assert "59 of 60 landings" in found.lines()[0]
     one_bed = running_estimates([record(run, bed_count=1) for run in range(60)], {})
     assert one_bed.speed_out is None
@@ -195,7 +195,7 @@ def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_
     assert f"A: {pair[0]}" in said.stdout
     assert "Time to rest, median: A " in said.stdout
     numbers = json.loads((out / "comparison.json").read_text())
-    assert from_json(StudyComparison, numbers) == compare_studies(*pair)
+    assert results_in(StudyComparison, numbers) == compare_studies(*pair)
     page = (out / "index.html").read_text()
     assert "Comparison of two studies" in page
     assert "delivery.speed" in page

@@ -75,11 +75,11 @@ def test_landers_by_the_emulator_end_as_those_by_landings_do(found: EmulatedJour
     assert found.why is None
     assert found.count == COUNT
     assert found.agrees
-    assert sum(one.share for one in found.ends.values()) == pytest.approx(1.0, abs=1e-12)
+    assert sum(one.share.value for one in found.ends.values()) == pytest.approx(1.0, abs=1e-12)
     assert sum(one.count for one in found.ends.values()) == pytest.approx((1.0 - found.unknown) * COUNT)
     for name, one in found.ends.items():
-        assert one.upper is not None
-        assert one.lower <= one.share <= one.upper, name
+        assert one.share.upper is not None
+        assert one.share.lower <= one.share.value <= one.share.upper, name
     assert "emulator and landings agree within" in results.results.answer[-2]
 
 
@@ -128,7 +128,7 @@ def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResu
     for number, one in enumerate(aim.aims):
         ends = [row["status"] for row in written if int(row["aim"]) == number]
         assert len(ends) == 2 * REFIT_COUNT
-        assert one.soil.settled.share == pytest.approx(ends.count(JourneyEnd.AT_REST) / len(ends))
+        assert one.soil.settled.value == pytest.approx(ends.count(JourneyEnd.AT_REST) / len(ends))
         assert one.soil.allowed == (number in (0, 2))
         assert one.hard is None
     assert aim.best_on_hard is None

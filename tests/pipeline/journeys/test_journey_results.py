@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import math
 import re
 import shutil
 from dataclasses import replace
@@ -35,8 +36,9 @@ from lithobrake.report.page_data import JourneyPage, page_results
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.report.words import journey_captions as words
 from lithobrake.results import ExplorerTables, StudyResults
-from lithobrake.results.journey_results import EndShare
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study import StudySource, check_tables, read_study
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
@@ -164,7 +166,7 @@ def test_the_parts_of_each_end_add_up(journeys: StudyResults) -> None:
     assert list(found) == ["at_rest", "time_s", "distance_m"]
     assert any(found.values())
     for one in (one for one in found.values() if one):
-        assert sum(part.share for part in one.parts.values()) == pytest.approx(1.0)
+        assert sum(part.value for part in one.parts.values()) == pytest.approx(1.0)
         assert one.chaos is None
 
 
@@ -178,8 +180,8 @@ def test_a_distance_that_follows_the_delivery_is_the_deliverys(journeys: StudyRe
     found = parts_of_journeys(job, runs, all_rest)
     assert found["at_rest"] is None
     parts = found["distance_m"]
-    assert parts.arrival.share > 0.85
-    assert parts.soil.share < 0.1
+    assert parts.arrival.value > 0.85
+    assert parts.soil.value < 0.1
     assert parts.of == f"{len(speed)} of {len(speed)} journeys that ended at rest"
 
 
@@ -263,7 +265,7 @@ def tables_of(content: Content) -> dict[str, PageTable]:
 
 def test_the_page_begins_with_the_share_at_rest_and_five_numbers(data: JourneyPage, journeys_folder: Path) -> None:
     page = write_report(journeys_folder).read_text(encoding="utf-8")
-    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST]
+    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST].share
     assert content.answer.startswith(with_interval(at_rest, level=None if at_rest.lower is None else LEVEL))
     assert len(content.tiles) == 5
     assert content.tiles[0].words.startswith("at rest, ")
@@ -297,13 +299,13 @@ def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None
     none = np.full(data.journeys.row_count, JourneyEnd.ESCAPED.value)
     columns = dict(data.journeys.columns)
     columns["end"] = dataclasses.replace(columns["end"], values=none)
-    nothing = dataclasses.replace(data.at_rest.time_s.median, value=None, lower=None, upper=None)
+    nothing = dataclasses.replace(data.at_rest.time_s.median, value=math.nan, lower=None, upper=None)
     empty = dataclasses.replace(data.at_rest.time_s, median=nothing, q95=nothing)
     rest = dataclasses.replace(
         data.at_rest, time_s=empty, contacts=empty, distance_m=empty, tilt_deg=empty, faces={}, regions=()
     )
-    ends = {end.value: EndShare(0, 0.0, 0.0, 0.2) for end in JourneyEnd}
-    ends[JourneyEnd.ESCAPED] = EndShare(48, 1.0, 0.8, 1.0)
+    ends = {end.value: CountedShare(0, Estimate(0.0, 0.0, 0.2)) for end in JourneyEnd}
+    ends[JourneyEnd.ESCAPED] = CountedShare(48, Estimate(1.0, 0.8, 1.0))
     table = type(data.journeys)(data.journeys.row, columns)
     content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
     assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
@@ -354,7 +356,7 @@ def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
     found = journeys.results.ends
     bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
     for end, share in found.items():
-        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share)
+        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share.value)
 
 
 def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
@@ -378,7 +380,7 @@ def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults
     axes = journeys.plot.sides(Figure().subplots())
     widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
     assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
-        {name: 100 * one.share for name, one in journeys.results.rest.faces.items()}
+        {name: 100 * one.share.value for name, one in journeys.results.rest.faces.items()}
     )
 
 

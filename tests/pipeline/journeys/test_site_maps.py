@@ -34,7 +34,7 @@ from lithobrake.pipeline.site_grid import (
     site_cells,
 )
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import from_json, to_json
+from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.site_results import SiteMap
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.percentages import LEVEL
@@ -105,15 +105,15 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     fitted = Refits(bed_count=12, run_count=100, why=None)
     first, second, third, last = site_cells(cells, landers, ground, fitted, np.array([0, 3, 0, 1]))
     assert (first.ends, first.beyond, first.unknown) == (None, "gravity, impact speed", 0.11)
-    assert (second.ends.at_rest.share, second.beyond, second.journeys) == (1.0, "slope", 3)
+    assert (second.ends.at_rest.value, second.beyond, second.journeys) == (1.0, "slope", 3)
     assert second.ends.at_rest.lower < 0.9 < (second.ends.at_rest.upper or 0.0)
-    assert third.ends.at_rest.share == third.ends.escaped.share == 0.5
+    assert third.ends.at_rest.value == third.ends.escaped.value == 0.5
     assert not third.not_worse
     assert last.not_worse
     assert last.ends.time_s.value == pytest.approx(60.0 * 0.5 * (LANDERS - 1))
     assert last.slope_deg.mean == pytest.approx(12.0)
     assert (last.slope_deg.low, last.slope_deg.high) == pytest.approx((1.2, 22.8))
-    assert all_at_rest(landers, fitted).share == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
+    assert all_at_rest(landers, fitted).value == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
 
 
 def test_impacts_are_beyond_the_first_range_that_they_leave() -> None:
@@ -130,7 +130,7 @@ def test_a_cell_has_what_the_journeys_of_the_study_have_there(site_map: SiteMap,
     ends, rests = site_map.cells[own].ends, journeys.journeys["end"] == "at_rest"
     assert ends.at_rest.upper is not None
     assert ends.at_rest.lower <= rests.mean() <= ends.at_rest.upper
-    total = ends.at_rest.share + ends.partner.share + ends.escaped.share + ends.under_way.share
+    total = ends.at_rest.value + ends.partner.value + ends.escaped.value + ends.under_way.value
     assert total == pytest.approx(1.0, abs=0.02)
     assert ends.time_s.value == pytest.approx(np.median(journeys.journeys["time_s"][rests]), rel=0.4)
     assert ends.distance_m.value == pytest.approx(np.median(journeys.journeys["distance"][rests]), rel=0.5)
@@ -139,14 +139,14 @@ def test_a_cell_has_what_the_journeys_of_the_study_have_there(site_map: SiteMap,
 def test_emulator_and_landings_are_compared_lander_by_lander(site_map: SiteMap, journeys: StudyResults) -> None:
     whole, *regions = site_map.agreement
     assert (whole.latitude_deg, whole.journeys) == (None, 48)
-    assert whole.landings.share == pytest.approx(np.mean(journeys.journeys["end"] == "at_rest"))
+    assert whole.landings.value == pytest.approx(np.mean(journeys.journeys["end"] == "at_rest"))
     rows = [row for row in read_rows(journeys.folder / "emulated.csv", ("landers",), "") if row["landers"] == "own"]
     by_lander = []
     for number in range(48):
         ends = [row["end"] for row in rows if int(row["journey"]) == number and row["end"] != "unknown"]
         by_lander.append(ends.count("at_rest") / len(ends))
-    assert whole.emulator.share == pytest.approx(np.mean(by_lander))
-    assert whole.difference.share == pytest.approx(whole.emulator.share - whole.landings.share)
+    assert whole.emulator.value == pytest.approx(np.mean(by_lander))
+    assert whole.difference.value == pytest.approx(whole.emulator.value - whole.landings.value)
     assert whole.agrees
     assert [one.journeys for one in regions] == [48]
     assert "they agree" in site_map.statement
@@ -158,8 +158,8 @@ def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     plain = share_of_known(met, np.ones(len(met), dtype=bool), refit, fitted)
     # One lander in four is unknown, and did not meet it as far as one sees.
     lacking = share_of_known(met, np.tile([True, True, True, False], REFIT_COUNT), refit, fitted)
-    assert plain.share == 0.5
-    assert (lacking.share, lacking.lower) == (pytest.approx(2.0 / 3.0), plain.lower)
+    assert plain.value == 0.5
+    assert (lacking.value, lacking.lower) == (pytest.approx(2.0 / 3.0), plain.lower)
     assert lacking.upper > 0.75
 
 
@@ -201,7 +201,7 @@ def test_the_ground_of_dimorphos_is_that_of_the_body_with_its_partner() -> None:
 def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, tmp_path: Path) -> None:
     page, numbers, table = write_site_map(site_map, "the study file", tmp_path / "sites")
     assert (page, numbers, table) == site_map_files(tmp_path / "sites")
-    assert from_json(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
+    assert results_in(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
     text = page.read_text(encoding="utf-8")
     assert text.count("<figure") == 2
     assert "cannot be distinguished from the best" in text
@@ -222,7 +222,7 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
     assert radius == pytest.approx((0.75 * job_of(source_of()).site.body.shape.volume / math.pi) ** (1 / 3), rel=1e-6)
     assert site_lines(site_map)[0] == site_map.statement
     assert site_map.level == LEVEL
-    assert to_json(site_map)["landers"] == LANDERS
+    assert json_values(site_map)["landers"] == LANDERS
 
 
 @pytest.mark.parametrize(("words", "message"), [

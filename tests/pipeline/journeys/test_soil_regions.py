@@ -210,13 +210,13 @@ def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
     found, table = results.soils, made.touchdowns
     assert list(found) == ["sink", "strip", ELSEWHERE]
     assert sum(one.touchdowns for one in found.values()) == table.row_count
-    assert sum(one.at_rest.share for one in found.values()) == pytest.approx(results.ends["at_rest"].share)
+    assert sum(one.at_rest.share.value for one in found.values()) == pytest.approx(results.ends["at_rest"].share.value)
     sink, rest = found["sink"], found[ELSEWHERE]
-    assert sink.rests.share == 1.0
+    assert sink.rests.share.value == 1.0
     assert sink.rests.count == sink.touchdowns == (table["soil"] == "sink").sum()
     assert sink.area_share == pytest.approx(0.5, abs=2e-3)
     # Elsewhere a lander bounces at its first touchdown at least.
-    assert rest.rests.share <= 0.5
+    assert rest.rests.share.value <= 0.5
     assert any(line.startswith("By soil: sink (50 % of the surface)") for line in results.answer)
     assert np.abs(np.array([point for line in sink.outlines for point in line])[:, 0]).max() < 1.0
 
@@ -326,5 +326,5 @@ def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) ->
     decided = 10.0 * friction + 0.05 * more
     found = parts_of_variance(job, runs, decided, "all runs")
     assert set(found.soil_by_input) == {"grain.friction", "soil.strip.grain.friction"}
-    assert found.soil_by_input["soil.strip.grain.friction"].share > 0.8
-    assert found.soil_by_input["grain.friction"].share < 0.2
+    assert found.soil_by_input["soil.strip.grain.friction"].value > 0.8
+    assert found.soil_by_input["grain.friction"].value < 0.2

@@ -15,7 +15,7 @@ from lithobrake.pipeline.first_bounces.aiming import _distances
 from lithobrake.pipeline.first_bounces.bounce_laws import implied
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.results.summary import DrawnResults
 from lithobrake.smallbody import HardSurface, Impacts, didymos
 from lithobrake.study import StudyError
@@ -87,7 +87,7 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
     assert isinstance(results.results, DrawnResults)
     found = results.results.aim
     best, allowed = found.best_on_soil, sum(aim.soil.allowed for aim in found.aims)
-    assert f": {100 * best.own.share:.0f} % (90 % interval " in found.statement
+    assert f": {100 * best.own.value:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
     told = aim_statement(replace(found, best_on_soil=replace(best, not_worse=(1,))))
     assert told.startswith(f"2 of {allowed} delivery options within ")
@@ -98,7 +98,7 @@ def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(r
 
 
 def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResults, found: dict[str, Any]) -> None:
-    assert to_json(results.results) == results.summary["results"]
+    assert json_values(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
     assert "ost landers come to rest with impact.speed = " in found["statement"]
     assert "Where to aim" in (results.folder / "report" / "index.html").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import lithobrake
 from lithobrake.pipeline.answer.run_estimates import PARTS
 from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
-from lithobrake.results.json_values import to_json
+from lithobrake.results.result_files import json_values
 from lithobrake.smallbody import RestitutionTable
 from lithobrake.vocabulary.outcomes import JourneyStatus
 
@@ -86,7 +86,7 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
     assert rest["equivalent"]["outside"]["count"] == 0
     # A fifth returns at the first impact.
     assert rest["equivalent"]["settled"]["share"] > 0.2
-    assert to_json(journeys.results) == journeys.summary["results"]
+    assert json_values(journeys.results) == journeys.summary["results"]
 
 
 @pytest.mark.parametrize(("changes", "words"), [

@@ -175,7 +175,7 @@ def test_hard_ground_is_followed_from_the_first_impact_and_the_summary_adds_up(t
     assert table.hard.sample_count == 60
     assert sum(table.hard.outcomes[name].count for name in JourneyStatus) == 60
     lower, upper = wilson_interval(60, 60, NORMAL_QUANTILE_90)
-    assert table.hard.outcomes["settled"] == replace(proportion(60, 60), lower=lower, upper=upper)
+    assert table.hard.outcomes["settled"] == proportion(60, 60).within(lower, upper)
     assert (folder / "rest.csv").read_text().splitlines()[0] == (
         "ground,sample,status,time_s,latitude_deg,longitude_deg,rebounds,path_length [m],slid_length [m],slid_time_s,"
         "impact_speed [m/s],impact_incidence_deg"

@@ -10,11 +10,12 @@ from lithobrake.report.figures.run_figures import LandingsOfRuns, pieces, runs_f
 from lithobrake.report.figures.style import TEST, TRAINING, figure_style
 from lithobrake.report.words.captions import band_luck, luck
 from lithobrake.results.model_results import OutputScore
-from lithobrake.results.run_results import VariancePart, VarianceParts
+from lithobrake.results.run_results import VarianceParts
+from lithobrake.vocabulary.estimate import Estimate
 
 
-def part(share: float) -> VariancePart:
-    return VariancePart(share, max(share - 0.05, 0.0), min(share + 0.05, 1.0))
+def part(share: float) -> Estimate:
+    return Estimate(share, max(share - 0.05, 0.0), min(share + 0.05, 1.0))
 
 
 RECORD = VarianceParts(

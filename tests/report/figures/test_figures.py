@@ -14,7 +14,7 @@ from lithobrake.report.figures.hulls import Hull, Scene
 from lithobrake.report.figures.landing_figure import bed_figure, instants, landing_figure, three_moments
 from lithobrake.report.figures.model_figures import error_figure
 from lithobrake.report.figures.option_figures import aim_figure
-from lithobrake.report.figures.share_figures import Share, draw_shares
+from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.page_data import DrawnPage
 from lithobrake.report.pages.shared_plots import draw_outcomes, draw_rest
@@ -22,7 +22,7 @@ from lithobrake.report.words.labels import PAPER_OUTPUTS, input_label
 from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import OutputErrors
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
-from lithobrake.results.run_results import Estimate, ShareInterval
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS
 
 TETRAHEDRON = np.array([(1.0, 1.0, 1.0), (1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0)])
@@ -149,7 +149,11 @@ def test_error_figure_shows_a_q2_that_does_not_exist_as_such() -> None:
 
 def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> None:
     axes = Figure().add_subplot()
-    draw_shares(axes, [Share("down", 0.75, 0.7, 0.8), Share("captured", 0.25)], "all 100 000 samples")
+    draw_shares(
+        axes,
+        [ShareBar("down", Estimate(0.75, 0.7, 0.8)), ShareBar("captured", Estimate(0.25, None, None))],
+        "all 100 000 samples",
+    )
     assert axes.get_xlim() == (0.0, 100.0)
     assert [text.get_text() for text in axes.texts] == ["75 % (70-80 %)", "25 %"]
     assert all(text.get_position()[0] > 1.0 for text in axes.texts)
@@ -201,7 +205,7 @@ def test_aims_share_one_scale_and_have_colour_bars() -> None:
         return Estimate(value, 0.7 * value, 1.4 * value)
 
     def ground(share: float) -> AimOnGround:
-        settled = ShareInterval(share, share - 0.1, share + 0.1)
+        settled = Estimate(share, share - 0.1, share + 0.1)
         return AimOnGround(settled, 0.4, far(100.0 * share), far(3600.0), allowed=True)
 
     aims = tuple(AimResult((speed,), ground(share), ground(0.2)) for speed, share in ((0.1, 0.2), (0.2, 0.3)))
@@ -231,14 +235,14 @@ def test_scatter_figure_has_every_sample_in_a_cell_and_the_runs_on_top() -> None
 
 def test_an_outcome_that_no_run_had_shows_its_upper_limit_in_place_of_nothing() -> None:
     axes = Figure().add_subplot()
-    draw_shares(axes, [Share("captured", 0.0, upper=0.0203)], "all samples")
+    draw_shares(axes, [ShareBar("captured", Estimate(0.0, None, 0.0203))], "all samples")
     assert [text.get_text() for text in axes.texts] == ["at most 2.0 %"]
     assert "% interval" not in axes.get_xlabel()
 
 
 def test_shares_without_intervals_speak_of_none() -> None:
     axes = Figure().add_subplot()
-    draw_shares(axes, [Share("down", 0.75, None, None)], "the 200 followed")
+    draw_shares(axes, [ShareBar("down", Estimate(0.75, None, None))], "the 200 followed")
     assert not axes.lines
     assert axes.get_xlabel() == "share of the 200 followed [%]"
 

@@ -29,9 +29,10 @@ from lithobrake.report.figures.place_map import (
     outcomes_figure,
     rest_figure,
 )
-from lithobrake.report.figures.share_figures import Share
+from lithobrake.report.figures.share_figures import ShareBar
 from lithobrake.report.figures.style import INK, figure_style
 from lithobrake.results.dispersion import RestRegion
+from lithobrake.vocabulary.estimate import Estimate
 
 GREEN = "#2aa884"
 NONE = np.empty(0)
@@ -143,7 +144,9 @@ def test_the_whole_body_is_beside_the_outcomes_only_where_the_first_map_leaves_p
     for far, discs in ((11.0, 0), (-60.0, 2)):
         with figure_style():
             figure = outcomes_figure(
-                shown(np.array([10.0, far]), np.array([179.0, 178.0]), region), [Share("at rest", 1.0)], "all"
+                shown(np.array([10.0, far]), np.array([179.0, 178.0]), region),
+                [ShareBar("at rest", Estimate(1.0, None, None))],
+                "all",
             )
         assert len(figure.axes) == discs + 1
 
@@ -183,7 +186,7 @@ def test_both_grounds_are_drawn_over_one_window() -> None:
     latitude, longitude = 10 + random.normal(size=50), 179 + random.normal(size=50)
     maps = [
         RestMap(title, Places("at rest", GREEN, latitude + up, longitude), Regions("those at rest", GREEN, ()),
-                [Share("at rest", share, share - 0.1, share + 0.1)], "the 50 followed")
+                [ShareBar("at rest", Estimate(share, share - 0.1, share + 0.1))], "the 50 followed")
         for title, up, share in (("On soil", 3.0, 0.5), ("On hard ground", 0.0, 0.8))
     ]  # fmt: skip
     with figure_style():

@@ -23,10 +23,11 @@ from lithobrake.report.words import captions, drawn_captions
 from lithobrake.report.words.drawn_captions import warnings
 from lithobrake.results import open_study
 from lithobrake.results.model_results import EmulatorScores, JointScore, OutputScore
-from lithobrake.results.run_results import Estimate, OutputDirection, VariancePart, VarianceParts
+from lithobrake.results.run_results import OutputDirection, VarianceParts
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.percentages import with_interval
 
-ONE_BED: dict[str, Any] = {"lower": None, "upper": None, "next_bed": None, "why": "One bed was poured."}
+ONE_BED: dict[str, Any] = {"next_bed": None, "why": "One bed was poured."}
 
 
 def changed(data: DrawnPage, **tables: Mapping[str, Any]) -> DrawnPage:
@@ -74,7 +75,7 @@ def test_the_sections_stand_in_the_order_of_their_questions(drawn_page: str) -> 
 
 def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None:
     returns, words = drawn.results.returns, captions.answer(drawn)
-    assert words.startswith(with_interval(returns, level=drawn.level))
+    assert words.startswith(with_interval(returns.share, level=drawn.level))
     assert words.count(".") == words.rstrip(".").count(".") + 1
     (details,) = captions.details(drawn)
     assert all(sentence in details for sentence in drawn.results.answer)
@@ -82,10 +83,11 @@ def test_the_page_opens_with_the_answer_of_the_summary(drawn: DrawnPage) -> None
 
 def test_the_share_has_its_interval_in_the_first_tile(drawn: DrawnPage) -> None:
     tile, returns = drawn_tables.tiles(drawn)[0], drawn.results.returns
-    assert float(tile.value) == round(100 * returns.share)
-    assert f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %" in tile.words
-    narrow = {"lower": returns.share - 0.004, "upper": returns.share + 0.004}
-    assert drawn_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share:.1f}"
+    assert float(tile.value) == round(100 * returns.share.value)
+    assert f"{100 * returns.share.lower:.0f}-{100 * returns.share.upper:.0f} %" in tile.words
+    value = returns.share.value
+    narrow = {"share": replace(returns.share, lower=value - 0.004, upper=value + 0.004)}
+    assert drawn_tables.tiles(changed(drawn, returns=narrow))[0].value == f"{100 * returns.share.value:.1f}"
 
 
 def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) -> None:
@@ -106,7 +108,10 @@ def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnP
 
 def test_tile_answer_tables_and_figure_have_one_value_of_the_return_fraction(drawn: DrawnPage) -> None:
     returns = drawn.results.returns
-    share, held = f"{100 * returns.share:.0f} %", f"{100 * returns.lower:.0f}-{100 * returns.upper:.0f} %"
+    share, held = (
+        f"{100 * returns.share.value:.0f} %",
+        f"{100 * returns.share.lower:.0f}-{100 * returns.share.upper:.0f} %",
+    )
     tile = drawn_tables.tiles(drawn)[0]
     rows = table_of(drawn, "The answer").rows
     outcomes = {row[0]: row[1:] for row in table_of(drawn, "After the first bounce").rows}
@@ -121,8 +126,8 @@ def test_the_outcomes_of_the_runs_add_up_and_each_stands_once(drawn: DrawnPage) 
     table, shares = table_of(drawn, "After the first bounce"), drawn.results.shares.outcomes
     assert len({row[0] for row in table.rows}) == len(table.rows)
     whole = parts(drawn)
-    assert sum(shares[key].share for key in whole) == pytest.approx(1.0)
-    assert [row[1] for row in table.rows[: len(whole)]] == [with_interval(shares[key]) for key in whole]
+    assert sum(shares[key].share.value for key in whole) == pytest.approx(1.0)
+    assert [row[1] for row in table.rows[: len(whole)]] == [with_interval(shares[key].share) for key in whole]
     outward = changed(drawn, site={"effective_acceleration_outward": 1e-5})
     assert not any(row[0].startswith("return fraction") for row in table_of(outward, "After the first bounce").rows)
 
@@ -177,12 +182,12 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
 
 def record() -> VarianceParts:
     """Parts of the variance that add up to 1."""
-    alone = {"grain.friction": VariancePart(0.05, 0.01, 0.09), "grain.restitution": VariancePart(0.008, 0.0, 0.02)}
+    alone = {"grain.friction": Estimate(0.05, 0.01, 0.09), "grain.restitution": Estimate(0.008, 0.0, 0.02)}
     return VarianceParts(
-        soil=VariancePart(0.06, 0.01, 0.11), soil_doubled=VariancePart(0.2, 0.04, 0.33), terms="terms of first degree",
+        soil=Estimate(0.06, 0.01, 0.11), soil_doubled=Estimate(0.2, 0.04, 0.33), terms="terms of first degree",
         soil_by_input=alone, arrival=None, attitude=None,
-        bed=VariancePart(0.03, 0.0, 0.15), place=VariancePart(0.906, 0.8, 0.97),
-        chaos=VariancePart(0.004, 0.003, 0.01), of="the landings",
+        bed=Estimate(0.03, 0.0, 0.15), place=Estimate(0.906, 0.8, 0.97),
+        chaos=Estimate(0.004, 0.003, 0.01), of="the landings",
     )  # fmt: skip
 
 
@@ -200,7 +205,7 @@ def test_the_caption_of_the_runs_has_their_outcomes_and_quantiles(drawn: DrawnPa
     for number in (runs.count, runs.beds, *runs.outcomes.values()):
         assert re.search(rf"\b{number}\b", words)
     median = drawn.results.spreads["speed_out"].quantiles["0.5"]
-    for end in vars(median).values():
+    for end in (median.value, *median.bounds):
         assert f"{end:.3g}" in words
 
 
@@ -264,7 +269,8 @@ def test_one_bed_has_a_page_without_intervals(drawn: DrawnPage) -> None:
         for name, table in drawn.results.spreads.items()
     }
     shares = dict.fromkeys(drawn.results.variance_shares)
-    alone = changed(drawn, returns=ONE_BED, runs={"beds": 1}, variance_shares=shares)
+    returns = {**ONE_BED, "share": bare(drawn.results.returns.share)}
+    alone = changed(drawn, returns=returns, runs={"beds": 1}, variance_shares=shares)
     content = drawn_content(replace(alone, results=replace(alone.results, outputs=outputs)))
     answer, outputs_table = (
         next(one for one in tables_of(content) if one.title.startswith(title)) for title in ("The answer", "Outputs")
