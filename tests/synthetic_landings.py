@@ -14,13 +14,9 @@ from scipy import optimize, special
 
 from lithobrake.chaos import Distribution, LogUniform, Uniform, sobol_sequence
 
-INPUTS: dict[str, Distribution] = {
-    "friction": Uniform(0.3, 0.9),
-    "restitution": Uniform(0.3, 0.9),
-    "young_modulus": LogUniform(1e6, 1e8),
-    "rolling_resistance": Uniform(0.0, 0.3),
-    "density": Uniform(1500.0, 3000.0),
-}
+INPUTS: dict[str, Distribution] = {"friction": Uniform(0.3, 0.9), "restitution": Uniform(0.3, 0.9),
+    "young_modulus": LogUniform(1e6, 1e8), "rolling_resistance": Uniform(0.0, 0.3),
+    "density": Uniform(1500.0, 3000.0)}  # fmt: skip
 OUTPUT_NAMES = ("speed_out", "elevation_out", "azimuth_out", "spin_out")
 OUTCOMES = ("clear", "captured", "left_sideways")
 # No lander leaves faster [m/s], or at an elevation outside 0 to this [rad].
@@ -96,13 +92,9 @@ class Truth:
         a, b = CENTRES[:, None] + SPREADS[:2, None] * (means.T + scale * np.stack([speed, elevation]))
         spin = 0.7 * (a - CENTRES[0]) / SPREADS[0] + 0.7 * rng.standard_normal(len(x))
         return np.column_stack(
-            [
-                SPEED_LIMIT * special.expit(a),
-                ELEVATION_LIMIT * special.expit(b),
-                self._azimuth(u, rng),
-                np.exp(SPREADS[2] * spin),
-            ]
-        )
+            [SPEED_LIMIT * special.expit(a), ELEVATION_LIMIT * special.expit(b), self._azimuth(u, rng),
+                np.exp(SPREADS[2] * spin)]
+        )  # fmt: skip
 
     def _place(self, second_branch: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Draw the latent of the place [n], mean 0 and variance 1 whatever the chances of the second branch [n]."""
@@ -189,8 +181,7 @@ def _capture_offset(share: float, slope: float) -> float:
 def _rim_offset(truth: Truth) -> float:
     """Offset that makes the mean chance of leaving over the rim its share, from a quarter of a million draws."""
     rng = np.random.default_rng(1)
-    left = truth._leaving(random_soils(250_000, rng), rng.standard_normal(250_000), rng)
-    score = _rim_score(truth, left)
+    score = _rim_score(truth, truth._leaving(random_soils(250_000, rng), rng.standard_normal(250_000), rng))
     return float(
         optimize.brentq(lambda offset: special.expit(score - offset).mean() - truth.rim_share, score.min(), score.max())
     )

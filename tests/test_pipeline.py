@@ -25,40 +25,28 @@ from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import PLACE, acceleration, draw, in_words_of_the_study, medians
 from lithobrake.vocabulary.quantities import ARC, ORIENTATION, OUTPUTS
 
-from .paper_tables import paper_tables
+from .paper_tables import paper_tables, with_keys
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    """The template with some keys changed."""
-    tables = paper_tables()
-    for section, keys in sections.items():
-        tables.setdefault(section, {}).update(keys)
-    return with_site_gravity(check_tables(tables, Path()))
+    return with_site_gravity(check_tables(with_keys(paper_tables(), sections), Path()))
 
 
 UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
 
 # The range of the friction has the median of the template to the last bit, which is what the beds have.
 REMADE = [
-    ({"bed": {"grain_count": 151}}, "bed"),
-    ({"surface": {"gravity": 4e-5}}, "bed"),
-    ({"impact": {"speed": 0.25}}, "landing"),
-    ({"contact": {"pair_rule": "mean"}}, "bed"),
+    ({"bed": {"grain_count": 151}}, "bed"), ({"surface": {"gravity": 4e-5}}, "bed"),
+    ({"impact": {"speed": 0.25}}, "landing"), ({"contact": {"pair_rule": "mean"}}, "bed"),
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
-    ({"design": {"screening_level": 3}}, "screening_runs"),
-    ({"design": {"fit": "best"}}, "screen"),
+    ({"design": {"screening_level": 3}}, "screening_runs"), ({"design": {"fit": "best"}}, "screen"),
     ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
-    ({"design": {"kept_share": 0.8}}, "refined_runs"),
-    ({"design": {"test_count": 11}}, "test_runs"),
-    ({"monte_carlo": {"sample_count": 200}}, "sample"),
-    ({"monte_carlo": {"scatter": True}}, "sample"),
-    ({"site": {"heading_deg": 10.0}}, "fly"),
-    ({"flight": {"flight_count": 7}}, "fly"),
-    ({"site": {"partner": False}}, "fly"),
-    ({"lander": {"mass": 3.0}}, "landing"),
-    ({"site": {"east_error": 10.0}}, "fly"),
-    ({"rest": {"friction": 0.5}}, "rest"),
-]
+    ({"design": {"kept_share": 0.8}}, "refined_runs"), ({"design": {"test_count": 11}}, "test_runs"),
+    ({"monte_carlo": {"sample_count": 200}}, "sample"), ({"monte_carlo": {"scatter": True}}, "sample"),
+    ({"site": {"heading_deg": 10.0}}, "fly"), ({"flight": {"flight_count": 7}}, "fly"),
+    ({"site": {"partner": False}}, "fly"), ({"lander": {"mass": 3.0}}, "landing"),
+    ({"site": {"east_error": 10.0}}, "fly"), ({"rest": {"friction": 0.5}}, "rest"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])
@@ -69,8 +57,8 @@ def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict
     assert different[0] == first
     assert set(names[names.index("summary") :]) <= set(different)
     # The landing at the medians hangs on no design, so it may be left out of an unbroken row.
-    assert [name for name in different if name != "landing"] == [
-        name for name in names[names.index(first) :] if name != "landing"
+    assert [one for one in different if one != "landing"] == [
+        one for one in names[names.index(first) :] if one != "landing"
     ]
 
 
@@ -182,8 +170,7 @@ def made_samples(*outcomes: str) -> Samples:
 def test_the_first_samples_that_leave_fly_each_from_its_own_site() -> None:
     study = changed(flight={"flight_count": 2}, site={"latitude_deg": UNIFORM})
     one = starts(Site(study), made_samples("clear", "captured", "clear", "clear"))
-    assert one.sample.tolist() == [0, 2]
-    assert one.velocity == pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2))
+    assert (one.sample.tolist(), one.velocity) == ([0, 2], pytest.approx(np.array([[4.0, 5.0, 6.0]] * 2)))
     assert ((one.site["latitude_deg"] > 0.1) & (one.site["latitude_deg"] < 0.3)).all()
     more = starts(
         Site(changed(flight={"flight_count": 3}, site={"latitude_deg": UNIFORM})), made_samples(*["clear"] * 4)
@@ -236,25 +223,18 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
     found = return_fraction(study, table, 40)
     assert (found.share.lower, found.share.upper, found.next_bed, found.share.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why
-    assert found.from_ == "4 samples of an expansion fitted to 40 landings on 1 bed"
-    assert found.missing == 0.0
+    assert (found.from_, found.missing) == ("4 samples of an expansion fitted to 40 landings on 1 bed", 0.0)
     assert found.if_missing == (1.0, 1.0)
 
 
-@pytest.mark.parametrize(
-    ("bed", "impact", "where"),
-    [
-        ({}, {}, "On this bed, at this impact point"),
-        ({"bed_count": 6}, {}, "At this impact point"),
-        ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
-        ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
-        (
-            {"bed_count": 6},
-            {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
-            "On these 6 beds, at random impact points and attitudes",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("bed", "impact", "where"), [
+    ({}, {}, "On this bed, at this impact point"),
+    ({"bed_count": 6}, {}, "At this impact point"),
+    ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
+    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
+    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
+     "On these 6 beds, at random impact points and attitudes"),
+])  # fmt: skip
 def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:
     found = scope(changed(bed=bed, impact=impact))
     assert found.where == where
@@ -294,27 +274,22 @@ def _names_in_tables(text: str) -> list[str]:
 
 
 # Of each of the four quantities that have quantiles the table names the first.
-RESTITUTION_NAMES = [
-    *(name.partition(" ")[0] for name in EDGES), *COUNTS,
-    "normal_restitution_q0", "_q1", "tangential_restitution_q", "azimuth_deg_q", "friction_q",
-]  # fmt: skip
+RESTITUTION_NAMES = [*(name.partition(" ")[0] for name in EDGES), *COUNTS, "normal_restitution_q0", "_q1",
+    "tangential_restitution_q", "azimuth_deg_q", "friction_q"]  # fmt: skip
 
 
 def test_the_partner_stands_where_the_sample_says() -> None:
     study = changed(site={"partner_longitude_deg": 77.0, "spin_period": 8000.0})
     site = starts(Site(study), made_samples("clear")).site
     body = Site(study).body
-    time = Site(study).clock(site)
-    angle = body.orbit.angle + body.orbit.rate * time[0]
+    angle = body.orbit.angle + body.orbit.rate * Site(study).clock(site)[0]
     assert math.degrees(angle) % 360.0 == pytest.approx(77.0)
-    open_ended = starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]
-    assert np.ptp(open_ended) > 180.0
+    assert np.ptp(starts(Site(changed()), made_samples(*["clear"] * 40)).site["partner_longitude_deg"]) > 180.0
     assert Site(changed(site={"partner": False})).body.partner is None
 
 
 def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
-    study = changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0})
-    site = Site(study)
+    site = Site(changed(site={"latitude_deg": 20.0, "longitude_deg": 10.0, "north_error": 30.0, "east_error": -40.0}))
     body, (origin, _) = site.body, site.frames(site.columns(1))
     aim, axes = body.local_frame(20.0, 10.0)
     moved = axes @ (origin[0] - aim)
@@ -323,18 +298,13 @@ def test_the_delivery_error_moves_the_start_along_the_ground() -> None:
     assert abs(body.shape.height(origin[0])) < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("raised", "said"),
-    [
-        (
-            ValueError("World time_step is 1e-3 s; allowed is at most 5e-4 s: make it smaller"),
-            "at most 5e-4 s: raise contact.steps_per_contact",
-        ),
-        (ValueError("Landing.speed is 0.0; allowed is a finite value above 0 m/s: change it"), "impact.speed is 0.0"),
-        (ValueError("BedRecipe.pour_gravity is 1e-6; allowed is at least"), "bed.pour_gravity is 1e-6"),
-        (FloatingPointError("the motion diverged: positions are no longer finite numbers"), "steps_per_contact"),
-    ],
-)
+@pytest.mark.parametrize(("raised", "said"), [
+    (ValueError("World time_step is 1e-3 s; allowed is at most 5e-4 s: make it smaller"),
+     "at most 5e-4 s: raise contact.steps_per_contact"),
+    (ValueError("Landing.speed is 0.0; allowed is a finite value above 0 m/s: change it"), "impact.speed is 0.0"),
+    (ValueError("BedRecipe.pour_gravity is 1e-6; allowed is at least"), "bed.pour_gravity is 1e-6"),
+    (FloatingPointError("the motion diverged: positions are no longer finite numbers"), "steps_per_contact"),
+])  # fmt: skip
 def test_what_the_engine_refuses_is_said_by_the_keys_of_the_study(raised: Exception, said: str) -> None:
     with pytest.raises(type(raised), match=re.escape(said)) as caught, in_words_of_the_study():
         raise raised

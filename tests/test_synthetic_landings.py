@@ -38,8 +38,7 @@ def test_the_soil_explains_what_it_should(truth: Truth, speed: float, elevation:
     x = np.repeat(random_soils(COUNT, rng), 2, axis=0)
     y = replace(truth, capture=0.0).draw(x, rng.standard_normal(len(x)), rng).y.reshape(COUNT, 2, 4)
     for k, expected in ((0, speed), (1, elevation)):
-        share = np.corrcoef(y[:, 0, k], y[:, 1, k])[0, 1]
-        assert abs(share - expected) < 4.0 / np.sqrt(COUNT)
+        assert abs(np.corrcoef(y[:, 0, k], y[:, 1, k])[0, 1] - expected) < 4.0 / np.sqrt(COUNT)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.05, 0.2])
@@ -74,8 +73,7 @@ def test_outputs_keep_their_bounds() -> None:
 
 
 def test_one_branch_has_the_given_skewness() -> None:
-    truth = Truth(soil=0.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0)
-    _, _, landings = drawn(truth)
+    _, _, landings = drawn(Truth(soil=0.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0))
     assert abs(stats.skew(special.logit(landings.y[:, 0] / SPEED_LIMIT)) - 2.0) < 0.15
 
 

@@ -20,10 +20,12 @@ from lithobrake.results.summary import Summary
 from .command_line import lithobrake
 from .few_grains import few_grains
 
-STUDY = (
-    'title = "A few grains"'
-    + few_grains(45, width=0.5, lander_diameter=0.14)
-    + """[design]
+STUDY = f"""title = "A few grains"
+monte_carlo = {{ sample_count = 500 }}
+site = {{ mass = {{ distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }} }}
+flight = {{ gravity = "exact", flight_count = 10, duration = 20000.0 }}
+rest = {{ count = 20, duration = 20000.0 }}
+{few_grains(45, width=0.5, lander_diameter=0.14)}[design]
 method = "paper"
 screening_level = 1
 screening_degree = 1
@@ -31,23 +33,9 @@ refined_level = 1
 refined_degree = 1
 kept_outputs = ["speed_out"]
 test_count = 2
-[monte_carlo]
-sample_count = 500
-[site]
-mass = { distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }
-[flight]
-gravity = "exact"
-flight_count = 10
-duration = 20000.0
-[rest]
-count = 20
-duration = 20000.0
 """
-)
-FILES = (
-    "study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
-    "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html",
-)  # fmt: skip
+FILES = ("study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
+    "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html")  # fmt: skip
 
 
 def command(study: Path, out: Path, workers: int) -> list[str]:
@@ -163,8 +151,7 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert process.returncode == 130
     assert "to continue, run the same command" in said
     assert "Traceback" not in said
-    kept = finished_runs(other)
-    assert 2 <= kept < finished_runs(out)
+    assert 2 <= finished_runs(other) < finished_runs(out)
     go_on(study, other, workers=1)
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]

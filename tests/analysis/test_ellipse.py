@@ -16,7 +16,6 @@ def test_a_normal_cloud_gives_its_own_axes() -> None:
     north, east = c * along - s * across, s * along + c * across
     longitude = 180.0 + east / np.cos(np.radians(50.0))
     found = dispersion_ellipses(50.0 + north, np.where(longitude > 180.0, longitude - 360.0, longitude))
-    assert found is not None
     assert found.latitude_deg == pytest.approx(50.0, abs=0.1)
     assert abs(found.longitude_deg) == pytest.approx(180.0, abs=0.1)
     assert found.heading_deg == pytest.approx(30.0, abs=2.0)
@@ -29,7 +28,6 @@ def test_a_normal_cloud_gives_its_own_axes() -> None:
 def test_a_heading_wraps_at_half_a_turn() -> None:
     random = np.random.default_rng(1)
     found = dispersion_ellipses(random.normal(size=500), 10.0 + 0.1 * random.normal(size=500))
-    assert found is not None
     assert min(found.heading_deg, 180.0 - found.heading_deg) < 3.0
 
 
@@ -37,7 +35,6 @@ def test_an_ellipse_that_would_reach_round_half_the_body_is_left_out() -> None:
     random = np.random.default_rng(2)
     near, far = 5.0 * random.normal(size=(900, 2)), np.column_stack([np.zeros(100), np.linspace(-170.0, 170.0, 100)])
     found = dispersion_ellipses(*np.concatenate([near, far]).T, (0.5, 0.99))
-    assert found is not None
     assert list(found.semi_axes_deg) == [0.5]
 
 

@@ -24,7 +24,6 @@ def test_the_range_holds_nine_in_ten_studies() -> None:
         of_bed = random.beta(size * share + 1e-9, size * (1.0 - share) + 1e-9, 24)
         widths.append(half_width_of(random.random(96) < of_bed[BED], BED))
     found = half_width_range(AllOrNothing(1.0, 0.5), BED, correlation=0.05)
-    assert found is not None
     held = np.mean((found.lower <= np.array(widths)) & (np.array(widths) <= found.upper))
     # Half widths of all or nothing are few values: those at the ends count as held.
     assert 0.86 <= held <= 0.97
@@ -37,8 +36,6 @@ def test_runs_that_have_ended_narrow_the_range_until_nothing_is_left_open() -> N
     before = half_width_range(AllOrNothing(1.0, 0.5), BED)
     third = half_width_range(law, BED[32:], values=values[:32], values_bed=BED[:32])
     ended = half_width_range(law, [], values=values, values_bed=BED)
-    assert before is not None
-    assert third is not None
     assert ended == pytest.approx([half_width_of(values, BED)] * 3)
     assert third.upper - third.lower < before.upper - before.lower
     assert third.lower < half_width_of(values, BED) < third.upper
@@ -47,15 +44,12 @@ def test_runs_that_have_ended_narrow_the_range_until_nothing_is_left_open() -> N
 def test_runs_that_all_end_alike_do_not_say_that_none_will_differ() -> None:
     ones = np.ones(32)
     found = half_width_range(LikeRuns(ones, BED[:32]), BED[32:], values=ones, values_bed=BED[:32])
-    assert found is not None
     assert found.lower < 0.5 * (1.0 - 0.1 ** (1 / 24)) <= found.upper
 
 
 def test_missing_runs_and_one_bed() -> None:
     law = Shares(0.75, 0.14, 0.21)
     all_known, some_lost = half_width_range(law, BED), half_width_range(law, BED, missing=0.1)
-    assert all_known is not None
-    assert some_lost is not None
     assert 0.03 < some_lost.median - all_known.median < 0.06
     assert half_width_range(law, np.zeros(96)) is None
     with pytest.raises(ValueError, match=r"missing is 1\.5"):

@@ -94,10 +94,8 @@ def test_which_bounces_share_a_bed_is_said(on_beds: Emulator, model: Emulator) -
     one = Observation({"speed": 1.0}, bed="tray")
     assert beds_statement(on_beds, [one]) is None
     apart = beds_statement(on_beds, [one, Observation({"speed": 1.2})])
-    assert apart is not None
     assert apart.startswith("The 2 bounces count as on beds of their own")
     shared = beds_statement(on_beds, [one, one, Observation({"speed": 1.2})])
-    assert shared is not None
     assert shared.startswith("Of the 3 bounces 2 share bed tray; of the scatter at one soil the bed has: speed ")
 
 
@@ -145,15 +143,12 @@ def test_how_many_bounces_halve_an_uncertainty_is_that_of_the_linear_law(model: 
     assert found["density"].sd_ratio[1] == pytest.approx(1.0, abs=0.05)
 
 
-@pytest.mark.parametrize(
-    ("observations", "own", "words"),
-    [
-        ([], [], "0 observations; give at least one"),
-        ([Observation({})], [], "1 observations; give at least one, each with outputs or an outcome"),
-        ([Observation({"speed": 1.0}, known={"mass": 1.0})], [], "mass is no input of the emulator"),
-        ([Observation({"speed": 1.0})], ["friction", "density"], "nothing is left to infer"),
-    ],
-)
+@pytest.mark.parametrize(("observations", "own", "words"), [
+    ([], [], "0 observations; give at least one"),
+    ([Observation({})], [], "1 observations; give at least one, each with outputs or an outcome"),
+    ([Observation({"speed": 1.0}, known={"mass": 1.0})], [], "mass is no input of the emulator"),
+    ([Observation({"speed": 1.0})], ["friction", "density"], "nothing is left to infer"),
+])  # fmt: skip
 def test_observations_that_cannot_be_are_refused(
     model: Emulator, observations: list[Observation], own: list[str], words: str
 ) -> None:
@@ -170,11 +165,8 @@ def test_bounds_that_follow_the_inputs_are_asked_for_at_the_points() -> None:
     with pytest.raises(ValueError, match="upper is missing, but it differed between the runs"):
         infer(bounded, seen, refit_count=0, point_count=512)
     found = infer(
-        bounded,
-        seen,
-        refit_count=0,
-        point_count=512,
+        bounded, seen, refit_count=0, point_count=512,
         bounds=lambda points: (None, 1.0 + 0.1 * np.exp(0.1 * points[:, 1:])),
-    )
+    )  # fmt: skip
     # A speed so near the bound is that of a slippery soil.
     assert found.learnt()["friction"].after.value > 0.5

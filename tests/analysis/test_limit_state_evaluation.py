@@ -10,12 +10,9 @@ from lithobrake.vocabulary.outcomes import FATES
 NAN = np.nan
 # Four landings: fast and gone, slow and down again, captured, and one of which nobody knows.
 LANDINGS = {
-    "speed_out": [0.2, 0.05, NAN, NAN],
-    "peak_acceleration": [30.0, 60.0, 70.0, NAN],
-    "captured": [0.0, 0.0, 1.0, NAN],
-    "returns": [0.0, 1.0, 1.0, NAN],
-    "escaped": [1.0, 0.0, 0.0, NAN],
-}
+    "speed_out": [0.2, 0.05, NAN, NAN], "peak_acceleration": [30.0, 60.0, 70.0, NAN], "captured": [0.0, 0.0, 1.0, NAN],
+    "returns": [0.0, 1.0, 1.0, NAN], "escaped": [1.0, 0.0, 0.0, NAN],
+}  # fmt: skip
 MET: list[tuple[str, list[float]]] = [
     ("speed_out > 0.1", [1, 0, 0, NAN]),
     # What is captured has no speed, so it is neither above nor below any.
@@ -32,14 +29,12 @@ MET: list[tuple[str, list[float]]] = [
 # How far the same landings are from meeting conditions, speeds counted in 0.1 m/s and accelerations in 10 m/s2.
 SCALE = {"speed_out": 0.1, "peak_acceleration": 10.0}
 MARGINS: list[tuple[str, list[float]]] = [
-    ("speed_out > 0.1", [-1.0, 0.5, FAR, FAR]),
-    ("not speed_out > 0.1", [1.0, -0.5, -FAR, FAR]),
+    ("speed_out > 0.1", [-1.0, 0.5, FAR, FAR]), ("not speed_out > 0.1", [1.0, -0.5, -FAR, FAR]),
     ("0.05 < speed_out <= 0.3", [-1.0, NEAR, FAR, FAR]),
     ("speed_out > 0.1 and peak_acceleration > 50", [2.0, 0.5, FAR, FAR]),
     ("speed_out > 0.3 or peak_acceleration > 50", [1.0, -1.0, -2.0, FAR]),
-    ("speed_out > 0.1 and not captured", [-1.0, 0.5, FAR, FAR]),
-    ("0 < 0.1 < speed_out", [-1.0, 0.5, FAR, FAR]),
-]
+    ("speed_out > 0.1 and not captured", [-1.0, 0.5, FAR, FAR]), ("0 < 0.1 < speed_out", [-1.0, 0.5, FAR, FAR]),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "margins"), MARGINS)

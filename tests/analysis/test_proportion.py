@@ -6,16 +6,13 @@ import pytest
 from lithobrake.analysis import wilson_interval
 
 
-@pytest.mark.parametrize(
-    ("count", "total", "lower", "upper"),
-    [
-        # Newcombe 1998, Statistics in Medicine 17, 857, table I, method 3.
-        (81, 263, 0.2553, 0.3662),
-        (15, 148, 0.0624, 0.1605),
-        (0, 20, 0.0, 0.1611),
-        (1, 29, 0.0061, 0.1718),
-    ],
-)
+@pytest.mark.parametrize(("count", "total", "lower", "upper"), [
+    # Newcombe 1998, Statistics in Medicine 17, 857, table I, method 3.
+    (81, 263, 0.2553, 0.3662),
+    (15, 148, 0.0624, 0.1605),
+    (0, 20, 0.0, 0.1611),
+    (1, 29, 0.0061, 0.1718),
+])  # fmt: skip
 def test_published_intervals(count: int, total: int, lower: float, upper: float) -> None:
     assert wilson_interval(count, total) == pytest.approx((lower, upper), abs=5e-5)
 

@@ -108,19 +108,16 @@ def test_the_same_seed_gives_the_same_bits() -> None:
     assert np.array_equal(first.failing, again.failing)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"points_per_level": 25}, "points_per_level is 25; allowed: multiples of 10 from 20"),
-        ({"points_per_level": 10}, "points_per_level is 10"),
-        ({"most_levels": 0}, "most_levels is 0, but must be a whole number of at least 1"),
-        ({"most_levels": -1}, "most_levels is -1"),
-        ({"groups": lambda points: points[:, 1] * np.nan}, "groups hold NaN"),
-        ({"groups": lambda points: points[:3, 1]}, "groups has shape"),
-        ({"seed": "x"}, "seed is 'x'"),
-        ({"kept": [0, 1]}, r"kept is \[0, 1\] of 2 inputs"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "words"), [
+    ({"points_per_level": 25}, "points_per_level is 25; allowed: multiples of 10 from 20"),
+    ({"points_per_level": 10}, "points_per_level is 10"),
+    ({"most_levels": 0}, "most_levels is 0, but must be a whole number of at least 1"),
+    ({"most_levels": -1}, "most_levels is -1"),
+    ({"groups": lambda points: points[:, 1] * np.nan}, "groups hold NaN"),
+    ({"groups": lambda points: points[:3, 1]}, "groups has shape"),
+    ({"seed": "x"}, "seed is 'x'"),
+    ({"kept": [0, 1]}, r"kept is \[0, 1\] of 2 inputs"),
+])  # fmt: skip
 def test_counts_that_cannot_be_are_refused(arguments: dict[str, object], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         subset_simulation(lambda points: points[:, 0], 2, **arguments)

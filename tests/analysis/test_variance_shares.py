@@ -142,7 +142,6 @@ def test_too_few_runs_leave_the_attitude_out_rather_than_the_soil() -> None:
     x, rng = sobol_sequence(INPUTS, 24, seed=1), np.random.default_rng(0)
     attitude, y, bed = rng.standard_normal((24, 6)), rng.standard_normal(24), np.arange(24) % 6
     found = variance_shares(INPUTS, x, y, bed, soil=SOIL, attitude=attitude)
-    assert found is not None
     assert found.attitude is None
     with pytest.raises(ValueError, match=r"attitude has shape \(12, 6\)"):
         variance_shares(INPUTS, x, y, bed, soil=SOIL, attitude=attitude[:12])
@@ -258,15 +257,12 @@ def test_pairs_tell_the_total_effect_of_the_soil() -> None:
         soil_total_effect([1.0], y)
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ({"x": np.full((12, 1), 3.0)}, "x has 12 of 12 points outside the inputs"),
-        ({"y": np.zeros(11)}, r"y has shape \(11,\); allowed: one number for each of the 12 runs"),
-        ({"soil": "a"}, "soil is 'a'; allowed: some of the inputs a"),
-        ({"soil": ["b"]}, r"soil is \['b'\]; allowed: some of the inputs a"),
-    ],
-)
+@pytest.mark.parametrize(("given", "words"), [
+    ({"x": np.full((12, 1), 3.0)}, "x has 12 of 12 points outside the inputs"),
+    ({"y": np.zeros(11)}, r"y has shape \(11,\); allowed: one number for each of the 12 runs"),
+    ({"soil": "a"}, "soil is 'a'; allowed: some of the inputs a"),
+    ({"soil": ["b"]}, r"soil is \['b'\]; allowed: some of the inputs a"),
+])  # fmt: skip
 def test_runs_that_do_not_fit_together_are_refused(given: dict[str, Any], words: str) -> None:
     runs: dict[str, Any] = {"x": np.zeros((12, 1)), "y": np.arange(12.0), "soil": ["a"]} | given
     with pytest.raises(ValueError, match=words):

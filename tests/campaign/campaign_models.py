@@ -16,14 +16,12 @@ def parabola(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def breaks_at_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that diverges at one point."""
     if inputs["a"] == 2.0:
         raise FloatingPointError("the overlap grew without bound")
     return parabola(inputs, seed)
 
 
 def dies_at_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that takes its process with it."""
     if inputs["a"] == 2.0:
         os.kill(os.getpid(), signal.SIGKILL)
     return parabola(inputs, seed)
@@ -37,7 +35,6 @@ def captured_below_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def sleeps_at_two(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that does not end at one point."""
     if inputs["a"] == 2.0:
         time.sleep(600)
     return parabola(inputs, seed)
@@ -93,19 +90,16 @@ def talks(inputs: dict[str, float], seed: int) -> dict[str, float]:
 
 
 def sleeps_a_little(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that takes long enough to be seen."""
     time.sleep(0.8)
     return parabola(inputs, seed)
 
 
 def sleeps_a_moment(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that takes long enough for something to happen meanwhile."""
     time.sleep(0.05)
     return parabola(inputs, seed)
 
 
 def sleeps_at_ten(inputs: dict[str, float], seed: int) -> dict[str, Any]:
-    """A model that does not end at one point."""
     if inputs["a"] == 10.0:
         time.sleep(600)
     return parabola(inputs, seed)
@@ -121,19 +115,16 @@ def threads(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def collatz(inputs: dict[str, float], seed: int) -> dict[str, float]:
-    """The number after one of the Collatz sequence."""
     value = inputs["value"]
     return {"value": 3.0 * value + 1.0 if value % 2.0 else value / 2.0}
 
 
 def collatz_after_a_moment(inputs: dict[str, float], seed: int) -> dict[str, float]:
-    """The same, which takes long enough for something to happen meanwhile."""
     time.sleep(0.02)
     return collatz(inputs, seed)
 
 
 def collatz_without_ten(inputs: dict[str, float], seed: int) -> dict[str, float]:
-    """The number after one of the Collatz sequence; it fails for multiples of ten."""
     if inputs["value"] % 10.0 == 0.0:
         raise ValueError("ten is not known")
     return collatz(inputs, seed)

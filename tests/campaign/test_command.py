@@ -1,15 +1,20 @@
-"""Programs as models: what they are given, what they give back, and every way in which they fail."""
+"""Programs as models: what they are given, the formats they write, their logs, and every way in which they fail."""
 
 import json
 import os
+import re
 import shlex
 import sys
 from pathlib import Path
+from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 
 from lithobrake.campaign import Command, Ledger, Limits, LocalExecutor, Runs, absolute_words, run
+from lithobrake.campaign.command import fill_template, read_answer
+from lithobrake.campaign.single_run import KEPT, CappedLog, last_words, run_model
 
 X = np.array([[1.0], [2.0]])
 
@@ -35,15 +40,8 @@ def campaign(folder: Path, do: str, limits: Limits | None = None) -> Runs:
     program.write_text(PROGRAM.replace("DO", do))
     model = Command(shlex.join([sys.executable, str(program)]), folder / "solver", required=("height",))
     with Ledger(folder / "runs.sqlite") as ledger, LocalExecutor(2) as executor:
-        return run(
-            model,
-            X,
-            names=("a",),
-            ledger=ledger,
-            executor=executor,
-            context={"solver": model.identity()},
-            limits=limits,
-        )
+        return run(model, X, names=("a",), ledger=ledger, executor=executor, context={"solver": model.identity()},
+            limits=limits)  # fmt: skip
 
 
 FAILURES = [
@@ -75,8 +73,7 @@ def test_a_program_that_fails_is_a_failed_run_with_its_reason(do: str, reason: s
 
 
 def test_a_text_that_begins_with_a_mark_of_its_encoding_is_read(tmp_path: Path) -> None:
-    runs = campaign(tmp_path, "leave('\\ufeff{\"height\": 7}')")
-    assert runs.outputs(["height"])[:, 0].tolist() == [2.0, 7.0]
+    assert campaign(tmp_path, "leave('\\ufeff{\"height\": 7}')").outputs(["height"])[:, 0].tolist() == [2.0, 7.0]
 
 
 def test_a_program_over_its_wall_limit_is_ended_with_all_that_it_started(tmp_path: Path) -> None:
@@ -123,3 +120,173 @@ def test_a_program_that_is_not_there_is_the_reason(tmp_path: Path) -> None:
     with Ledger(tmp_path / "runs.sqlite") as ledger, LocalExecutor(1) as executor:
         runs = run(model, X, names=("a",), ledger=ledger, executor=executor)
     assert "FileNotFoundError" in str(runs.records[0].reason)
+
+
+@pytest.mark.parametrize("piece", [1000, 65_536, 5_000_000])
+def test_the_first_and_the_last_megabyte_are_kept_and_the_rest_is_counted(piece: int, tmp_path: Path) -> None:
+    total = b"".join(b"line %8d\n" % number for number in range(700_000))
+    with CappedLog(tmp_path / "log.txt") as log:
+        for start in range(0, len(total), piece):
+            log.write(total[start : start + piece])
+    kept = (tmp_path / "log.txt").read_bytes()
+    assert len(kept) <= 3 * KEPT
+    notice = re.search(rb"\n\.\.\. (\d+) bytes are left out here \.\.\.\n", kept)
+    first, last = kept[: notice.start()], kept[notice.end() :]
+    assert len(first) == KEPT
+    assert len(last) >= KEPT
+    assert total.startswith(first)
+    assert total.endswith(last)
+    assert len(first) + int(notice[1]) + len(last) == len(total)
+
+
+def test_a_short_log_is_kept_whole(tmp_path: Path) -> None:
+    with CappedLog(tmp_path / "log.txt") as log:
+        log.write(b"no licence\n\n")
+        # A process that is ended here leaves all that it has written.
+        assert (tmp_path / "log.txt").read_bytes() == b"no licence\n\n"
+    assert last_words(tmp_path / "log.txt") == "no licence"
+
+
+PRINTS_MUCH = "import sys; [print('overlap', 'x' * 10000) for _ in range(2000)]; print('it diverged'); sys.exit(3)"
+LEAVES_SOMETHING = """
+import json, subprocess, sys
+subprocess.Popen([sys.executable, "-c", "import time; time.sleep(20)"])
+print("all is well")
+json.dump({"height": 1.0}, open("outputs.json", "w"))
+"""
+
+
+def test_a_program_that_prints_without_end_fills_no_disk_and_its_last_words_are_the_reason(tmp_path: Path) -> None:
+    result = run_model(Command(shlex.join([sys.executable, "-c", PRINTS_MUCH]), tmp_path / "solver"), {"a": 1.0}, 1)
+    assert "exit code 3" in result["reason"]
+    assert result["reason"].endswith("it diverged")
+    (log,) = (tmp_path / "solver").glob("*/log.txt")
+    assert log.stat().st_size <= 3 * KEPT
+
+
+def test_nobody_waits_for_what_a_program_leaves_running(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(LEAVES_SOMETHING)
+    model = Command(shlex.join([sys.executable, str(tmp_path / "program.py")]), tmp_path / "solver")
+    result = run_model(model, {"a": 1.0}, 1)
+    assert result["outputs"] == {"height": 1.0}
+    assert result["wall_s"] < 20
+    (log,) = (tmp_path / "solver").glob("*/log.txt")
+    assert log.read_text() == "all is well\n"
+
+
+def prints_much(inputs: dict[str, float], seed: int) -> dict[str, float]:
+    """A model that does not stop talking."""
+    for _ in range(500):
+        print("overlap", "x" * 10_000)
+    return {"height": 1.0}
+
+
+def test_the_log_of_a_model_is_capped_too(tmp_path: Path) -> None:
+    assert run_model(prints_much, {"a": 1.0}, 1, tmp_path / "logs" / "run.log")["outputs"] == {"height": 1.0}
+    text = (tmp_path / "logs" / "run.log").read_text()
+    assert len(text) <= 3 * KEPT
+    assert text.startswith('{"inputs": {"a": 1.0}, "seed": 1}\noverlap xxx')
+    assert '"status": "done"' in text.splitlines()[-1]
+
+
+ANSWER = {"outcome": "clear", "outputs": {"velocity_out_x": 0.05, "spin_out": 1.25e-3}}
+
+
+def write(path: Path, answer: dict[str, Any]) -> None:
+    """Write an answer in the format of the ending, with the library of the format."""
+    if path.suffix == ".json":
+        path.write_text(json.dumps(answer))
+    elif path.suffix == ".csv":
+        pandas = pytest.importorskip("pandas")
+        rows = [{"outcome": "captured", **dict.fromkeys(answer["outputs"], 9.0)}]
+        rows.append({"outcome": answer["outcome"], **answer["outputs"]})
+        pandas.DataFrame(rows).to_csv(path, index=False)
+    elif path.suffix in (".yaml", ".yml"):
+        path.write_text(pytest.importorskip("yaml").safe_dump(answer))
+    else:
+        with h5py.File(path, "w") as file:
+            file.attrs["outcome"] = answer["outcome"]
+            for name, value in answer["outputs"].items():
+                file[f"outputs/{name}"] = value
+            file["outputs/history"] = np.zeros(7)
+
+
+@pytest.mark.parametrize("name", ["a.json", "a.csv", "a.yaml", "a.yml", "a.h5", "a.hdf5"])
+def test_every_format_gives_the_same_answer(tmp_path: Path, name: str) -> None:
+    write(tmp_path / name, ANSWER)
+    assert read_answer(tmp_path / name) == ANSWER
+
+
+def test_plain_numbers_need_no_outcome(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("# not a comment,b\n1.5, 2\n")
+    assert read_answer(tmp_path / "a.csv") == {"outputs": {"# not a comment": 1.5, "b": 2.0}}
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["b"] = np.array([2.0])
+    assert read_answer(tmp_path / "a.h5") == {"outputs": {"b": 2.0}}
+    (tmp_path / "a.csv").write_text("b,penetration\n2,\n")
+    assert read_answer(tmp_path / "a.csv") == {"outputs": {"b": 2.0}}
+
+
+@pytest.mark.parametrize(("name", "text", "words"), [
+    ("a.csv", "b\nfast\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b,c\n1\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b\n", "a.csv is no CSV of numbers"),
+    ("a.csv", "b\nnan\n", "a.csv has nan for b"),
+    ("a.yaml", "b: [1\n", "a.yaml is not YAML"),
+    ("a.yaml", "b: .inf\n", "a.yaml has inf for b"),
+    ("a.yaml", "- 1\n", "a.yaml is no JSON object"),
+    ("a.h5", "text", "a.h5 is not HDF5"),
+])  # fmt: skip
+def test_what_is_no_answer_says_so(tmp_path: Path, name: str, text: str, words: str) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(ValueError, match=words):
+        read_answer(tmp_path / name)
+
+
+def test_places_of_a_template_become_numbers_of_the_run(tmp_path: Path) -> None:
+    template, folder = tmp_path / "in.landing", tmp_path / "run"
+    folder.mkdir()
+    template.write_text("fric {{grain.friction}} ${kept} {{ seed }} {{ setting.bed.kind }}\n")
+    question = {"inputs": {"grain.friction": 0.1}, "seed": 7, "setting": {"bed": {"kind": "box", "width": [1, 2]}}}
+    fill_template(template, folder, question)
+    assert (folder / "in.landing").read_text() == "fric 0.1 ${kept} 7 box\n"
+    template.write_text("{{ grain.fricton }}")
+    with pytest.raises(ValueError, match=r"did you mean grain\.friction\?"):
+        fill_template(template, folder, question)
+
+
+def test_a_program_that_knows_no_json_makes_a_run(tmp_path: Path) -> None:
+    """It reads numbers from its own input file and writes a table."""
+    template, program = tmp_path / "in.txt", tmp_path / "program.py"
+    template.write_text("speed {{ impact.speed }}\n")
+    program.write_text("s = float(open('in.txt').read().split()[1])\nopen('out.csv', 'w').write(f'h\\n{2 * s!r}\\n')\n")
+    words = shlex.join([sys.executable, str(program)])
+    command = Command(words, tmp_path / "runs", required=("h",), templates=(template,), answer="out.csv")
+    assert command({"impact.speed": 0.1}, 1) == {"outputs": {"h": 0.2}}
+    before = command.identity()
+    template.write_text("# changed\nspeed {{ impact.speed }}\n")
+    assert command.identity() != before
+    assert Command(words, tmp_path).identity() == command.identity()[:2]
+
+
+def test_files_of_a_study_count_from_it_and_are_checked(tmp_path: Path) -> None:
+    from lithobrake.study import StudyError, StudySource
+
+    ball = Path(__file__).parents[2] / "examples" / "ball_on_plate.toml"
+    path = tmp_path / "study.toml"
+
+    def study(keys: str) -> Any:
+        path.write_text(ball.read_text().replace('command = "python3 ball', f'{keys}\ncommand = "python3 ball'))
+        return StudySource.read(path).study
+
+    (tmp_path / "in.txt").write_text("")
+    read = study('templates = ["in.txt"]\nanswer = "out.csv"')
+    assert (read.solver.templates, read.solver.answer) == ([str(tmp_path / "in.txt")], "out.csv")
+    for keys, words in (
+        ('templates = ["in.lost"]', "no such file"),
+        ('answer = "out.xls"', r"ending in \.json, \.csv"),
+        ('answer = "../out.csv"', "without folders"),
+        ('templates = ["in.txt"]\nanswer = "in.txt"', "would stand twice"),
+    ):
+        with pytest.raises(StudyError, match=words):
+            study(keys)

@@ -11,7 +11,7 @@ import campaign_models as models
 import numpy as np
 import pytest
 from dask_cluster import Cluster, cluster
-from test_chains import chains, what_came_of_chains
+from test_runs import chains, what_came_of_chains
 
 from lithobrake.campaign import DaskExecutor, Ledger, Limits, LocalExecutor, Runs, Tally, read_records, run
 

@@ -1,4 +1,4 @@
-"""Runs that fail: recorded with their reason, tried again as configured, counted, and looked at for holes."""
+"""Runs that fail: recorded, tried again, counted, looked at for holes; and scripts with and without a guard."""
 
 import importlib.util
 import os
@@ -25,7 +25,7 @@ from lithobrake.campaign import (
     run,
     run_key,
 )
-from lithobrake.campaign.worker import Call, Worker
+from lithobrake.campaign.worker import Call, MainModuleError, Worker, refuse_unreachable
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
 
@@ -43,7 +43,6 @@ def test_a_run_over_its_wall_limit_is_ended_and_the_others_go_on(tmp_path: Path)
     assert runs.outcomes == ["clear", "failed", "clear", "clear"]
     ended = runs.records[1]
     assert ended.reason == "it ran longer than its limit of 0.5 s"
-    assert ended.wall_s is not None
     assert ended.wall_s > 0.5
     assert ended.host == runs.records[0].host
     assert time.monotonic() - began < 600
@@ -88,9 +87,7 @@ def tries(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("retry_count", [0, 1])
-def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_retries(
-    retry_count: int, tmp_path: Path
-) -> None:
+def test_a_model_that_never_works_is_given_up_after_first_runs_and_retries(retry_count: int, tmp_path: Path) -> None:
     model = models.WorksAbove(1000.0, tmp_path)
     said = r"the first (1\d) runs have all failed \(1\d x OSError: no \[/licence\]\), so the (6|7)\d that are left"
     with pytest.raises(ValueError, match=said):
@@ -98,8 +95,7 @@ def test_a_model_that_never_works_is_given_up_after_the_first_runs_and_their_ret
         campaign(tmp_path, model, x=MANY, workers=1, options=RunOptions(retry_count=retry_count))
     # Beside the ten only what was under way meanwhile: two at most.
     assert 10 * (retry_count + 1) <= tries(tmp_path) <= 12 * (retry_count + 1)
-    failed = [entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]
-    assert 10 <= len(failed) <= 12
+    assert 10 <= len([entry for entry in read_records(tmp_path / "runs.sqlite") if entry.status == "failed"]) <= 12
     # Nothing of it counts: mended, the same command makes all runs.
     assert campaign(tmp_path, models.WorksAbove(-1.0, tmp_path), x=MANY).outcomes == ["clear"] * 82
 
@@ -128,8 +124,7 @@ def test_a_log_of_each_run_on_demand(tmp_path: Path) -> None:
     assert runs.records[0].outputs == {"height": 1.0}
 
 
-def grid() -> np.ndarray:
-    return np.array([[a, b] for a in np.linspace(0, 1, 10) for b in np.linspace(0, 1, 10)])
+GRID = np.array([[a, b] for a in np.linspace(0, 1, 10) for b in np.linspace(0, 1, 10)])
 
 
 def reasons(failed: np.ndarray) -> list[str | None]:
@@ -137,40 +132,26 @@ def reasons(failed: np.ndarray) -> list[str | None]:
 
 
 def test_nothing_missing_says_nothing() -> None:
-    assert missing(grid(), [None] * 100, ("a", "b"), 0.1) == ""
+    assert missing(GRID, [None] * 100, ("a", "b"), 0.1) == ""
 
 
 def test_scattered_failures_are_counted_and_accepted() -> None:
     failed = np.zeros(100, dtype=bool)
     failed[np.random.default_rng(3).choice(100, 8, replace=False)] = True
-    assert missing(grid(), reasons(failed), ("a", "b"), 0.1) == (
+    assert missing(GRID, reasons(failed), ("a", "b"), 0.1) == (
         "8 of 100 runs failed (8 x it diverged); what is fitted goes without them"
     )
 
 
-def test_too_many_failures_are_refused() -> None:
-    failed = np.zeros(100, dtype=bool)
-    failed[::9] = True
-    with pytest.raises(ValueError, match=r"12 of 100 runs failed .* allowed: at most 10 %"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_too_many_failures_that_lie_together_are_told_with_their_corner() -> None:
-    failed = grid()[:, 0] > 0.7
-    with pytest.raises(ValueError, match=r"30 of 100 .*, 30 of them where a > 0\.5; allowed: at most 10 %"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_failures_on_one_side_of_an_input_are_refused_and_the_side_is_named() -> None:
-    failed = grid()[:, 0] > 0.95
-    with pytest.raises(ValueError, match=r"10 of them lie where a > 0\.5, so"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
-
-
-def test_failures_in_a_corner_of_two_inputs_are_refused_and_the_corner_is_named() -> None:
-    failed = (grid()[:, 0] > 0.6) & (grid()[:, 1] < 0.2)
-    with pytest.raises(ValueError, match=r"8 of them lie where a > 0\.5 and b < 0\.5"):
-        missing(grid(), reasons(failed), ("a", "b"), 0.1)
+@pytest.mark.parametrize(("failed", "words"), [
+    (np.arange(100) % 9 == 0, r"12 of 100 runs failed .* allowed: at most 10 %"),
+    (GRID[:, 0] > 0.7, r"30 of 100 .*, 30 of them where a > 0\.5; allowed: at most 10 %"),
+    (GRID[:, 0] > 0.95, r"10 of them lie where a > 0\.5, so"),
+    ((GRID[:, 0] > 0.6) & (GRID[:, 1] < 0.2), r"8 of them lie where a > 0\.5 and b < 0\.5"),
+], ids=["scattered", "together", "on one side", "in a corner of two inputs"])  # fmt: skip
+def test_too_many_failures_or_some_that_lie_together_are_refused(failed: np.ndarray, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        missing(GRID, reasons(failed), ("a", "b"), 0.1)
 
 
 def test_chance_alone_seldom_looks_like_a_corner() -> None:
@@ -179,7 +160,7 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
         failed = np.zeros(100, dtype=bool)
         failed[generator.choice(100, 10, replace=False)] = True
         try:
-            missing(grid(), reasons(failed), ("a", "b"), 0.1)
+            missing(GRID, reasons(failed), ("a", "b"), 0.1)
         except ValueError:
             refused += 1
     # The chance is at most 0.01 in each of the 300; more than 9 would itself have a chance below 0.002.
@@ -189,8 +170,6 @@ def test_chance_alone_seldom_looks_like_a_corner() -> None:
 def test_a_model_that_no_worker_can_import_ends_the_campaign_and_fails_no_run(tmp_path: Path) -> None:
     (tmp_path / "passing.py").write_text("def model(inputs, seed):\n    return {}\n")
     spec = importlib.util.spec_from_file_location("passing", tmp_path / "passing.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = sys.modules["passing"] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     with pytest.raises(ConnectionError, match="ModuleNotFoundError: No module named 'passing'"):
@@ -238,7 +217,6 @@ class KilledFirst(Worker):
             os.kill(self.number, signal.SIGSTOP)
 
     def take(self, call: Call) -> bool:
-        """Send a call."""
         taken = super().take(call)
         if self is self.started[0]:
             os.kill(self.number, signal.SIGKILL)
@@ -246,11 +224,72 @@ class KilledFirst(Worker):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
-def test_a_process_that_is_killed_before_it_begins_costs_no_run_a_try(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_process_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(executors, "Worker", KilledFirst)
     monkeypatch.setattr(KilledFirst, "started", [])
     runs = campaign(tmp_path, models.parabola, workers=1)
     assert len(KilledFirst.started) == 2
     assert [(one.outcome, one.attempts) for one in runs.records] == [("clear", 1)] * 4
+
+
+# The model stands in a file of its own; what the script prints would come twice if a process imported it.
+SCRIPT = """
+print("started")
+import numpy as np
+import sums
+from lithobrake import campaign
+
+with campaign.Ledger("runs.sqlite") as ledger, campaign.LocalExecutor(2) as executor:
+    runs = campaign.run(sums.model, np.ones((3, 2)), names=["a", "b"], ledger=ledger, executor=executor)
+print(runs.outputs(["sum"]).ravel())
+"""
+OWN_MODEL = """
+import numpy as np
+from lithobrake import campaign
+
+def model(inputs, seed):
+    return {"sum": inputs["a"] + inputs["b"]}
+
+def main():
+    with campaign.Ledger("runs.sqlite") as ledger, campaign.LocalExecutor(1) as executor:
+        runs = campaign.run(model, np.ones((3, 2)), names=["a", "b"], ledger=ledger, executor=executor)
+    print(runs.outputs(["sum"]).ravel())
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+def python(place: Path, *words: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *words], cwd=place, input=given, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("piped", [False, True])
+def test_a_script_without_a_guard_starts_a_campaign_and_is_not_started_again(piped: bool, tmp_path: Path) -> None:
+    (tmp_path / "sums.py").write_text("def model(inputs, seed):\n    return {'sum': inputs['a'] + inputs['b']}\n")
+    (tmp_path / "script.py").write_text(SCRIPT)
+    said = python(tmp_path, "-", given=SCRIPT) if piped else python(tmp_path, "script.py")
+    assert (said.stderr, said.stdout) == ("", "started\n[2. 2. 2.]\n")
+
+
+def test_a_model_of_a_guarded_script_is_found(tmp_path: Path) -> None:
+    (tmp_path / "script.py").write_text(OWN_MODEL)
+    assert python(tmp_path, "script.py").stdout == "[2. 2. 2.]\n"
+    (tmp_path / "runs.sqlite").unlink()
+    assert python(tmp_path, "-m", "script").stdout == "[2. 2. 2.]\n"
+
+
+def test_a_model_of_a_piped_script_is_refused_in_one_sentence(tmp_path: Path) -> None:
+    said = python(tmp_path, "-", given=OWN_MODEL)
+    assert said.returncode == 1
+    assert "MainModuleError: the model is defined in a notebook, an interactive session or a piped" in said.stderr
+    assert said.stderr.count("Traceback") == 1
+
+
+def test_words_like_those_of_a_script_are_no_part_of_it() -> None:
+    import pickle
+
+    # Nothing of these tests is a script that a process could import.
+    refuse_unreachable(pickle.dumps("call it __main__"))
+    with pytest.raises(MainModuleError, match="write it to a file, say"):
+        refuse_unreachable(b"c__main__\nmodel\n.".replace(b"c__main__\nmodel\n", b"\x8c\x08__main__\x8c\x05model\x93"))

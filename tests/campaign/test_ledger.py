@@ -1,5 +1,6 @@
-"""The ledger: its states, one writer, many readers, older formats, a disk that is full."""
+"""The ledger: its states, one writer, many readers, older formats, a disk that is full; and its table of runs."""
 
+import csv
 import io
 import resource
 import sqlite3
@@ -14,12 +15,14 @@ import pytest
 from lithobrake.campaign import (
     Ledger,
     LocalExecutor,
+    Record,
     RunStatus,
     Tally,
     campaign_began,
     ledger_tally,
     read_records,
     run,
+    run_lines,
     write_csv,
 )
 from lithobrake.campaign.record import lock_path
@@ -40,15 +43,10 @@ def test_a_row_has_all_that_is_known_of_a_run(tmp_path: Path) -> None:
     entries = {entry.inputs["a"]: entry for entry in read_records(tmp_path / "runs.sqlite")}
     one, two = entries[1.0], entries[2.0]
     assert (one.status, one.outcome, one.outputs, one.version, one.attempts) == (
-        "done",
-        "clear",
-        {"height": 1.5},
-        "7",
-        1,
-    )
-    assert (two.status, two.outcome, two.reason) == (
-        "failed", None, "FloatingPointError: the overlap grew without bound"
+        "done", "clear", {"height": 1.5}, "7", 1,
     )  # fmt: skip
+    assert (two.status, two.outcome, two.reason) == ("failed", None,
+        "FloatingPointError: the overlap grew without bound")  # fmt: skip
     assert one.wall_s is not None
     assert one.cpu_s is not None
     assert one.host
@@ -76,7 +74,6 @@ def test_a_second_coordinator_is_refused_with_who_is_at_work(tmp_path: Path) -> 
     with Ledger(path):
         second = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
         holder = lock_holder(lock_path(path))
-    assert holder is not None
     assert f"another campaign is at work on {path} (process {holder['process']} on {holder['host']})" in second.stderr
     assert lock_holder(lock_path(path)) is None
     Ledger(path).close()
@@ -90,17 +87,12 @@ def test_what_was_queued_and_never_ended_is_forgotten_by_the_next_campaign(tmp_p
     assert {entry.inputs["a"] for entry in read_records(path)} == {1.0, 2.0, 3.0}
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        "outputs = json_set(outputs, '$.height', 9.0)", "inputs = json_set(inputs, '$.a', 9.0)", "outcome = 'captured'",
-        "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
-        "wall_s = 9.0",
-    ],
-)  # fmt: skip
-def test_an_edited_row_is_named_left_out_and_made_again(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str
-) -> None:
+@pytest.mark.parametrize("change", [
+    "outputs = json_set(outputs, '$.height', 9.0)", "inputs = json_set(inputs, '$.a', 9.0)", "outcome = 'captured'",
+    "status = 'failed'", "status = 'lost'", "seed = seed + 1", "outputs = '{'", "outputs = x'00'", "sha256 = NULL",
+    "wall_s = 9.0",
+])  # fmt: skip
+def test_an_edited_row_is_named_and_made_again(tmp_path: Path, caplog: pytest.LogCaptureFixture, change: str) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path, models.parabola)
     before = {entry.key: entry for entry in read_records(path)}
@@ -120,9 +112,7 @@ def test_an_edited_row_is_named_left_out_and_made_again(
     }
 
 
-def test_a_ledger_without_hashes_is_taken_as_it_stands_and_gets_them(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_ledger_without_hashes_is_taken_and_gets_them(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     path = tmp_path / "runs.sqlite"
     fill(path, models.parabola)
     before = read_records(path)
@@ -151,9 +141,8 @@ def test_a_ledger_of_the_first_format_keeps_its_runs(tmp_path: Path) -> None:
     database.close()
     assert [(entry.status, entry.attempts, entry.started) for entry in read_records(path)] == [("done", 1, None)] * 3
     with Ledger(path) as ledger, LocalExecutor(1) as executor:
-        runs = run(
-            models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor, context={"version": "7"}
-        )  # fmt: skip
+        runs = run(models.parabola, X, names=("a", "b"), ledger=ledger, executor=executor,
+            context={"version": "7"})  # fmt: skip
     assert runs.reused_count == 3
     assert [entry.attempts for entry in runs.records] == [1, 1, 1]
 
@@ -197,9 +186,7 @@ def test_runs_as_csv(tmp_path: Path) -> None:
     lines = text.getvalue().splitlines()
     titles = lines[0].split(",")
     assert titles[-5:] == ["input:a", "input:b", "output:depth", "output:height", "draw:seed"]
-    rows = sorted(
-        (dict(zip(titles, line.split(","), strict=True)) for line in lines[1:]), key=lambda row: row["input:a"]
-    )
+    rows = sorted((dict(zip(titles, line.split(","), strict=True)) for line in lines[1:]), key=lambda a: a["input:a"])
     assert [(row["input:a"], row["outcome"], row["output:height"], row["output:depth"]) for row in rows] == [
         ("1.0", "captured", "", "0.1"), ("2.0", "clear", "4.5", ""), ("3.0", "clear", "9.5", "")
     ]  # fmt: skip
@@ -215,8 +202,7 @@ def test_what_a_tally_tells(tmp_path: Path) -> None:
     state = ledger_tally(read_records(tmp_path / "runs.sqlite"), began="2000-01-01T00:00:00+00:00")
     assert (state.total, state.done, state.failed, state.running, state.reused) == (3, 2, 1, 0, 0)
     assert state.spreads["height"].mean == 5.5
-    assert state.spreads["height"].std == pytest.approx(np.std([1.5, 9.5], ddof=1))
-    assert state.time_left == 0.0
+    assert (state.spreads["height"].std, state.time_left) == (pytest.approx(np.std([1.5, 9.5], ddof=1)), 0.0)
     assert state.sentence().startswith("3 runs: 2 done, 0 running, 1 failed, ")
 
 
@@ -276,9 +262,7 @@ def test_a_disk_that_is_full_is_one_sentence_and_spoils_nothing(tmp_path: Path) 
     path = tmp_path / "runs.sqlite"
     folder = str(Path(models.__file__).parent)
     code = f"import sys; sys.path.insert(0, {folder!r})\n{FULL_DISK}"
-    full = subprocess.run(
-        [sys.executable, "-c", code, str(path), "200000"], capture_output=True, text=True, check=False
-    )
+    full = subprocess.run([sys.executable, "-c", code, path, "200000"], capture_output=True, text=True, check=False)
     assert full.returncode == 1
     assert "OSError: " in full.stderr
     assert "runs.sqlite cannot be written (" in full.stderr
@@ -293,3 +277,77 @@ def test_a_disk_that_is_full_is_one_sentence_and_spoils_nothing(tmp_path: Path) 
         runs = run(models.parabola, x, names=("a", "b"), ledger=ledger, executor=executor)
     assert runs.reused_count == kept
     assert runs.outputs(["height"])[:, 0].tolist() == (x[:, 0] ** 2 + 1).tolist()
+
+
+UNITS = {"grain.young_modulus": "Pa", "grain.friction": "-", "height": "m"}
+REASON = "RuntimeError: the program ended with exit code 3; its last words: the overlap grew without bound"
+
+
+@pytest.fixture
+def records(tmp_path: Path) -> list[Record]:
+    """Two runs that differ in two of three inputs, the second failed."""
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        for key, young, friction in (("first", 1e6, 0.5), ("second", 3.16228e7, 0.25)):
+            inputs = {"grain.young_modulus": young, "grain.density": 2500.0, "grain.friction": friction}
+            ledger.queue([(key, inputs, 1, 0)], "7")
+            failed = {"status": "failed", "reason": REASON, "wall_s": 12.0}
+            done = {"status": "done", "outcome": "clear", "outputs": {"height": 0.1}, "wall_s": 0.04321}
+            ledger.finish(key, done if key == "first" else failed)
+    return read_records(tmp_path / "runs.sqlite")
+
+
+def test_runs_are_told_with_the_inputs_that_differ_and_their_units(records: list[Record]) -> None:
+    assert run_lines(records, UNITS, None) == [
+        "                                 grain     grain",
+        "                   wall  young_modulus  friction",
+        "key     status      [s]           [Pa]       [-]  outcome or reason",
+        "first   done    0.04321          1e+06       0.5  clear",
+        f"second  failed       12      3.162e+07      0.25  {REASON}",
+    ]
+
+
+def test_a_table_fits_its_terminal_and_names_what_it_leaves_out(records: list[Record]) -> None:
+    wide = run_lines(records, UNITS, 90)
+    assert max(map(len, wide)) == 90
+    assert wide[-1].endswith("...")
+    narrow = run_lines(records, UNITS, 66)
+    assert "friction" not in "".join(narrow[:-1])
+    assert "grain.friction" in narrow[-1]
+    assert "--csv" in narrow[-1]
+    heads = {"height": ("rebound", "height"), "grain.friction": ("", "friction"), "grain.density": ("", "the same")}
+    shown = run_lines(records, UNITS, 72, heads)
+    assert [line.split() for line in shown[:4]] == [
+        ["rebound"], ["wall", "height", "friction"], ["key", "status", "[s]", "[m]", "[-]", "outcome", "or", "reason"],
+        ["first", "done", "0.04321", "0.1", "0.5", "clear"],
+    ]  # fmt: skip
+    assert shown[-1].startswith("Differ too: grain.young_modulus")
+    assert max(map(len, shown)) <= 72
+    assert max(map(len, narrow)) <= 66
+    none = run_lines(records, UNITS, 40)
+    assert none[0].split() == ["wall"]
+    assert " ".join(none[-2:]).startswith("Differ too: grain.young_modulus, grain.friction")
+    assert max(map(len, none[-2:])) <= 40
+
+
+def test_a_ledger_without_runs_is_a_head_alone() -> None:
+    assert run_lines([], {}, 80) == ["             wall", "key  status   [s]  outcome or reason"]
+
+
+def test_names_without_a_unit_stand_alone_in_csv(records: list[Record]) -> None:
+    text = io.StringIO()
+    write_csv(records, text, UNITS)
+    titles = next(csv.reader(io.StringIO(text.getvalue())))
+    assert titles[-4:] == ["input:grain.young_modulus [Pa]", "input:grain.density", "input:grain.friction [-]",
+        "output:height [m]"]  # fmt: skip
+
+
+def test_names_and_draws_of_a_program_enter_the_csv_as_plain_text(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        ledger.queue([("first", {"a": 1.0}, 1, 0)], "7")
+        outputs, draws = {"\x1b[31mheight\ud800": 1.0}, {"licence": "\x1b]0;title\x07B"}
+        ledger.finish("first", {"status": "done", "outcome": "clear", "outputs": outputs, "draws": draws})
+    text = io.StringIO()
+    write_csv(read_records(tmp_path / "runs.sqlite"), text)
+    (row,) = csv.DictReader(io.StringIO(text.getvalue()))
+    assert (row["output:height "], row["draw:licence"]) == ("1.0", "B")
+    assert text.getvalue().isascii()

@@ -1,7 +1,8 @@
-"""Campaigns: computed once, kept, reproducible, undisturbed by runs that fail."""
+"""Campaigns and chains of runs: computed once, kept, reproducible, undisturbed by runs that fail."""
 
 import sqlite3
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,20 @@ import campaign_models as models
 import numpy as np
 import pytest
 
-from lithobrake.campaign import Ledger, LocalExecutor, RunOptions, Runs, Tally, run
+from lithobrake.campaign import (
+    Ledger,
+    LocalExecutor,
+    Record,
+    RunOptions,
+    Runs,
+    Tally,
+    campaign_began,
+    read_records,
+    run,
+    run_chains,
+    run_key,
+    run_seed,
+)
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [1.0, 0.5]])
 
@@ -35,8 +49,7 @@ def campaign(path: Path, model: Callable[..., Any], executor: Executor, x: np.nd
 
 def test_rows_come_back_in_order_and_a_repeated_row_is_one_run(tmp_path: Path) -> None:
     here = HereExecutor()
-    runs = campaign(tmp_path, models.parabola, here)
-    assert runs.outputs(["height"])[:, 0].tolist() == [1.5, 4.5, 9.5, 1.5]
+    assert campaign(tmp_path, models.parabola, here).outputs(["height"])[:, 0].tolist() == [1.5, 4.5, 9.5, 1.5]
     assert here.call_count == 3
 
 
@@ -74,8 +87,7 @@ def test_a_run_that_raises_is_recorded_with_its_reason(tmp_path: Path) -> None:
 
 def test_a_captured_lander_is_an_outcome_with_its_other_outputs(tmp_path: Path) -> None:
     runs = campaign(tmp_path, models.captured_below_two, HereExecutor())
-    assert runs.outcomes == ["captured", "clear", "clear", "captured"]
-    assert runs.records[0].status == "done"
+    assert (runs.outcomes, runs.records[0].status) == (["captured", "clear", "clear", "captured"], "done")
     assert runs.outputs(["depth", "height"])[0].tolist() == pytest.approx([0.1, np.nan], nan_ok=True)
 
 
@@ -147,3 +159,121 @@ def test_each_process_is_started_anew_and_has_one_thread(tmp_path: Path) -> None
 def test_a_pool_of_less_than_one_process_is_refused(count: float) -> None:
     with pytest.raises(ValueError, match=r"worker_count is .*at least 1"):
         LocalExecutor(count)  # type: ignore[arg-type]
+
+
+def test_the_order_of_the_inputs_does_not_matter() -> None:
+    assert run_key({"a": 1.0, "b": 2.0}, 1, 0, {}) == run_key({"b": 2.0, "a": 1.0}, 1, 0, {})
+
+
+def test_whatever_determines_a_run_changes_its_key() -> None:
+    keys = {run_key({"a": 1.0}, 1, 0, {}), run_key({"a": 1.0 + 2**-52}, 1, 0, {}), run_key({"b": 1.0}, 1, 0, {}),
+        run_key({"a": 1.0}, 2, 0, {}), run_key({"a": 1.0}, 1, 1, {}),
+        run_key({"a": 1.0}, 1, 0, {"version": "2"})}  # fmt: skip
+    assert len(keys) == 6
+
+
+def test_the_seed_does_not_know_the_version() -> None:
+    assert run_seed({"a": 1.0}, 1, 0) == run_seed({"a": 1.0}, 1, 0)
+    assert len({run_seed({"a": 1.0}, 1, 0), run_seed({"a": 1.0}, 1, 1), run_seed({"a": 1.0}, 2, 0)}) == 3
+    assert 0 <= run_seed({"a": 1.0}, 1, 0) < 2**53
+
+
+def test_keys_and_seeds_are_the_same_on_every_machine() -> None:
+    # Fixed once: a ledger of last year must still be found.
+    assert run_key({"a": 0.1}, 1, 0, {"x": [1]})[:16] == "cf9d2fb58b6476f1"
+    assert run_seed({"a": 0.1}, 1, 0) == 5473392904389371
+
+
+FIRST = [{"chain": float(chain), "value": start} for chain, start in enumerate((27.0, 6.0, 1.0))]
+# Numbers of the Collatz sequence on the way from each first value to 1.
+LENGTHS = [112, 9, 1]
+
+
+def then(chain: int, records: Sequence[Record]) -> Mapping[str, float] | None:
+    last = records[-1]
+    if last.status == "failed" or last.inputs["value"] == 1.0:
+        return None
+    return {"chain": float(chain), "value": last.outputs["value"]}
+
+
+def chains(path: Path, executor: Any, model: Any = models.collatz, **options: Any) -> list[list[Record]]:
+    with Ledger(path / "runs.sqlite") as ledger:
+        return run_chains(model, FIRST, then, ledger=ledger, executor=executor, **options)
+
+
+def what_came_of_chains(made: list[list[Record]]) -> list[list[tuple[Any, ...]]]:
+    """What determines each run, and what came of it."""
+    return [[(one.key, one.status, one.inputs, one.outputs, one.seed) for one in chain] for chain in made]
+
+
+def test_each_chain_goes_on_until_it_ends(tmp_path: Path) -> None:
+    made = chains(tmp_path, HereExecutor())
+    assert [len(one) for one in made] == LENGTHS
+    assert [one[-1].inputs["value"] for one in made] == [1.0] * 3
+    assert [record.inputs["value"] for record in made[1]] == [6.0, 3.0, 10.0, 5.0, 16.0, 8.0, 4.0, 2.0, 1.0]
+
+
+def test_what_the_ledger_has_is_not_made_again(tmp_path: Path) -> None:
+    first = chains(tmp_path, HereExecutor())
+    again = HereExecutor()
+    assert chains(tmp_path, again) == first
+    assert again.call_count == 0
+
+
+class Killed(Exception):
+    """The process ends here."""
+
+
+def test_after_a_kill_only_what_was_under_way_is_made_again(tmp_path: Path) -> None:
+    begun = HereExecutor()
+
+    def kill(state: Any) -> None:
+        if state.ended >= 40:
+            raise Killed
+
+    with pytest.raises(Killed):
+        chains(tmp_path, begun, progress=kill)
+    known = len([one for one in read_records(tmp_path / "runs.sqlite") if one.status == "done"])
+    rest = HereExecutor()
+    assert [len(one) for one in chains(tmp_path, rest)] == LENGTHS
+    assert known >= 40
+    assert known + rest.call_count == sum(LENGTHS)
+
+
+def test_processes_give_the_same_records(tmp_path: Path) -> None:
+    with LocalExecutor(2) as executor:
+        made = chains(tmp_path, executor)
+    (tmp_path / "other").mkdir()
+    assert what_came_of_chains(made) == what_came_of_chains(chains(tmp_path / "other", HereExecutor()))
+
+
+def test_a_failed_run_ends_its_chain_as_then_says(tmp_path: Path) -> None:
+    made = chains(tmp_path, HereExecutor(), models.collatz_without_ten)
+    assert [len(one) for one in made] == [26, 3, 1]
+    assert [one[-1].status for one in made] == ["failed", "failed", "done"]
+    assert [one[-1].inputs["value"] for one in made] == [310.0, 10.0, 1.0]
+
+
+def test_two_chains_with_one_run_are_refused(tmp_path: Path) -> None:
+    with Ledger(tmp_path / "runs.sqlite") as ledger, pytest.raises(ValueError, match="two chains have runs"):
+        run_chains(models.collatz, [FIRST[0], FIRST[0]], then, ledger=ledger, executor=HereExecutor())
+
+
+def test_a_campaign_of_chains_has_one_beginning(tmp_path: Path) -> None:
+    seen: set[str | None] = set()
+
+    def look(state: Any) -> None:
+        time.sleep(0.002)  # a moment is told to the millisecond
+        seen.add(campaign_began(tmp_path / "runs.sqlite"))
+
+    chains(tmp_path, HereExecutor(), progress=look)
+    assert len(seen) == 1
+    assert None not in seen
+
+
+def test_progress_counts_all_runs_so_far(tmp_path: Path) -> None:
+    totals: list[tuple[int, int]] = []
+    chains(tmp_path, HereExecutor(), progress=lambda state: totals.append((state.ended, state.total)))
+    assert totals[0] == (0, 3)
+    assert totals[-1] == (sum(LENGTHS), sum(LENGTHS))
+    assert all(ended <= total for ended, total in totals)

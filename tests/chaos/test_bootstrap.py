@@ -1,19 +1,28 @@
-"""Confidence intervals: how often they hold the truth under noise, for every kind of fit."""
+"""Scatter: how often intervals hold the truth under noise, and scatter as a function of the inputs."""
 
 import numpy as np
 import pytest
 
 from lithobrake.chaos import (
+    Normal,
     Uniform,
     basis_matrix,
+    christoffel,
+    christoffel_weights,
     coefficient_changes,
+    condition_number,
+    d_optimal,
     fit,
+    fit_stochastic,
+    load_stochastic,
+    multi_index_set,
     score_intervals,
     smolyak,
     sobol_estimates,
     sobol_intervals,
     sobol_sequence,
 )
+from lithobrake.emulator import load_stochastic_expansion
 
 CUBE = {name: Uniform(-1.0, 1.0) for name in "abc"}
 # y = a + b / 2 + a c: variances 1/3, 1/12, 1/9.
@@ -28,17 +37,13 @@ def runs(count, seed, scatter=0.2):
     return x, x[:, 0] + 0.5 * x[:, 1] + x[:, 0] * x[:, 2] + noise
 
 
-@pytest.mark.parametrize(
-    ("keywords", "trials"),
-    [
-        ({"degree": 2}, 80),
-        ({"method": "omp", "degree": 3}, 60),
-        ({"method": "lars", "degree": 3}, 60),
-        ({"method": "gaussian_process"}, 40),
-        ({}, 20),
-    ],
-    ids=["least squares", "pursuit", "least angles", "process", "default"],
-)
+@pytest.mark.parametrize(("keywords", "trials"), [
+    ({"degree": 2}, 80),
+    ({"method": "omp", "degree": 3}, 60),
+    ({"method": "lars", "degree": 3}, 60),
+    ({"method": "gaussian_process"}, 40),
+    ({}, 20),
+], ids=["least squares", "pursuit", "least angles", "process", "default"])  # fmt: skip
 def test_sobol_intervals_cover_the_truth_under_noise(keywords, trials):
     covered, width = np.zeros((2, 3)), np.zeros((2, 3))
     for seed in range(trials):
@@ -72,8 +77,7 @@ def test_sobol_intervals_cover_the_truth_under_strong_scatter(keywords):
 def test_no_input_is_ruled_out_by_outputs_that_are_all_scatter():
     x = sobol_sequence(CUBE, 60)
     y = np.random.default_rng(4).normal(size=60)
-    surrogate = fit(CUBE, x, y)
-    bounds = sobol_intervals(surrogate, x, y, count=200)
+    bounds = sobol_intervals(fit(CUBE, x, y), x, y, count=200)
     assert np.all(bounds["total"][0] == 0.0)
     assert np.all(bounds["total"][1] > 0.5)
 
@@ -122,8 +126,7 @@ def test_several_outputs_of_different_methods_and_a_constant_one():
 def test_on_a_grid_only_terms_that_it_determines_are_drawn():
     x = smolyak(CUBE, 4)
     y = x[:, 0] + 0.5 * x[:, 1] + x[:, 0] * x[:, 2] + 0.2 * np.random.default_rng(0).normal(size=len(x))
-    surrogate = fit(CUBE, x, y, method="omp")
-    bounds = sobol_intervals(surrogate, x, y, count=100)
+    bounds = sobol_intervals(fit(CUBE, x, y, method="omp"), x, y, count=100)
     assert np.all(bounds["total"][0] <= TOTAL)
     assert np.all(bounds["total"][1] - bounds["total"][0] < 0.3)
 
@@ -199,3 +202,77 @@ def test_changes_of_coefficients_scatter_as_least_squares_does():
     # Sixty residuals know their own spread to a tenth; they are enlarged to those of left-out points.
     assert changes[..., 0].std(axis=0) == pytest.approx(expected, rel=0.35)
     assert np.all(np.abs(changes[..., 0].mean(axis=0)) < 4.0 * expected / np.sqrt(4000))
+
+
+INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+
+
+def test_mean_scatter_and_joint_samples(tmp_path):
+    x = np.repeat(sobol_sequence(INPUTS, 60), 8, axis=0)
+    generator = np.random.default_rng(0)
+    common = generator.normal(size=len(x))
+    std = 0.1 * np.exp(x[:, 0])
+    first = x[:, 1] + std * common
+    second = 2.0 - x[:, 0] + 0.2 * (0.8 * common + 0.6 * generator.normal(size=len(x)))
+    model = fit_stochastic(INPUTS, x, np.column_stack([first, second]), output_names=["p", "q"])
+    test = sobol_sequence(INPUTS, 50, seed=5)
+    error = model.mean(test) - np.column_stack([test[:, 1], 2.0 - test[:, 0]])
+    # 480 runs average the scatter down to a tenth of it or so, depending on how many terms the fit takes up.
+    assert np.all(np.sqrt(np.mean(error**2, axis=0)) < 0.25 * model.scatter_std(test).mean(axis=0))
+    # The logarithm of a variance from 8 runs has the standard deviation sqrt(trigamma(3.5)) = 0.57; sixty groups and
+    # three to six terms leave 0.57 sqrt(6 / 60) / 2 = 0.09 in the logarithm of the standard deviation.
+    assert np.sqrt(np.mean(np.log(model.scatter_std(test)[:, 0] / (0.1 * np.exp(test[:, 0]))) ** 2)) < 0.18
+    assert model.correlation[0, 1] == pytest.approx(0.8, abs=0.08)
+    many = np.tile(test[:1], (20000, 1))
+    drawn = model.sample(many, seed=3)
+    assert np.allclose(drawn.std(axis=0), model.scatter_std(test[:1])[0], rtol=0.03)
+    assert np.corrcoef(drawn.T)[0, 1] == pytest.approx(model.correlation[0, 1], abs=0.02)
+    with pytest.raises(ValueError, match="seed is 'x'"):
+        model.sample(test, seed="x")
+    model.save(tmp_path / "model.json")
+    with pytest.raises(
+        ValueError, match="not a lithobrake stochastic expansion, but a lithobrake stochastic surrogate"
+    ):
+        load_stochastic_expansion(tmp_path / "model.json")
+    assert np.array_equal(load_stochastic(tmp_path / "model.json").sample(test, seed=8), model.sample(test, seed=8))
+
+
+def test_without_repeats_or_scatter_it_is_refused():
+    x = sobol_sequence(INPUTS, 20)
+    with pytest.raises(ValueError, match="repeat"):
+        fit_stochastic(INPUTS, x, x[:, 0])
+    twice = np.repeat(x, 2, axis=0)
+    with pytest.raises(ValueError, match="no scatter"):
+        fit_stochastic(INPUTS, twice, twice[:, 0])
+
+
+def test_weighted_christoffel_design_is_well_conditioned():
+    inputs = {"a": Normal(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+    indices = multi_index_set(2, 8)
+    x = christoffel(inputs, 3 * len(indices), degree=8, seed=1)
+    weights = christoffel_weights(inputs, x, indices)
+    assert condition_number(inputs, x, indices, weights=weights) < 8.0
+    assert condition_number(inputs, x, indices, weights=weights) < 0.1 * condition_number(
+        inputs, sobol_sequence(inputs, 3 * len(indices)), indices
+    )
+    y = np.exp(0.3 * x[:, 0]) * np.sin(2.0 * x[:, 1])
+    surrogate = fit(inputs, x, y, degree=8, weights=weights)
+    test = sobol_sequence(inputs, 500, seed=9)
+    assert surrogate.score(test, np.exp(0.3 * test[:, 0]) * np.sin(2.0 * test[:, 1]))["y"]["rrmse"] < 1e-5
+
+
+def test_added_points_mend_an_existing_design():
+    indices = multi_index_set(2, 4)
+    half = sobol_sequence({"a": Uniform(0.0, 0.5), "b": Uniform(0.0, 0.5)}, 15)
+    added = d_optimal(INPUTS, 10, degree=4, existing=half)
+    assert added.shape == (10, 2)
+    assert condition_number(INPUTS, np.vstack([half, added]), indices) < 0.05 * condition_number(INPUTS, half, indices)
+
+
+def test_d_optimal_chooses_among_given_candidates_once():
+    candidates = sobol_sequence(INPUTS, 40)
+    chosen = d_optimal(INPUTS, 12, degree=2, candidates=candidates)
+    assert len(np.unique(chosen, axis=0)) == 12
+    assert all((candidates == row).all(axis=1).any() for row in chosen)
+    with pytest.raises(ValueError, match="candidates"):
+        d_optimal(INPUTS, 41, degree=2, candidates=candidates)

@@ -79,18 +79,14 @@ def spoil_by_loop(file: Path) -> None:
     file.symlink_to(file)
 
 
-@pytest.mark.parametrize(
-    ("spoil", "word"),
-    [
-        (lambda file: file.write_bytes(file.read_bytes()[:-1000]), "is damaged"),
-        (lambda file: file.write_bytes(b""), "is damaged"),
-        (lambda file: file.write_bytes(b"\0" * 5000), "is damaged"),
-        (spoil_by_another, "is damaged"),
-        (lambda file: file.chmod(0o666), "another user"),
-        (spoil_by_loop, "cannot be read"),
-    ],
-    ids=["truncated", "empty", "garbage", "another's", "open to all", "unreadable"],
-)
+@pytest.mark.parametrize(("spoil", "word"), [
+    (lambda file: file.write_bytes(file.read_bytes()[:-1000]), "is damaged"),
+    (lambda file: file.write_bytes(b""), "is damaged"),
+    (lambda file: file.write_bytes(b"\0" * 5000), "is damaged"),
+    (spoil_by_another, "is damaged"),
+    (lambda file: file.chmod(0o666), "another user"),
+    (spoil_by_loop, "cannot be read"),
+], ids=["truncated", "empty", "garbage", "another's", "open to all", "unreadable"])  # fmt: skip
 def test_damaged_kernel_is_made_again(cache, caplog, spoil: Callable[[Path], Any], word: str):
     assert rotation() == TURNED
     (file,) = kept(cache)
@@ -112,9 +108,7 @@ def refuse_owner(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def refuse_mode(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = compiled.disk_cache("dem").folder
-    assert folder is not None
-    folder.chmod(0o777)
+    compiled.disk_cache("dem").folder.chmod(0o777)
 
 
 def refuse_place(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -133,16 +127,13 @@ def refuse_all(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(disk_cache, "atomic_path", full)
 
 
-@pytest.mark.parametrize(
-    ("refuse", "word"),
-    [
-        (refuse_owner, "another user"),
-        (refuse_mode, "can be written by others"),
-        (refuse_place, "no folder for a cache can be made"),
-        (refuse_writing, "cannot be written, so"),
-        (refuse_all, "No space left on device"),
-    ],
-)
+@pytest.mark.parametrize(("refuse", "word"), [
+    (refuse_owner, "another user"),
+    (refuse_mode, "can be written by others"),
+    (refuse_place, "no folder for a cache can be made"),
+    (refuse_writing, "cannot be written, so"),
+    (refuse_all, "No space left on device"),
+])  # fmt: skip
 def test_without_a_trusted_cache_kernels_are_compiled_each_time(cache, monkeypatch, caplog, refuse, word):
     refuse(cache, monkeypatch)
     package = Path(compiled.__file__).parent
@@ -214,17 +205,13 @@ def test_processes_that_start_together_compile_once(tmp_path):
     environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path)}
 
     def process() -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [sys.executable, "-c", TURN], env=environment, text=True,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        )  # fmt: skip
+        return subprocess.Popen([sys.executable, "-c", TURN], env=environment, text=True, stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
 
     together = [process() for _ in range(3)]
     for one in together:
-        assert one.stdout is not None
         assert one.stdout.readline() == "ready\n"
     for one in together:
-        assert one.stdin is not None
         one.stdin.write("go\n")
         one.stdin.flush()
     told = [one.communicate() for one in together]

@@ -1,11 +1,14 @@
-"""What is slow beside the watched body and out of its reach stands still, and loses nothing."""
+"""What is slow and out of reach stands still and loses nothing; the agenda and the cells of steps of their own."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lithobrake.dem import Material, Sphere, World
+from lithobrake.compilation.compiled import large_kernel
+from lithobrake.dem import Box, Material, Sphere, World
+from lithobrake.dem.local_stepping import cells
+from lithobrake.dem.local_stepping.agenda import Agenda, new_agenda, put_on, take_off
 
 HARD = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restitution=1.0, friction=0.0)
 ROUGH = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restitution=0.5, friction=0.5)
@@ -33,10 +36,7 @@ def heap() -> World:
 
 
 def held(world: World) -> np.ndarray:
-    """Which bodies are held."""
-    local = world._state.local
-    assert local is not None
-    return local.flight.held
+    return world._state.local.flight.held
 
 
 def test_a_blow_frees_what_it_reaches_and_keeps_its_momentum() -> None:
@@ -157,9 +157,78 @@ def test_common_steps_let_all_go() -> None:
     world.run_locally(0.1, 15.0, held_speed=0.005)
     assert held(world).any()
     flight = world._state.local.flight if world._state.local is not None else None
-    assert flight is not None
     going, before = flight.held_velocity[1:, 2].copy(), world.energy()["total"]
     world.time_step = world.shortest_contact(0.1) / 500.0
     world.run(steps=1)
     assert world.velocity[1:, 2] == pytest.approx(going, abs=2.0 * 1e-3 * world.time_step)
     assert world.energy()["total"] == pytest.approx(before, rel=1e-6)
+
+
+@large_kernel
+def do(agenda: Agenda, item: int, time: float) -> None:
+    if time >= 0.0:
+        put_on(agenda, item, time)
+    else:
+        take_off(agenda, item)
+
+
+def test_items_come_in_the_order_of_their_times_whatever_came_before() -> None:
+    generator = np.random.default_rng(4)
+    agenda, expected = new_agenda(40), {}
+    for item, at in zip(generator.integers(40, size=3000).tolist(), generator.integers(-4, 12, size=3000), strict=True):
+        do(agenda, item, float(at))
+        if at >= 0:
+            expected[item] = float(at)
+        else:
+            expected.pop(item, None)
+        assert agenda.size[0] == len(expected)
+        if expected:
+            assert agenda.heap[0] == min(expected, key=lambda one: (expected[one], one))
+    while expected:
+        first = int(agenda.heap[0])
+        assert first == min(expected, key=lambda one: (expected[one], one))
+        do(agenda, first, -1.0)
+        del expected[first]
+    assert agenda.size[0] == 0
+
+
+ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+
+
+def flock(spread: float) -> World:
+    """Spheres of three sizes and a wide slab that fly through each other in all directions over a floor."""
+    generator = np.random.default_rng(5)
+    world = World(gravity=(0.0, 0.0, -0.5))
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROCK)
+    places = np.stack(np.meshgrid(*3 * [np.arange(6)], indexing="ij"), axis=-1).reshape(-1, 3)
+    for place in places:
+        radius = float(generator.choice([0.02, 0.03, 0.04]))
+        world.add_body(Sphere(radius), ROCK, 0.1 * place + (0.0, 0.0, 0.05), generator.normal(scale=spread, size=3))
+    world.add_body(Box((0.6, 0.6, 0.05)), ROCK, (0.25, 0.25, 0.8), (0.0, 0.0, -0.5))
+    return world
+
+
+def test_the_same_motion_as_with_one_cell_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def motion() -> tuple[np.ndarray, int]:
+        world = flock(0.3)
+        world.run_locally(0.3, 15.0)
+        return world.position.copy(), len(world._state.local.cells.first)
+
+    many = motion()
+    monkeypatch.setattr(cells, "MOST_CELLS", 1.0 / 217.0)
+    one = motion()
+    assert many[1] > 100
+    assert one[1] == 1
+    # Pairs listed in another order are looked at in another order where they are due at once.
+    assert many[0] == pytest.approx(one[0], abs=1e-9)
+
+
+def test_what_flies_far_beyond_the_grid_still_meets() -> None:
+    world = World()
+    world.add_body(Sphere(0.05), ROCK, (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    world.add_body(Sphere(0.05), ROCK, (0.3, 0.0, 0.0), (0.5, 0.0, 0.0))
+    world.add_body(Sphere(0.05), ROCK, (0.0, 0.3, 0.0))
+    # They meet at x = 0.5, beyond the grid, which ends where the bodies stood.
+    world.run_locally(1.0, 15.0)
+    assert world.velocity[1, 0] > world.velocity[0, 0]
+    assert world.velocity[:2, 0].sum() == pytest.approx(1.5, rel=1e-12)

@@ -10,10 +10,8 @@ import pytest
 
 DEM = Path(__file__).parents[2] / "lithobrake" / "dem"
 # The order of arrays, after the pair and before all else.
-ORDER = (
-    "System", "Bodies", "Cores", "Planes", "Pairs", "Laws", "Step",
-    "Simplex", "TurnedFeatures", "Patch", "Scratch", "Reactions", "Partition",
-)  # fmt: skip
+ORDER = ("System", "Bodies", "Cores", "Planes", "Pairs", "Laws", "Step", "Simplex", "TurnedFeatures", "Patch",
+    "Scratch", "Reactions", "Partition")  # fmt: skip
 # What these functions write is their first argument.
 WRITERS = ("put", "add")
 

@@ -26,7 +26,6 @@ class Block:
         return self.remark.startswith("not run: ")
 
     def __str__(self) -> str:
-        """Say where it stands."""
         return f"{self.page.relative_to(ROOT)}:{self.line}"
 
 

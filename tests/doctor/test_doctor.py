@@ -59,8 +59,7 @@ def test_landings_and_flights_are_timed_beside_the_reference_machine(monkeypatch
     from lithobrake.doctor import speed
 
     monkeypatch.setattr(speed, "FLIGHTS", 20)
-    shown = RUNNER.invoke(app, ["doctor", "--json"])
-    found = json.loads(shown.stdout)
+    found = json.loads(RUNNER.invoke(app, ["doctor", "--json"]).stdout)
     assert [one["what"].split()[0] for one in found["speeds"]] == ["steps", "landings", "flights"]
     assert all(math.isfinite(one["here"]) and one["here"] > 0.0 < one["reference"] for one in found["speeds"])
     assert set(found["machine"]["cache"]["is_compiled"]) == {"soft-surface engine", "flights"}

@@ -28,10 +28,8 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1, keepdims=True)
 def fitted(truth: Truth, run_count: int, bed_count: int, seed: int) -> emulator.Emulator:
     """An emulator of one synthetic study, fitted once for all tests that ask for it; the azimuth rides."""
     x, y, outcome, bed = truth.study(run_count, bed_count, seed)
-    return emulator.fit(
-        INPUTS, x, y, groups=bed, outcome=outcome, outcomes=OUTCOMES, lower=LOWER, upper=UPPER,
-        riders=("azimuth_out",), output_names=OUTPUT_NAMES,
-    )  # fmt: skip
+    return emulator.fit(INPUTS, x, y, groups=bed, outcome=outcome, outcomes=OUTCOMES, lower=LOWER, upper=UPPER,
+        riders=("azimuth_out",), output_names=OUTPUT_NAMES)  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,20 @@
-"""What an emulator makes of laws that bend, branch or scatter as they like, against what they are."""
+"""What an emulator makes of laws that bend, branch or scatter as they like; its mean law, and its ridges."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import special
 
 from lithobrake import emulator
-from lithobrake.chaos import Uniform, latin_hypercube
+from lithobrake.chaos import Normal, Uniform, latin_hypercube, sobol_sequence
+from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, found_inputs, terms_up_to
+from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
 
 COUNT = 300
 
 
 def inputs_of(count: int) -> dict[str, Uniform]:
-    """So many inputs between -1 and 1."""
     return {f"x{k}": Uniform(-1.0, 1.0) for k in range(count)}
 
 
@@ -59,8 +62,7 @@ def test_a_smooth_solver_without_scatter_is_reproduced() -> None:
     def law(points: np.ndarray) -> np.ndarray:
         return np.asarray(np.sin(3.0 * points[:, 0]) + points[:, 1] ** 2 * points[:, 2])
 
-    model = emulator.fit(inputs, x, law(x))
-    drawn = model.sample(fresh, 50)[:, :, 0]
+    drawn = emulator.fit(inputs, x, law(x)).sample(fresh, 50)[:, :, 0]
     assert np.sqrt(np.mean((drawn - law(fresh)[:, None]) ** 2)) < 1e-3 * law(fresh).std()
 
 
@@ -77,8 +79,7 @@ def test_branches_that_cross_are_as_near_as_a_published_expansion_makes_them() -
     truth, levels = drawn(points, 2000, np.random.default_rng(8)), (np.arange(500) + 0.5) / 500
     for seed in range(4):
         x = latin_hypercube(inputs, 400, seed=seed)
-        model = emulator.fit(inputs, x, drawn(x, 1, np.random.default_rng(seed)))
-        found = model.sample(points, 2000)[:, :, 0]
+        found = emulator.fit(inputs, x, drawn(x, 1, np.random.default_rng(seed))).sample(points, 2000)[:, :, 0]
         gaps = np.quantile(found, levels, axis=1) - np.quantile(truth, levels, axis=1)
         errors.append(np.mean(gaps**2) / truth.var())
     assert np.median(errors) < 0.03
@@ -106,3 +107,144 @@ def test_an_emulator_does_not_lose_to_its_runs() -> None:
         passed += emulator.fit(inputs, x, random.gamma(2.0, size=100)).follows_inputs
     # By luck a gain is above its error in 16 of 100; more than two of six with probability 0.06.
     assert passed <= 2
+
+
+MEAN_LAW_INPUTS = {"a": Uniform(0.0, 2.0), "b": Normal(0.0, 1.0), "c": Uniform(-1.0, 1.0)}
+
+
+def fitted(slope: float, noise: float, count: int, seed: int) -> emulator.Emulator:
+    """An emulator of y = 1 + slope (a - 1 + b / 3 + b (a - 1)) + noise."""
+    rng = np.random.default_rng(seed)
+    x = sobol_sequence(MEAN_LAW_INPUTS, count, seed=seed)
+    law = 1.0 + slope * (x[:, 0] - 1.0 + x[:, 1] / 3.0 + x[:, 1] * (x[:, 0] - 1.0))
+    return emulator.fit(MEAN_LAW_INPUTS, x, law + noise * rng.standard_normal(count))
+
+
+def test_indices_are_those_of_the_polynomial() -> None:
+    found = fitted(slope=1.0, noise=0.0, count=200, seed=0).mean_law()
+    # Variances of a, b / 3 and their product: 1/3, 1/9 and 1/3.
+    assert (found.mean[0], found.variance[0]) == (pytest.approx(1.0, abs=1e-9), pytest.approx(7.0 / 9.0, rel=1e-6))
+    np.testing.assert_allclose(found.sobol_first[:, 0], [3.0 / 7.0, 1.0 / 7.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(found.sobol_total[:, 0], [6.0 / 7.0, 4.0 / 7.0, 0.0], atol=1e-6)
+
+
+@pytest.mark.parametrize("explained", [0.1, 0.3])
+def test_the_share_of_the_inputs_is_freed_of_noise(explained: float) -> None:
+    noise = np.sqrt(7.0 / 9.0 * (1.0 / explained - 1.0))
+    shares = [fitted(1.0, noise, 240, seed).mean_law().share[0] for seed in range(10)]
+    # Ten studies with a standard deviation of about 0.05 each.
+    assert abs(np.mean(shares) - explained) < 2.0 * 0.05 / np.sqrt(10.0)
+
+
+def test_inputs_are_found_where_they_count() -> None:
+    assert fitted(slope=1.0, noise=1.0, count=200, seed=1).found_inputs() == {"a": True, "b": True, "c": False}
+
+
+def test_without_effects_hardly_any_study_finds_one() -> None:
+    # 90 % of studies find none; of 20, with probability 0.989, no more than 5 do. The test needs no emulator.
+    found = []
+    for seed in range(20):
+        y = np.random.default_rng(seed).standard_normal((100, 1))
+        found.append(
+            found_inputs(MEAN_LAW_INPUTS, sobol_sequence(MEAN_LAW_INPUTS, 100, seed=seed), y, 0.9, seed=0).any()
+        )
+    assert sum(found) <= 5
+
+
+def test_a_level_must_be_a_probability() -> None:
+    with pytest.raises(ValueError, match=r"level is 90"):
+        fitted(1.0, 1.0, 60, 0).found_inputs(level=90)
+
+
+INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0), "c": Uniform(0.0, 1.0)}
+TERMS = terms_up_to(INPUTS, 2)
+RUN_COUNT = 120
+MATRIX = TERMS.matrix(sobol_sequence(INPUTS, RUN_COUNT, seed=3))
+NOISE = np.random.default_rng(2).standard_normal(RUN_COUNT)
+DESIGN = TermTable(TERMS.indices, MATRIX, np.ones(RUN_COUNT))
+LADDER = (Rung((1.0, 0.0, 1.0), (0.4, 0.4, 0.4), 2, 0.1, 0.7), Rung((0.0, 1.0, 0.0), (0.4, 0.4, 0.4), 1, 0.03, 0.2))
+
+
+def test_linear_terms_come_first_in_the_order_of_the_inputs() -> None:
+    np.testing.assert_array_equal(TERMS.indices[:3], np.eye(3))
+    assert len(TERMS.indices) == 9
+
+
+def test_a_rung_is_a_ridge_on_its_own_terms() -> None:
+    rung = Rung((1.0, 0.0, 0.7), (0.5, 0.5, 0.3), 2, 0.1)
+    coefficients = Smoother(DESIGN, (rung,)).coefficients(NOISE)
+    factors = rung.factors(TERMS.indices)
+    assert ((factors > 0.0) == (TERMS.indices[:, 1] == 0)).all()
+    # The same by the penalty on each coefficient: a factor f divides it by f squared.
+    kept = factors > 0.0
+    centred = MATRIX[:, kept] - MATRIX[:, kept].mean(axis=0)
+    penalty = np.diag(0.1 * RUN_COUNT / factors[kept] ** 2)
+    expected = np.linalg.solve(centred.T @ centred + penalty, centred.T @ (NOISE - NOISE.mean()))
+    np.testing.assert_allclose(coefficients[1:][kept], expected, rtol=1e-9)
+    assert (coefficients[1:][~kept] == 0.0).all()
+
+
+def test_leave_one_out_residuals_are_those_of_fits_without_the_run() -> None:
+    rung = Rung((1.0, 1.0, 1.0), (0.4, 0.4, 0.4), 2, 1e-9)
+    residual = Smoother(DESIGN, (rung,)).left_out(NOISE)
+    for run in (0, 17, 80):
+        rest = np.arange(RUN_COUNT) != run
+        law = Smoother(DESIGN.of(rest), (rung,)).coefficients(NOISE[rest])
+        assert residual[run] == pytest.approx(NOISE[run] - law[0] - MATRIX[run] @ law[1:], rel=1e-6)
+
+
+def test_an_average_is_the_sum_of_its_rungs() -> None:
+    whole = Smoother(DESIGN, LADDER).coefficients(NOISE)[1:]
+    parts = [Smoother(DESIGN, (replace(rung, weight=1.0),)).coefficients(NOISE)[1:] for rung in LADDER]
+    np.testing.assert_allclose(whole, 0.7 * parts[0] + 0.2 * parts[1], rtol=1e-9, atol=1e-12)
+
+
+def test_weights_count_a_run_several_times() -> None:
+    weights = np.random.default_rng(0).integers(0, 3, RUN_COUNT)
+    repeated = np.repeat(np.arange(RUN_COUNT), weights)
+    by_weight = Smoother(TermTable(TERMS.indices, MATRIX, weights.astype(float)), LADDER).coefficients(NOISE)
+    copies = TermTable(TERMS.indices, MATRIX[repeated], np.ones(len(repeated)))
+    np.testing.assert_allclose(by_weight, Smoother(copies, LADDER).coefficients(NOISE[repeated]), rtol=1e-9)
+
+
+def test_a_strong_law_is_found_with_its_inputs_and_degree() -> None:
+    linear, curved = MATRIX[:, 0] + 0.1 * NOISE, MATRIX[:, 0] + MATRIX[:, 3] + 0.1 * NOISE
+    for target, degree in ((linear, 1), (curved, 2)):
+        ladder = best_ladder(DESIGN, target)
+        assert sum(rung.weight for rung in ladder if rung.amplitudes[0] > 0.0) == pytest.approx(1.0, abs=1e-6)
+        assert abs(Smoother(DESIGN, ladder).coefficients(target)[1] - 1.0) < 0.05
+        assert sum(rung.weight for rung in ladder if rung.degree >= degree) > 0.5
+
+
+def test_noise_leaves_hardly_a_law() -> None:
+    explained = []
+    for seed in range(20):
+        noise = np.random.default_rng(seed).standard_normal(RUN_COUNT)
+        explained.append((Smoother(DESIGN, best_ladder(DESIGN, noise)).coefficients(noise)[1:] ** 2).sum())
+    # Least squares on the nine terms would explain 9 / 120 of the noise.
+    assert np.mean(explained) < 0.02
+
+
+def test_a_constant_has_no_rungs() -> None:
+    assert best_ladder(DESIGN, np.full(RUN_COUNT, 7.0)) == ()
+
+
+def test_a_law_that_bends_is_followed_as_far_as_it_bends() -> None:
+    """Of sin(4 a) among three inputs a ridge of two degrees leaves 0.99 of the variance, of 300 runs."""
+    terms = candidate_terms(INPUTS)
+    x, fresh = sobol_sequence(INPUTS, 300, seed=1), sobol_sequence(INPUTS, 500, seed=2)
+    wave = np.sin(8.0 * x[:, 0] - 4.0) + 0.1 * np.random.default_rng(0).standard_normal(300)
+    design = TermTable(terms.indices, terms.matrix(x), np.ones(300))
+    coefficients = Smoother(design, best_ladder(design, wave)).coefficients(wave)
+    truth = np.sin(8.0 * fresh[:, 0] - 4.0)
+    error = coefficients[0] + terms.matrix(fresh) @ coefficients[1:] - truth
+    # Fifteen terms of the one input that counts would leave 15 / 300 of the scatter's hundredth.
+    assert np.mean(error**2) < 0.002 * np.var(truth)
+
+
+@pytest.mark.parametrize("count", [1, 3, 5, 12, 14, 30])
+def test_terms_are_no_more_than_runs_can_tell_apart(count: int) -> None:
+    terms = candidate_terms({f"input {k}": Uniform(0.0, 1.0) for k in range(count)})
+    np.testing.assert_array_equal(terms.indices[:count], np.eye(count))
+    assert len(terms.indices) <= MOST_TERMS
+    assert len(np.unique(terms.indices, axis=0)) == len(terms.indices)

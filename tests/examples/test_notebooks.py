@@ -1,15 +1,17 @@
-"""The notebooks of examples/ as scripts, as a reader runs them, and what they print."""
+"""The notebooks and the slide of examples/ as scripts, as a reader runs them, and what they give."""
 
 import io
 import os
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 from contextlib import chdir, redirect_stdout
 from pathlib import Path
 from unittest.mock import patch
 
+import matplotlib.pyplot as plt
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +34,6 @@ def printed(name: str, folder: Path, has_workers: bool = False) -> str:
 
 
 def number(pattern: str, text: str) -> float:
-    """The number that a pattern has in brackets."""
     found = re.search(pattern, text)
     assert found, f"{pattern} is not in: {text}"
     return float(found[1])
@@ -46,8 +47,7 @@ def test_a_notebook_is_made_of_cells_that_begin_with_a_title(path: Path) -> None
 
 
 def test_a_first_study_is_run_and_then_read(tmp_path: Path) -> None:
-    said = printed("first_study", tmp_path)
-    assert "24 of 24 landings left the surface." in said
+    assert "24 of 24 landings left the surface." in printed("first_study", tmp_path)
     assert (tmp_path / "runs/first_study/report/index.html").is_file()
     read = printed("reading_a_study", tmp_path)
     assert read.startswith("Table of 24 rows (run): ")
@@ -77,3 +77,14 @@ def test_a_shape_of_ones_own_holds_and_loses_landers(tmp_path: Path) -> None:
     assert said.startswith("224 facets, ")
     assert 1500.0 < number(r"m3, (\d+) kg/m3", said) < 2500.0
     assert 0.0 < number(r"'impact': ([\d.]+)", said) < 1.0
+
+
+def test_a_slide_is_drawn_beside_the_folder_of_a_study(tmp_path: Path) -> None:
+    folder = tmp_path / "mission"
+    shutil.copytree(ROOT / "showcase" / "mission", folder)
+    path = runpy.run_path(str(ROOT / "examples" / "slide.py"))["main"](folder)
+    assert path == tmp_path / "mission_slide.png"
+    picture = plt.imread(path)
+    assert picture.shape[:2] == (1080, 1920)
+    # Words stand on the left, the map on the right: neither half is empty.
+    assert all((half[..., :3] < 0.5).any() for half in (picture[:, :800], picture[:, 800:]))

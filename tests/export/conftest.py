@@ -12,14 +12,13 @@ import export_models
 import lithobrake
 from lithobrake.results import StudyResults
 
-from ..pipeline.journeys.without_emulator import run_without_emulator
+from ..pipeline.journeys.bouncing_lander import run_without_emulator
 from ..quick_studies import quick_studies
 from .delivered import delivered_tables
 
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    """The results of a study on Dimorphos."""
     out = tmp_path_factory.mktemp("export") / "out"
     with quick_studies():
         lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)

@@ -21,8 +21,7 @@ ATTITUDE, RATES = Rotation.from_rotvec(np.radians(40.0) * np.array([0.6, 0.0, 0.
 
 def delivered_states() -> np.ndarray:
     """Times, states along ICRF, attitudes and rates, [count, 14]; every lander at another time."""
-    random = np.random.default_rng(1)
-    off = random.standard_normal((COUNT, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
+    off = np.random.default_rng(1).standard_normal((COUNT, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
     place, velocity = np.split(np.array([5.0, 140.0, 10.0, 0.002, -0.03, 0.001]) + off, 2, axis=1)
     time, period = 100.0 * np.arange(COUNT), np.full(COUNT, SPIN_PERIOD)
     back = np.transpose(icrf_to_body(SiteSection(**POLE), time, period), (0, 2, 1))
@@ -36,7 +35,6 @@ def delivered_tables(folder: Path) -> dict[str, Any]:
     path = folder / "states.csv"
     np.savetxt(path, delivered_states(), fmt="%.17g", delimiter=",", header=TITLES, comments="")
     tables = journey_tables(site=POLE, journey={"count": COUNT, "emulated_count": 0})
-    tables["delivery"] = {
-        "latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "icrf", "epoch": EPOCH, "states": str(path)
-    }  # fmt: skip
+    tables["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "icrf", "epoch": EPOCH,
+        "states": str(path)}  # fmt: skip
     return tables

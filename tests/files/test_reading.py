@@ -1,33 +1,30 @@
-"""Damaged files: whatever is wrong with one, the sentence names it and says what to do."""
+"""Files: damaged ones are named with the remedy, locks, formats, and hashes of the package's own code."""
 
+import ast
 import json
+import os
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
 import pytest
 
-from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading
+from lithobrake.files.atomic import atomic_path, lock_holder, locked
+from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading, source_hash
 
 FORM = {"files": {str: {"key": str}}, "wall_s": {str: NUMBER}, "names": [str]}
 GOOD = {"files": {"a.csv": {"key": "1f"}}, "wall_s": {"bed": 1.5, "fly": 2}, "names": ["a"]}
-DAMAGED = {
-    "nothing": "",
-    "no JSON": "{",
-    "no text": b"\xff\xfe\x00",
-    "a list": "[1, 2]",
-    "a number": "3",
-    "null": "null",
-    "a table is a list": json.dumps(GOOD | {"files": []}),
+DAMAGED = {"nothing": "", "no JSON": "{", "no text": b"\xff\xfe\x00", "a list": "[1, 2]", "a number": "3",
+    "null": "null", "a table is a list": json.dumps(GOOD | {"files": []}),
     "an entry is a number": json.dumps(GOOD | {"files": {"a.csv": 3}}),
     "a name is a number": json.dumps(GOOD | {"names": [3]}),
     "a table is missing": json.dumps({"files": {}, "names": []}),
     "a number of 400 digits": json.dumps(GOOD).replace("1.5", "9" * 400),
     "a number of 5000 digits": json.dumps(GOOD).replace("1.5", "9" * 5000),
     "a number without end": json.dumps(GOOD).replace("1.5", "1e999"),
-    "no number": json.dumps(GOOD).replace("1.5", "NaN"),
-    "3000 brackets": "[" * 3000 + "]" * 3000,
-    "3000 tables": '{"a":' * 3000 + "1" + "}" * 3000,
-}
+    "no number": json.dumps(GOOD).replace("1.5", "NaN"), "3000 brackets": "[" * 3000 + "]" * 3000,
+    "3000 tables": '{"a":' * 3000 + "1" + "}" * 3000}  # fmt: skip
 
 
 def test_what_is_of_the_form_is_read(tmp_path: Path) -> None:
@@ -58,9 +55,8 @@ def test_what_is_not_of_the_form_is_named_by_its_keys() -> None:
 
 
 def test_numbers_are_what_they_were() -> None:
-    assert parsed('{"seed": 9007199254740993, "x": 0.1, "y": -1e-300}', {str: NUMBER}) == {
-        "seed": 9007199254740993, "x": 0.1, "y": -1e-300
-    }  # fmt: skip
+    assert parsed('{"seed": 9007199254740993, "x": 0.1, "y": -1e-300}', {str: NUMBER}) == {"seed": 9007199254740993,
+        "x": 0.1, "y": -1e-300}  # fmt: skip
 
 
 def test_a_truncated_hdf5_file_and_one_without_a_dataset_are_one_sentence(tmp_path: Path) -> None:
@@ -90,3 +86,111 @@ def test_a_sentence_is_said_once(tmp_path: Path) -> None:
     assert said.endswith("; run again")
     assert "outer" not in said
     assert said.count("'int' object is not iterable") == 1
+
+
+def as_notes(path: Path, victim: Path) -> None:
+    path.write_text("notes of mine\n")
+
+
+def as_json(path: Path, victim: Path) -> None:
+    path.write_text('{"process": "mine"}')
+
+
+def as_long_file(path: Path, victim: Path) -> None:
+    path.write_bytes(b" " * 10_000 + b"the end")
+
+
+def as_link(path: Path, victim: Path) -> None:
+    path.symlink_to(victim)
+
+
+def as_hard_link(path: Path, victim: Path) -> None:
+    path.hardlink_to(victim)
+
+
+def as_link_to_nothing(path: Path, victim: Path) -> None:
+    path.symlink_to(victim.with_name("not there"))
+
+
+def as_pipe(path: Path, victim: Path) -> None:
+    os.mkfifo(path)
+
+
+def as_folder(path: Path, victim: Path) -> None:
+    path.mkdir()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
+@pytest.mark.parametrize(
+    "make", [as_notes, as_json, as_long_file, as_link, as_hard_link, as_link_to_nothing, as_pipe, as_folder]
+)
+def test_what_is_no_lock_is_refused_and_left_as_it_is(tmp_path, make):
+    victim, path = tmp_path / "victim.txt", tmp_path / ".lock"
+    victim.write_text("a file outside the folder")
+    make(path, victim)
+    before = path.lstat(), path.read_bytes() if path.is_file() else b""
+    with pytest.raises(ValueError, match=r"\.lock is .*no lock of lithobrake; move it away"), locked(path, "busy"):
+        pass
+    assert victim.read_text() == "a file outside the folder"
+    after = path.lstat(), path.read_bytes() if path.is_file() else b""
+    assert (after[0].st_mtime_ns, after[0].st_mode, after[1]) == (before[0].st_mtime_ns, before[0].st_mode, before[1])
+    assert not (tmp_path / "not there").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
+@pytest.mark.parametrize("content", [b"", b"\0" * 1024, json.dumps({"process": 1, "host": "a"}).ljust(1024).encode()])
+def test_a_lock_that_was_left_behind_is_taken(tmp_path, content):
+    path = tmp_path / ".lock"
+    path.write_bytes(content)
+    with locked(path, "busy") as note:
+        note(stage="bed")
+        holder = lock_holder(path)
+        assert (holder["process"], holder["stage"]) == (os.getpid(), "bed")
+        assert len(path.read_bytes()) == 1024
+    assert lock_holder(path) is None
+
+
+def test_a_folder_is_no_name_for_a_file(tmp_path):
+    with pytest.raises(ValueError, match="is a folder; name a file"), atomic_path(tmp_path) as draft:
+        draft.write_text("never written")
+    assert list(tmp_path.parent.glob(f".{tmp_path.name}*")) == []
+
+
+PACKAGE = Path(__file__).parents[2] / "lithobrake"
+
+
+def written_formats() -> Iterator[str]:
+    """What the package's code assigns to a constant FORMAT, or to the entry "format" of a file."""
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Assign):
+                for target in node.targets:
+                    yield from _formats(target, node.value)
+
+
+def _formats(target: ast.expr, value: ast.expr) -> Iterator[str]:
+    match target, value:
+        case ast.Tuple(elts=targets), ast.Tuple(elts=values) if len(targets) == len(values):
+            for one, other in zip(targets, values, strict=True):
+                yield from _formats(one, other)
+        case (
+            (ast.Name(id="FORMAT") | ast.Subscript(slice=ast.Constant(value="format"))),
+            ast.Constant(value=str(words)),
+        ):
+            yield words
+
+
+def test_no_two_kinds_of_files_have_one_format() -> None:
+    counts = Counter(written_formats())
+    # Expansion, emulator, bed, landing and world at least.
+    assert len(counts) >= 5
+    assert set(counts.values()) == {1}
+
+
+def test_each_part_of_the_code_has_a_hash_of_its_own() -> None:
+    assert source_hash("files") != source_hash("files/reading.py") != source_hash("vocabulary")
+
+
+def test_a_part_that_there_is_not_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"outputs\.py"):
+        source_hash("files", "outputs.py")

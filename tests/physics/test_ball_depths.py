@@ -21,10 +21,8 @@ def lawful(density: float, fall: float, diameter: float = 0.0254, bead: float = 
     depth = 0.0
     for _ in range(100):
         depth = 0.3 * (density / 1500.0) ** 0.5 * diameter ** (2 / 3) * (fall + depth) ** (1 / 3)
-    return {
-        "density": density, "fall": fall, "diameter": diameter, "bulk_density": 1500.0, "bead_size": bead,
-        "deepest": depth - 0.5 * bead, "touch_height": 0.8 * bead,
-    }  # fmt: skip
+    return {"density": density, "fall": fall, "diameter": diameter, "bulk_density": 1500.0, "bead_size": bead,
+        "deepest": depth - 0.5 * bead, "touch_height": 0.8 * bead}  # fmt: skip
 
 
 def twelve(bead: float) -> list[dict[str, float]]:

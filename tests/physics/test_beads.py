@@ -46,10 +46,8 @@ def with_ball(bed, density, speed, diameter, place=(0.0, 0.0), pace=1.0, stiffne
     """A world with a ball just above all beads, on its way down; the ball is the last body."""
     world = box(bed, pace, stiffness)
     start = bed[:, 2].max() + 0.5 * SIZE + 0.5 * diameter
-    world.add_body(
-        Sphere(0.5 * diameter), replace(world.bodies[0].material, density=density), (*place, start),
-        velocity=(0.0, 0.0, -speed * pace),
-    )  # fmt: skip
+    world.add_body(Sphere(0.5 * diameter), replace(world.bodies[0].material, density=density), (*place, start),
+        velocity=(0.0, 0.0, -speed * pace))  # fmt: skip
     return world
 
 
@@ -58,8 +56,7 @@ def test_one_drop_is_every_drop_of_its_similarity(bed):
     pair = [with_ball(bed, 2200.0, 1.0, 0.025, pace=pace) for pace in (1.0, 1.0 / 128.0)]
     for world in pair:
         world.run(steps=1500)
-    assert pair[1].gravity[2] == pytest.approx(-5.988e-4, rel=1e-4)
-    assert pair[1].time == 128.0 * pair[0].time
+    assert (pair[1].gravity[2], pair[1].time) == (pytest.approx(-5.988e-4, rel=1e-4), 128.0 * pair[0].time)
     np.testing.assert_array_equal(pair[0].position, pair[1].position)
     np.testing.assert_array_equal(pair[0].velocity, 128.0 * pair[1].velocity)
 

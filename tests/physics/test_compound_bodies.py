@@ -69,10 +69,8 @@ def test_a_part_that_touches_nothing_changes_no_collision(stepping: str) -> None
     found = []
     for parts in ((), (Part(moved((0.1, 0.1, 0.1), (0.02, 0.0, 0.01)), ROUGH),)):
         world = World((0.0, 0.0, -1.0), 2e-5)
-        world.add_body(
-            Box((0.4, 0.3, 0.2)), ROUGH, (0.0, 0.0, 0.4), (0.3, 0.0, -0.5), SLANTED, (0.2, -0.1, 0.4), mass=10.0,
-            inertia=np.diag([0.2, 0.3, 0.4]), centre_of_mass=(0.0, 0.0, 0.0), parts=parts,
-        )  # fmt: skip
+        world.add_body(Box((0.4, 0.3, 0.2)), ROUGH, (0.0, 0.0, 0.4), (0.3, 0.0, -0.5), SLANTED, (0.2, -0.1, 0.4),
+            mass=10.0, inertia=np.diag([0.2, 0.3, 0.4]), centre_of_mass=(0.0, 0.0, 0.0), parts=parts)  # fmt: skip
         world.add_plane(*FLOOR, ROUGH)
         advance(world, 0.5, stepping, 50.0)
         found.append(np.concatenate([world.position[0], world.orientation[0], world.velocity[0], world.spin[0]]))

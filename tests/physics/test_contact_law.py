@@ -15,10 +15,8 @@ from lithobrake.dem.stepping.time_step_stability import contact_duration
 
 
 def material(restitution=1.0, friction=0.0, poisson_ratio=0.25, young_modulus=1e7):
-    return Material(
-        young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution, friction=friction,
-        density=2500.0,
-    )  # fmt: skip
+    return Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution,
+        friction=friction, density=2500.0)  # fmt: skip
 
 
 def kinetic(world):
@@ -90,9 +88,8 @@ def test_a_heavy_plate_rolls_on_small_balls(ratio, refinement):
     plate = Box((1.0, 1.0, 0.1))
     world = World((0, 0, -1e-3), 0.4e-3 / ratio / refinement)
     for x, y in ((-0.3, -0.3), (0.3, -0.3), (0.0, 0.3)):
-        world.add_body(
-            Sphere(radius), stuff, (x, y, radius), velocity=(0.5 * speed, 0, 0), spin=(0, 0.5 * speed / radius, 0)
-        )  # fmt: skip
+        world.add_body(Sphere(radius), stuff, (x, y, radius), velocity=(0.5 * speed, 0, 0),
+            spin=(0, 0.5 * speed / radius, 0))  # fmt: skip
     world.add_body(plate, stuff, (0, 0, 2.0 * radius + 0.05), velocity=(speed, 0, 0), mass=250.0)
     world.add_plane((0, 0, 0), (0, 0, 1), stuff)
     world.run(duration=0.5)
@@ -170,9 +167,8 @@ def test_box_of_boxes_comes_to_rest():
     stuff = material(0.5, 0.5)
     world = World((0, 0, -9.81), 5e-5)
     for k in range(8):
-        world.add_body(
-            Box((0.1, 0.1, 0.1)), stuff, (0.1002 * (k % 2), 0.1002 * (k // 2 % 2), 0.05 + 0.1 * (k // 4))
-        )  # fmt: skip
+        world.add_body(Box((0.1, 0.1, 0.1)), stuff,
+            (0.1002 * (k % 2), 0.1002 * (k // 2 % 2), 0.05 + 0.1 * (k // 4)))  # fmt: skip
     world.add_plane((0, 0, 0), (0, 0, 1), stuff)
     for axis in (0, 1):
         for sign, place in ((1.0, -0.0502), (-1.0, 0.1504)):

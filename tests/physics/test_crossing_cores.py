@@ -56,13 +56,10 @@ def test_hulls_pressed_into_each_other_part_with_their_energy():
 HALF = math.pi / 8.0  # half of the angle that stands a cube on its edge
 
 
-@pytest.mark.parametrize(
-    ("turns", "touching"),
-    [
-        (((math.cos(HALF), math.sin(HALF), 0, 0), (math.cos(HALF), 0, math.sin(HALF), 0)), "edges"),
-        (((1, 0, 0, 0), (1, 0, 0, 0)), "faces"),
-    ],
-)
+@pytest.mark.parametrize(("turns", "touching"), [
+    (((math.cos(HALF), math.sin(HALF), 0, 0), (math.cos(HALF), 0, math.sin(HALF), 0)), "edges"),
+    (((1, 0, 0, 0), (1, 0, 0, 0)), "faces"),
+])  # fmt: skip
 @pytest.mark.parametrize("depth", [2.0, 3.0, 4.0])
 def test_deep_contacts_are_hertz(turns, touching, depth):
     """Cubes on crossed edges, or flush, at overlaps past the rounding: 2/5 K d^(5/2), though no corner lies inside."""

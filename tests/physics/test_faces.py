@@ -24,8 +24,7 @@ def on_plane(shape, stuff, position, gravity=(0, 0, -9.81), time_step=5e-5, **st
 
 def test_block_slides_to_a_stop():
     """v^2/(2 mu g) = 2.5484 m from 5 m/s at mu = 0.5."""
-    block = Box((0.4, 0.4, 0.05))
-    world = on_plane(block, material(), (0, 0, 0.025), velocity=(5.0, 0, 0))
+    world = on_plane(Box((0.4, 0.4, 0.05)), material(), (0, 0, 0.025), velocity=(5.0, 0, 0))
     world.run(duration=1.3)
     assert world.position[0, 0] == pytest.approx(2.5484, rel=0.005)
     assert abs(world.velocity[0, 0]) < 1e-6
@@ -95,10 +94,8 @@ def test_spun_face_stops_at_the_rate_of_its_friction():
 def test_dropped_cube_keeps_its_energy(tilt):
     """e = 1, mu = 0: kinetic and elastic energy before and after agree to 1e-3."""
     axis, angle = {
-        "face": ((1, 0, 0), 0.0),
-        "edge": ((1, 0, 0), math.pi / 4),
-        "corner": ((1, -1, 0), math.atan(2**0.5)),
-    }[tilt]
+        "face": ((1, 0, 0), 0.0), "edge": ((1, 0, 0), math.pi / 4), "corner": ((1, -1, 0), math.atan(2**0.5)),
+    }[tilt]  # fmt: skip
     unit = np.array(axis) / np.linalg.norm(axis)
     turn = (math.cos(angle / 2), *(math.sin(angle / 2) * unit))
     world = on_plane(
@@ -164,8 +161,7 @@ def gradient_error(first, second, place, turn):
         there = (elastic(first, second, place, turned_by(turn, s * 10 * step * e))[0] for s in (-1, 1))
         slope.append((next(there) - next(there)) / (20 * step))
     error = np.abs(found - slope)
-    arm = np.cbrt(second.volume)
-    return max(error[:3].max(), error[3:].max() / arm) / np.linalg.norm(found[:3])
+    return max(error[:3].max(), error[3:].max() / np.cbrt(second.volume)) / np.linalg.norm(found[:3])
 
 
 def touching(first, second, direction, turn):
@@ -208,8 +204,7 @@ def test_sphere_presses_on_a_face_as_on_a_plane():
     """The face of a box is flat and its contact radius that of its volume: Hertz with 1/R = 1/R1 + 1/R2."""
     world = World(time_step=1e-9)
     stuff = material(1.0, 0.0, 1e7)
-    box = Box((1.0, 1.0, 1.0))
-    world.add_body(box, stuff, (0, 0, 0))
+    world.add_body(Box((1.0, 1.0, 1.0)), stuff, (0, 0, 0))
     world.add_body(Sphere(0.1), stuff, (0.1, 0.05, 0.6 - 1e-4))
     contact = world.contacts()[0]
     radius = 1.0 / (1.0 / 0.1 + (4 * math.pi / 3) ** (1 / 3))

@@ -42,8 +42,7 @@ def test_grains_are_put_where_none_touch(tmp_path: Path) -> None:
     place, radius = put(soil)
     around = np.concatenate([place + np.array([0.7 * x, 0.7 * y, 0.0]) for x in (0, -1, 1) for y in (0, -1, 1)])
     pair = cKDTree(around).query_pairs(2.0 * radius.max(), output_type="ndarray")
-    reach = np.tile(radius, 9)
-    gap = np.linalg.norm(around[pair[:, 0]] - around[pair[:, 1]], axis=1) - reach[pair].sum(axis=1)
+    gap = np.linalg.norm(around[pair[:, 0]] - around[pair[:, 1]], axis=1) - np.tile(radius, 9)[pair].sum(axis=1)
     assert gap.min() > -1e-12
     assert bulk_density(radius, soil) / soil.material.density == pytest.approx(0.5, abs=0.01)
 
@@ -76,7 +75,6 @@ def test_a_force_that_stops_the_plate_is_its_energy_over_its_way() -> None:
     from plate_into_loose_grains import MASS, PLATE, mean_force
 
     depth = np.linspace(0.0, 0.3, 3001)
-    speed = np.sqrt(0.01 - 0.02 * depth)
-    way = np.stack([np.zeros_like(depth), depth, speed], axis=1)
+    way = np.stack([np.zeros_like(depth), depth, np.sqrt(0.01 - 0.02 * depth)], axis=1)
     assert 0.5 * PLATE < 0.3
     assert mean_force(way) == pytest.approx(0.01 * MASS, rel=1e-4)

@@ -49,10 +49,8 @@ def again(world, order=range(12), turn=STRAIGHT):
     for k in order:
         body, (w, x, y, z) = world.bodies[k], world.orientation[k]
         turned = (half * (w - z), half * (x - y), half * (y + x), half * (z + w))
-        new.add_body(
-            body.shape, body.material, turn @ world.position[k], turn @ world.velocity[k],
-            turned if turn[0, 1] else (w, x, y, z), turn @ world.spin[k],
-        )  # fmt: skip
+        new.add_body(body.shape, body.material, turn @ world.position[k], turn @ world.velocity[k],
+            turned if turn[0, 1] else (w, x, y, z), turn @ world.spin[k])  # fmt: skip
     for plane in world.planes:
         new.add_plane(turn @ plane.point, turn @ plane.normal, plane.material)
     return new

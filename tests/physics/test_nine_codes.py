@@ -84,9 +84,8 @@ def impact_bed():
 
 def test_pairs_of_the_impact_have_the_published_values(impact_bed) -> None:
     """Restitution, friction and effective moduli of the driver: its MercuryOS.h, and its restart files for moduli."""
-    ball, of_grains, of_ball, m1 = (
-        impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_BALL, impact_bed.M1
-    )  # fmt: skip
+    ball, of_grains, of_ball, m1 = (impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_GRAINS, impact_bed.STEEL_OF_BALL,
+        impact_bed.M1)  # fmt: skip
     for pair, restitution, friction, young, shear in (
         ((m1, m1), 0.5, 0.3, 520833333.333333, 115740740.740741),
         ((m1, ball), 0.4, 0.2, 1036729857.81991, 230384412.848868),

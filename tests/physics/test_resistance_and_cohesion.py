@@ -35,9 +35,7 @@ def on_plane(stuff, gravity=(0.0, 0.0, -GRAVITY), load=MASS * GRAVITY, **motion)
 
 def test_rolling_sphere_is_slowed_by_its_rolling_friction():
     """Derived: deceleration 5/7 of rolling friction times g, from the torque balance about the contact."""
-    world = on_plane(
-        material(rolling_friction=0.1), velocity=(0.5, 0, 0), spin=(0, 0.5 / RADIUS, 0)
-    )  # fmt: skip
+    world = on_plane(material(rolling_friction=0.1), velocity=(0.5, 0, 0), spin=(0, 0.5 / RADIUS, 0))  # fmt: skip
     world.run(duration=0.1)
     before = world.velocity[0, 0]
     world.run(duration=0.3)
@@ -134,11 +132,9 @@ def test_ledger_closes_and_similarity_holds_with_all_of_it():
     """Scaled by powers of two, every number scales exactly, rolling and cohesion included; energy is kept."""
 
     def pile(length=1.0, time=1.0, stress=1.0):
-        stuff = Material(
-            young_modulus=1e7 * stress, poisson_ratio=0.25, restitution=0.6, friction=0.5, rolling_friction=0.2,
-            spinning_friction=0.1, density=2500.0 * stress * time**2 / length**2,
-            cohesion_force=0.5 * stress * length**2, surface_energy=2.0 * stress * length,
-        )  # fmt: skip
+        stuff = Material(young_modulus=1e7 * stress, poisson_ratio=0.25, restitution=0.6, friction=0.5,
+            rolling_friction=0.2, spinning_friction=0.1, density=2500.0 * stress * time**2 / length**2,
+            cohesion_force=0.5 * stress * length**2, surface_energy=2.0 * stress * length)  # fmt: skip
         world = World((0.0, 0.0, -9.81 * length / time**2), 5e-5 * time)
         generator = np.random.default_rng(1)
         for k in range(9):

@@ -11,13 +11,8 @@ from lithobrake.dem.stepping.time_step_stability import contact_duration
 
 
 def material(young_modulus, poisson_ratio, density, restitution=1.0, friction=0.0):
-    return Material(
-        young_modulus=young_modulus,
-        poisson_ratio=poisson_ratio,
-        restitution=restitution,
-        friction=friction,
-        density=density,
-    )
+    return Material(young_modulus=young_modulus, poisson_ratio=poisson_ratio, restitution=restitution,
+        friction=friction, density=density)  # fmt: skip
 
 
 def rigid(like):

@@ -8,13 +8,9 @@ BALL, PROGRAM = EXAMPLES / "ball_on_plate.toml", EXAMPLES / "ball_on_plate.py"
 # Without looking for packages, of which the program needs none: sooner there, for each run.
 PYTHON = f"{sys.executable} -S"
 # Changes of its text, old by new; a later change of the same text takes the place of an earlier one.
-FEW_RUNS = {
-    "screening_level = 2": "screening_level = 1",
-    "screening_degree = 2": "screening_degree = 1",
-    "refined_level = 3": "refined_level = 1",
-    "refined_degree = 3": "refined_degree = 1",
-    "test_count = 10": "test_count = 2",
-}
+FEW_RUNS = {"screening_level = 2": "screening_level = 1", "screening_degree = 2": "screening_degree = 1",
+    "refined_level = 3": "refined_level = 1", "refined_degree = 3": "refined_degree = 1",
+    "test_count = 10": "test_count = 2"}  # fmt: skip
 FEW_SAMPLES = {
     "sample_count = 10_000": "sample_count = 200",
     "flight_count = 50": "flight_count = 5",

@@ -21,12 +21,10 @@ VICTIMS = ("coordinator", "worker", "both")
 # asked for something, so files behind them are named.
 FORKS = multiprocessing.get_context("forkserver")
 FORKS.set_forkserver_preload(
-    [
-        "lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
+    ["lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
         "lithobrake.pipeline.planning.planner", "lithobrake.pipeline.study_run", "lithobrake.report.pages.journey_page",
         "lithobrake.report.pages.paper_page", "lithobrake.report.study_report", "lithobrake.smallbody.hopping",
-        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "scipy.stats",
-    ]
+        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "scipy.stats"]
 )  # fmt: skip
 COMMAND = """
 import os, sys

@@ -1,5 +1,6 @@
 """Synthetic landings as a model of a study: laws that are known, within milliseconds, and no bed is poured."""
 
+import math
 import tomllib
 from dataclasses import dataclass, field
 from typing import Any
@@ -46,15 +47,9 @@ def outputs_of(y: np.ndarray) -> dict[str, float]:
     """Outputs of a study [SI] from a row of synthetic ones."""
     speed, elevation, azimuth, spin = (float(y[OUTPUT_NAMES.index(name)]) for name in OUTPUT_NAMES)
     level = speed * np.cos(elevation)
-    return {
-        "velocity_out_x": level * np.cos(azimuth),
-        "velocity_out_y": level * np.sin(azimuth),
-        "velocity_out_z": speed * np.sin(elevation),
-        "spin_out_x": 0.6 * spin,
-        "spin_out_y": -0.8 * spin,
-        "spin_out_z": 0.0,
-        "contact_duration": 0.1 / speed,
-    }
+    return {"velocity_out_x": level * np.cos(azimuth), "velocity_out_y": level * np.sin(azimuth),
+        "velocity_out_z": speed * np.sin(elevation), "spin_out_x": 0.6 * spin, "spin_out_y": -0.8 * spin,
+        "spin_out_z": 0.0, "contact_duration": 0.1 / speed}  # fmt: skip
 
 
 def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
@@ -77,3 +72,14 @@ def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
         name: {key: entry for key, entry in table.items() if entry is not None} if isinstance(table, dict) else table
         for name, table in changed.items()
     }
+
+
+def land(inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    """Capture a quarter of the landers; let one in fifty leave over the rim, and the others rebound."""
+    if inputs["lander.restitution"] < 0.5:
+        return {"outcome": "captured", "outputs": {"penetration": 0.01}}
+    if inputs["lander.friction"] < 0.06:
+        return {"outcome": "left_sideways", "outputs": {}}
+    speed, elevation = inputs["impact.speed"] * inputs["lander.restitution"], 0.4 + 0.1 * inputs["bed"] % 0.3
+    leaving = {"velocity_out_x": speed * math.cos(elevation), "velocity_out_y": 0.0}
+    return {"outcome": "clear", "outputs": leaving | {"velocity_out_z": speed * math.sin(elevation), "spin_out": 1.0}}

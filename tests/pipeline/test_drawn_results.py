@@ -46,8 +46,7 @@ def flown_share(count: int) -> float:
     velocity = np.array([[outputs_of(landings.y[run])[name] for name in VELOCITY] for run in left])
     site = {key: values[:, 0] for key, values in run_sites(Site(study), len(left), 1).items()}
     job = Job(DrawnDesign(study), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
-    flown = fly_starts(job, Starts(left, velocity, site), "")
-    return float((flown.status == "impact").sum()) / count
+    return float((fly_starts(job, Starts(left, velocity, site), "").status == "impact").sum()) / count
 
 
 def test_the_share_of_the_runs_and_that_of_the_emulator_hold_the_truth(results: StudyResults) -> None:
@@ -116,8 +115,7 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     whole = ("soil", "bed", "place", "chaos")
     assert sum(parts[name]["share"] for name in whole) == pytest.approx(1.0)
     assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
-        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",
-    }  # fmt: skip
+        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction"}  # fmt: skip
     # Another seed is another place to these landings, so a twin is as unlike its run as any other.
     assert parts["chaos"]["upper"] > 0.5
     side = found["runs"]["side_runs"]
@@ -141,8 +139,7 @@ def test_samples_leave_outwards_with_the_speed_that_was_drawn_and_energy_allows(
 
 def test_the_emulator_opens_and_every_key_of_the_summary_is_described(results: StudyResults) -> None:
     model = results.emulator.model
-    soil = {name: law.median for name, law in model.runs.inputs.items()}
-    drawn = results.emulator.sample(soil, 50)
+    drawn = results.emulator.sample({name: law.median for name, law in model.runs.inputs.items()}, 50)
     assert (drawn.row_count, drawn.columns["speed_out"].units) == (50, "m/s")
     assert drawn.columns["grain.young_modulus"].units == "Pa"
     left = drawn["outcome"] == "clear"

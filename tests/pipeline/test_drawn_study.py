@@ -51,8 +51,7 @@ def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, D
     assert runs["drawn"].keys[:12] == first.keys
     assert not set(runs["drawn"].keys) & {*runs["soil_pairs"].keys, *runs["twins"].keys}
     table = open_study(folder / "out").runs
-    assert len(table["key"]) == 40
-    assert sorted(set(table["design"])) == sorted(designs)
+    assert (len(table["key"]), sorted(set(table["design"]))) == (40, sorted(designs))
 
 
 def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, str]) -> None:
@@ -62,9 +61,8 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     plan = plan_study(folder / "study.toml", folder / "out")
     assert plan.stages == ()
     assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (14, 26, 0)
-    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in " ".join(
-        study_status(folder / "out").lines()
-    )
+    status = " ".join(study_status(folder / "out").lines())
+    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in status
 
 
 def test_a_stage_of_the_other_method_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
@@ -126,8 +124,7 @@ def test_landings_of_a_sequence_use_their_beds_and_tell_how_the_lander_turns(soi
 def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tmp_path: Path) -> None:
     shutil.copytree(soil, tmp_path / "study")
     study, out = tmp_path / "study" / "study.toml", tmp_path / "study" / "out"
-    first = open_study(out).median_landing
-    assert "run" not in first.attributes
+    assert "run" not in open_study(out).median_landing.attributes
     run_study(StudySource.read(study), out, until="telling_landing")
     runs, shown = DesignRuns.load(StudyFolder.only_read(out), "drawn"), open_study(out).median_landing
     speeds = np.sort(runs.output("speed_out")[runs.has_outputs])

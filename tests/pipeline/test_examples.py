@@ -1,4 +1,4 @@
-"""The examples of a solver of one's own, as a user starts them, and what a study does with its answers."""
+"""Solvers of one's own, as a user starts them from examples and scripts, and what a study does with their answers."""
 
 import csv
 import io
@@ -14,18 +14,17 @@ from pathlib import Path
 import pytest
 
 from lithobrake.pipeline.design.dependencies import solver_dependencies
-from lithobrake.pipeline.runs.solver import completed
 from lithobrake.results import open_study
 from lithobrake.study import StudyError, read_study
 
 from ..command_line import lithobrake
+from .ball_studies import FEW_RUNS, write_ball
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished study of the ball on a plate."""
     out = tmp_path_factory.mktemp("plate") / "out"
     ended = lithobrake("run", EXAMPLES / "ball_on_plate.toml", "--out", out, "--workers", 2)
     assert ended.returncode == 0, ended.stderr
@@ -34,8 +33,7 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
     results = open_study(plate).summary["results"]
-    assert results["beds"] == []
-    assert results["designs"]["test_all"]["outcomes"] == {"clear": 10}
+    assert (results["beds"], results["designs"]["test_all"]["outcomes"]) == ([], {"clear": 10})
     assert results["scores"]["test_all"]["speed_out"]["q2"] > 0.9
     assert "solver.inputs.plate_tilt_deg" in results["screening"]["inputs"]
     assert results["rest"]["soil"] is None
@@ -46,8 +44,7 @@ def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
 
 
 def test_the_summary_says_when_it_was_made(plate: Path) -> None:
-    content = open_study(plate).summary
-    date = datetime.fromisoformat(content["provenance"]["date"])
+    date = datetime.fromisoformat(open_study(plate).summary["provenance"]["date"])
     assert date.utcoffset() == timedelta(0)
     assert abs(date.timestamp() - (plate / "summary.json").stat().st_mtime) < 60.0
     assert f"Study of {date:%Y-%m-%d, %H:%M} UTC" in (plate / "report" / "index.html").read_text(encoding="utf-8")
@@ -93,9 +90,8 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
 def test_the_function_gives_what_the_program_gives(plate: Path, tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(EXAMPLES.parent), os.environ.get("PYTHONPATH", "")])}
     script = [sys.executable, str(EXAMPLES / "ball_on_plate_campaign.py"), str(tmp_path)]
-    first, second = (
-        subprocess.run(script, capture_output=True, text=True, check=True, env=environment).stdout for _ in range(2)
-    )
+    told = {"capture_output": True, "text": True, "check": True, "env": environment}
+    first, second = (subprocess.run(script, **told).stdout for _ in range(2))
     assert first.startswith("69 runs, 0 of them known before\n")
     assert second.startswith("69 runs, 69 of them known before\n")
     assert first.split("\n")[1:] == second.split("\n")[1:]
@@ -129,12 +125,6 @@ def test_a_frictionless_elastic_ball_is_thrown_back_as_light_from_a_mirror() -> 
     assert out["spin_out"] == 0.0
 
 
-def test_speed_and_elevation_follow_from_the_components() -> None:
-    found = completed({"velocity_out_x": 3.0, "velocity_out_y": 4.0, "velocity_out_z": 5.0, "spin_out": 1.0})
-    assert found["speed_out"] == pytest.approx(math.sqrt(50))
-    assert found["elevation_out"] == pytest.approx(math.pi / 4)
-
-
 def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     for name in ("ball_on_plate.toml", "ball_on_plate.py"):
         (tmp_path / name).write_text((EXAMPLES / name).read_text())
@@ -144,15 +134,12 @@ def test_the_place_of_a_study_does_not_name_its_runs(tmp_path: Path) -> None:
     assert solver_dependencies(here) != solver_dependencies(there)
 
 
-@pytest.mark.parametrize(
-    ("command", "said"),
-    [
-        ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
-        ("python3 'x", "close every quotation mark"),
-        (r"python3 \u0000x", r"allowed: what can be shown on one line; write plain words"),
-        ("/" + "x" * 300, "which is no program here; give its path"),
-    ],
-)
+@pytest.mark.parametrize(("command", "said"), [
+    ("no-such-program x", 'solver.command begins with "no-such-program", which is no program here; give its path'),
+    ("python3 'x", "close every quotation mark"),
+    (r"python3 \u0000x", r"allowed: what can be shown on one line; write plain words"),
+    ("/" + "x" * 300, "which is no program here; give its path"),
+])  # fmt: skip
 def test_a_command_that_cannot_be_started_is_refused(command: str, said: str, tmp_path: Path) -> None:
     text = (EXAMPLES / "ball_on_plate.toml").read_text().replace("python3 ball_on_plate.py", command)
     (tmp_path / "study.toml").write_text(text)
@@ -165,3 +152,52 @@ def test_inputs_without_a_command_are_refused(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(text)
     with pytest.raises(StudyError, match=r"solver\.command is missing"):
         read_study(tmp_path / "study.toml")
+
+
+SCRIPT = """
+print("started")
+from pathlib import Path
+import lithobrake
+
+results = lithobrake.run("ball.toml", out="out", workers=2, report=False)
+print(results.runs.row_count, sorted(set(results.runs["outcome"].tolist())))
+"""
+OWN_MODEL = """
+import tomllib
+from pathlib import Path
+import lithobrake
+
+def model(inputs, seed):
+    return {"outcome": "captured", "outputs": {}}
+
+tables = tomllib.loads(Path("ball.toml").read_text())
+del tables["solver"]
+lithobrake.run(tables, out="out", model=model, workers=1, report=False)
+"""
+
+
+def said_by_python(folder: Path, script: str, piped: bool) -> subprocess.CompletedProcess[str]:
+    (folder / "script.py").write_text(script)
+    words = [sys.executable, "-" if piped else "script.py"]
+    given = script if piped else None
+    return subprocess.run(words, cwd=folder, input=given, capture_output=True, text=True, check=False)
+
+
+def test_a_study_starts_from_a_piped_script_without_a_guard(tmp_path: Path) -> None:
+    few = FEW_RUNS | {"sample_count = 10_000": "sample_count = 100", "flight_count = 50": "flight_count = 1"}
+    write_ball(tmp_path / "ball.toml", few | {"count = 200 ": "count = 0 "})
+    said = said_by_python(tmp_path, SCRIPT, piped=True)
+    assert (said.returncode, said.stdout) == (0, "started\n13 ['clear']\n"), said.stderr
+
+
+@pytest.mark.parametrize(("piped", "words"), [
+    (False, 'what starts it belongs under: if __name__ == "__main__":'),
+    (True, "write it to a file, say model.py, and import it from there"),
+])  # fmt: skip
+def test_a_model_that_workers_cannot_import_is_one_sentence(piped: bool, words: str, tmp_path: Path) -> None:
+    write_ball(tmp_path / "ball.toml", FEW_RUNS)
+    said = said_by_python(tmp_path, OWN_MODEL, piped)
+    assert said.returncode == 1
+    last = said.stderr.strip().splitlines()[-1]
+    assert last.startswith("lithobrake.campaign.worker.MainModuleError: ")
+    assert words in last

@@ -15,12 +15,12 @@ from lithobrake.study import read_study
 from ..few_grains import few_grains
 from .killed_studies import VICTIMS, end, kill, ledger, start, wait_for_stage
 
-STUDY = (
-    "seed = 2"
-    + few_grains(12, width=0.3, lander_diameter=0.1)
-    + """[campaign]
-retry_count = 20
-[design]
+STUDY = f"""seed = 2
+campaign = {{ retry_count = 20 }}
+monte_carlo = {{ sample_count = 500 }}
+flight = {{ flight_count = 10, duration = 20000.0 }}
+rest = {{ count = 10 }}
+{few_grains(12, width=0.3, lander_diameter=0.1)}[design]
 method = "paper"
 screening_level = 2
 screening_degree = 1
@@ -28,21 +28,11 @@ refined_level = 2
 refined_degree = 1
 kept_outputs = ["speed_out"]
 test_count = 6
-[monte_carlo]
-sample_count = 500
-[flight]
-flight_count = 10
-duration = 20000.0
-[rest]
-count = 10
 """
-)
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
-MOMENTS = (
-    "bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "rest", "summary",
-    "report",
-)  # fmt: skip
+MOMENTS = ("bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "rest", "summary",
+    "report")  # fmt: skip
 AT_ONCE = {"screen", "refine", "test"}
 MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
 LEDGER = ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")
@@ -87,5 +77,4 @@ def test_a_study_killed_at_a_random_moment_of_each_stage_ends_with_the_same_bits
         for name in names if stage not in ("summary", "report") else ():
             assert (killed / name).read_bytes() == (calm / name).read_bytes(), name
     summaries = [open_study(out).summary for out in (killed, calm)]
-    assert summaries[0]["results"] == summaries[1]["results"]
-    assert summaries[0]["study"] == summaries[1]["study"]
+    assert (summaries[0]["results"], summaries[0]["study"]) == (summaries[1]["results"], summaries[1]["study"])

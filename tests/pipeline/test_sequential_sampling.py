@@ -21,7 +21,7 @@ from lithobrake.results import open_study
 from lithobrake.study import StudySource
 
 from .ball_studies import BALL
-from .captured_model import land
+from .synthetic_lander import land
 
 
 class Said(Silent):
@@ -90,8 +90,7 @@ def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
     assert len(steps) >= 2
     assert steps[-1].endswith("asks for +- 6: that is enough")
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
-    caught = (np.array(runs.outcomes) == "captured").astype(float)
-    assert (half_width_of(caught, runs.inputs["bed"]) or 1.0) <= 0.06
+    assert (half_width_of((np.array(runs.outcomes) == "captured").astype(float), runs.inputs["bed"]) or 1.0) <= 0.06
 
 
 def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:
@@ -105,8 +104,7 @@ def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns
     study = source(half_width=0.06).study
     only_read = StudyFolder.only_read(folder)
     design = grown(DrawnDesign(study), only_read)
-    assert len(design.rows) == runs.run_count
-    assert design.keys == runs.keys
+    assert (len(design.rows), design.keys) == (runs.run_count, runs.keys)
     assert design.study.with_run_count(24) == study.with_run_count(24)
     plan = plan_of(design, "ball", only_read, 2)
     # What follows the runs was not asked for.
@@ -123,8 +121,7 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
 ) -> None:
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path, Said("going on to 50"), half_width=0.06)
-    first = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
-    assert first.run_count == 24
+    assert DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn").run_count == 24
     said = Said()
     assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
     assert any("drawn: 24 of 50 runs were known" in sentence for sentence in said.sentences)

@@ -1,4 +1,4 @@
-"""The site: where an error of delivery leads, and what is told of the accelerations there."""
+"""The site: where an error of delivery leads, accelerations there, and the flights of single runs from it."""
 
 import math
 import tomllib
@@ -8,24 +8,29 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lithobrake.analysis import share_estimate
+from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import summary_dependencies
-from lithobrake.pipeline.flights import flight_dependencies
-from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.flights import Starts, flight_dependencies, fly_starts
+from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.run_flights import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.samples import VELOCITY
+from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template
 
 from ..geometry.test_mesh_files import PRODUCT, mesh, write_kernel
+from ..paper_tables import with_keys
+from ..synthetic_landings import WEAK
+from .synthetic_lander import outputs_of, synthetic_tables
 
 
 def changed(**sections: dict[str, Any]) -> Study:
-    """The template with some keys changed."""
-    tables = tomllib.loads(template())
-    for section, keys in sections.items():
-        tables.setdefault(section, {}).update(keys)
-    return check_tables(tables, Path())
+    return check_tables(with_keys(tomllib.loads(template()), sections), Path())
 
 
 @pytest.mark.parametrize("latitude", [0.0, 60.0, 90.0])
@@ -79,8 +84,7 @@ def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
 
 
 def test_the_body_may_be_a_shape_kernel_of_spice(tmp_path: Path) -> None:
-    spice = pytest.importorskip("spiceypy")
-    write_kernel(spice, tmp_path / "rock.bds", 1)
+    write_kernel(pytest.importorskip("spiceypy"), tmp_path / "rock.bds", 1)
     site = {"body": str(tmp_path / "rock.bds"), "mass": 2.6e12, "spin_period": 2e4}
     body = Site(changed(site=site)).body
     # An octahedron with corners at a kilometre: kernels have no other unit.
@@ -107,3 +111,49 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
         changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})
+
+
+UNCERTAIN = {
+    "mass": {"distribution": "uniform", "lower": 5.2e11, "upper": 5.4e11},
+    "north_error": {"distribution": "uniform", "lower": -20.0, "upper": 20.0},
+}
+
+
+def study(**site: object) -> Study:
+    return check_tables(synthetic_tables(site=site), Path())
+
+
+def test_headings_of_a_run_are_in_equal_steps_from_a_first_one_of_its_own() -> None:
+    sites = run_sites(Site(study(**UNCERTAIN)), 30)
+    assert set(sites) == set(SITE_KEYS)
+    steps = np.diff(np.sort(sites["heading_deg"], axis=1), axis=1)
+    assert steps == pytest.approx(np.full((30, FLIGHT_COUNT - 1), 360.0 / FLIGHT_COUNT))
+    assert len(np.unique(sites["heading_deg"][:, 0])) == 30
+    # Each law is met once in each of its equal parts, in an order that has nothing to do with the headings.
+    places = np.sort(np.ceil((sites["north_error"] + 20.0) / 40.0 * FLIGHT_COUNT), axis=1)
+    assert np.array_equal(places, np.tile(np.arange(1, FLIGHT_COUNT + 1), (30, 1)))
+    assert np.isfinite(sites["mass"]).all()
+    mixed = [np.corrcoef(sites["heading_deg"][run], sites["north_error"][run])[0, 1] for run in range(30)]
+    assert abs(np.mean(mixed)) < 0.1
+    assert np.all(sites["latitude_deg"] == 0.0)
+
+
+def test_more_runs_and_one_more_uncertain_number_change_no_site() -> None:
+    few, many = run_sites(Site(study(**UNCERTAIN)), 5), run_sites(Site(study(**UNCERTAIN)), 9)
+    assert all(np.array_equal(few[key], many[key][:5]) for key in SITE_KEYS)
+    alone = run_sites(Site(study(mass=UNCERTAIN["mass"])), 5)
+    assert all(np.array_equal(few[key], alone[key]) for key in ("mass", "heading_deg", "partner_longitude_deg"))
+
+
+def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
+    _, y, outcome, bed = WEAK.study(60, 12, 3)
+    left, drawn = np.flatnonzero(outcome == "clear"), study()
+    velocity = np.array([[outputs_of(y[run])[name] for name in VELOCITY] for run in left])
+    job = Job(DrawnDesign(drawn), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
+    width = []
+    for count in (FLIGHT_COUNT, 10 * FLIGHT_COUNT):
+        sites = {key: values.ravel() for key, values in run_sites(Site(drawn), len(left), count).items()}
+        flown = fly_starts(job, Starts(np.repeat(left, count), np.repeat(velocity, count, axis=0), sites), "")
+        found = share_estimate((flown.status == "impact").reshape(-1, count).mean(axis=1), bed[left]).share
+        width.append(found.upper - found.lower)
+    assert width[1] == pytest.approx(width[0], rel=0.03)

@@ -1,4 +1,4 @@
-"""Small studies with the ball on the plate: what is reused when a study grows, what is said when something is wrong."""
+"""Small studies with the ball on the plate: what is reused, what is told, and what is said when something is wrong."""
 
 import os
 import signal
@@ -13,17 +13,18 @@ from pathlib import Path
 import pytest
 
 from lithobrake.campaign import Record
+from lithobrake.pipeline import run_study
 from lithobrake.pipeline.study_run import run
 from lithobrake.results import open_study
+from lithobrake.study import StudySource
 
 from ..command_line import lithobrake
-from .ball_studies import FEW_RUNS, PROGRAM, write_ball
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, PYTHON, write_ball
 
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
 
 
 def write_study(folder: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
-    """The example's study with few runs and these changes of its text."""
     return write_ball(folder / "study.toml", FEW_RUNS | {"test_count = 10": "test_count = 6"} | changes, program)
 
 
@@ -90,14 +91,11 @@ runpy.run_path(PROGRAM, run_name="__main__")
 """
 
 
-@pytest.mark.parametrize(
-    ("share", "said"),
-    [
-        ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
-                 "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
-        ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("share", "said"), [
+    ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
+             "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
+    ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
+])  # fmt: skip
 def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(PROGRAM))))
     changes = {
@@ -157,8 +155,7 @@ def test_a_disk_that_fills_up_is_one_sentence_and_the_study_goes_on_when_there_i
     fixed: Path, small_disk: Path, tmp_path: Path
 ) -> None:
     study = write_study(tmp_path, {FRICTION: "friction = 0.225"})
-    said = said_by("test", study, "--out", small_disk / "out", "--workers", 1, code=2)
-    assert "make room" in said
+    assert "make room" in said_by("test", study, "--out", small_disk / "out", "--workers", 1, code=2)
     with sqlite3.connect(small_disk / "out" / "runs.sqlite") as database:
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     database.close()
@@ -209,9 +206,7 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         assert said[2:4] == ["7", f"{out}: not running; there is no report yet"]
         assert said[4] == "2 of 11 stages are current: screening runs, screening"
         assert said[5].startswith("not there: designs/refined.csv, refined.json, ")
-        assert said[6:7] == [
-            "7 runs: 7 done, 0 running, 0 failed",
-        ]
+        assert said[6:7] == ["7 runs: 7 done, 0 running, 0 failed"]
         assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
         out.chmod(0o755)
 
@@ -220,3 +215,61 @@ def test_a_progress_that_shows_nothing_is_refused_before_anything_is_written(tmp
     with pytest.raises(ValueError, match="which has no begin, say, progress; allowed: None, or what"):
         run("examples/ball_on_plate.toml", tmp_path / "study", progress=print)  # type: ignore[arg-type]
     assert not (tmp_path / "study").exists()
+
+
+FEW = FEW_RUNS | FEW_SAMPLES
+FEW |= {"screening_degree = 2": "screening_degree = 1\nfit = 'omp'", "refined_level = 3": "refined_level = 2",
+    "test_count = 10": "test_count = 6", "sample_count = 10_000": "sample_count = 200\nscatter = true",
+    "duration = 7200.0": "duration = 600.0"}  # fmt: skip
+# What was done of how much, by stage and piece of work.
+Told = dict[str, dict[str, list[tuple[float, float]]]]
+# Which pieces of work each stage tells of, in their order.
+WORKS = {
+    "screening runs": ["screening runs"], "screening": ["screening fit, outputs"], "refined runs": ["refined runs"],
+    "refinement": ["refined fit, outputs"], "test runs": ["test kept runs", "test all runs"],
+    "scores": ["scores with their intervals"],
+    "flights": ["gravity table", "checks of flights", "flights", "ways of flights", "flights without scatter"],
+    "bounces until rest": ["bounces, hard ground"],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
+    """What a study has told of its work, and what it has said before the first stage."""
+    folder = tmp_path_factory.mktemp("told")
+    path = write_ball(folder / "study.toml", FEW)
+    stages: Told = {}
+    said_first: list[str] = []
+
+    class Shown:
+        def say(self, sentence: str) -> None:
+            if not stages:
+                said_first.append(sentence)
+
+        def begin(self, title: str, number: int, count: int) -> None:
+            stages[title] = {}
+
+        def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+            stages[list(stages)[-1]].setdefault(what, []).append((done, total))
+
+    run_study(StudySource.read(path), folder / "out", worker_count=1, until="rest", shown=Shown())
+    return stages, said_first
+
+
+@pytest.fixture
+def told(study: tuple[Told, list[str]]) -> Told:
+    return study[0]
+
+
+def test_the_program_of_a_study_is_named_before_anything_starts_it(study: tuple[Told, list[str]]) -> None:
+    (said,) = study[1]
+    assert said.endswith(f"every remaining run starts: {PYTHON} {PROGRAM}")
+
+
+@pytest.mark.parametrize("stage", list(WORKS))
+def test_every_long_piece_of_work_is_told_of(stage: str, told: Told) -> None:
+    assert list(told[stage]) == WORKS[stage]
+
+
+def test_a_fit_is_counted_from_none_to_all(told: Told) -> None:
+    assert [done for done, _ in told["screening"]["screening fit, outputs"]] == [0, *range(7)]

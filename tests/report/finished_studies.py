@@ -36,22 +36,15 @@ ARRIVAL: dict[str, Any] = {
 GRAIN_COUNT = 12
 # Short times of flight: some landers still fly, and all is known within seconds.
 DRAWN: dict[str, dict[str, Any]] = {
-    "design": {"run_count": 96, "side_runs": True},
-    "bed": {"bed_count": 12},
-    "impact": ARRIVAL,
-    "site": {"latitude_deg": 50.0},
-    "monte_carlo": {"sample_count": 1000},
-    "flight": {"flight_count": 200, "duration": 240.0},
-    "rest": {"count": 20, "duration": 3600.0},
+    "design": {"run_count": 96, "side_runs": True}, "bed": {"bed_count": 12}, "impact": ARRIVAL,
+    "site": {"latitude_deg": 50.0}, "monte_carlo": {"sample_count": 1000},
+    "flight": {"flight_count": 200, "duration": 240.0}, "rest": {"count": 20, "duration": 3600.0},
     "limit_states": {"fast": "speed_out > 0.05"},
-}
+}  # fmt: skip
 PAPER: dict[str, dict[str, Any]] = {
-    **UNCERTAIN,
-    "design": TWO_STEPS,
-    "monte_carlo": {"sample_count": 400, "scatter": True},
-    "flight": {"flight_count": 100, "duration": 3600.0},
-    "rest": {"count": 20, "duration": 7200.0},
-}
+    **UNCERTAIN, "design": TWO_STEPS, "monte_carlo": {"sample_count": 400, "scatter": True},
+    "flight": {"flight_count": 100, "duration": 3600.0}, "rest": {"count": 20, "duration": 7200.0},
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

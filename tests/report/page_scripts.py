@@ -31,6 +31,5 @@ def answer_of(scripts: tuple[str, ...], program: str, given: dict[str, Any]) -> 
 def explorer_data(page: str) -> dict[str, Any]:
     """What the explorer of a page is given."""
     text = re.search(r'<script type="application/json" id="explorer-data">(.*?)</script>', page, flags=re.DOTALL)
-    assert text is not None
     content: dict[str, Any] = json.loads(text[1])
     return content

@@ -89,8 +89,6 @@ def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
 def test_ground_that_could_not_be_asked_says_why(paper: PaperPage) -> None:
     rest = paper.results.rest
     why, hard = rest.why_no_soil, rest.hard
-    assert why is not None
-    assert hard is not None
     assert why.startswith("impact.incidence_deg")
     assert why in captions.rest(paper)
     soil = replace(hard, outcomes={**hard.outcomes, "outside": CountedShare(3, Estimate(0.15, None, None))})
@@ -107,14 +105,12 @@ def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) ->
 
 def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperPage) -> None:
     table, alone = table_of(paper, "After the first bounce"), paper.results.without_scatter
-    assert alone is not None
     assert table.columns[-1] == "without scatter"
     assert table.rows[0][-1] == f"{100 * alone.shares.outcomes['impact'].share.value:.1f} %"
 
 
 def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperPage) -> None:
     limit = paper.results.shares.outcomes["time_limit"].upper_limit
-    assert limit is not None
     assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first bounce").rows]
 
 
@@ -184,27 +180,20 @@ def without(name: str) -> Callable[[Path], None]:
 
 
 DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
-    ("summary.json", lambda path: path.write_text("")),
-    ("summary.json", lambda path: path.write_text("[]")),
+    ("summary.json", lambda path: path.write_text("")), ("summary.json", lambda path: path.write_text("[]")),
     ("summary.json", lambda path: path.write_text("[" * 3000)),
-    (
-        "summary.json",
-        lambda path: path.write_text(re.sub(r'"format_version": \d+', '"format_version": 7', path.read_text())),
-    ),
+    ("summary.json",
+     lambda path: path.write_text(re.sub(r'"format_version": \d+', '"format_version": 7', path.read_text()))),
     ("summary.json", lambda path: path.write_text(path.read_text().replace('"returns"', '"return"'))),
-    ("scores.json", lambda path: path.write_text('{"refined": 3}')),
-    ("flights.csv", lambda path: path.write_text("")),
+    ("scores.json", lambda path: path.write_text('{"refined": 3}')), ("flights.csv", lambda path: path.write_text("")),
     ("flights.csv", lambda path: path.write_text(path.read_text()[:-9])),
     ("flights.csv", lambda path: path.write_text(re.sub("impact,([^,]*),[^,]*,", r"impact,\1,,", path.read_text()))),
     ("flights.csv", lambda path: path.write_text(path.read_text().replace("0.0", "fast"))),
-    ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")),
-    ("body.obj", lambda path: path.write_text("\n")),
+    ("rest.csv", lambda path: path.write_text("a,b\n1,2\n")), ("body.obj", lambda path: path.write_text("\n")),
     ("body.obj", lambda path: path.write_text("v 0 0 0\nf 1 2 3\n")),
-    ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:2000])),
-    ("samples.h5", without("outcome")),
-    ("landing.h5", without("frames/position")),
-    ("beds/bed_0.h5", lambda path: path.write_bytes(b"")),
-]
+    ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:2000])), ("samples.h5", without("outcome")),
+    ("landing.h5", without("frames/position")), ("beds/bed_0.h5", lambda path: path.write_bytes(b"")),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("name", "damage"), DAMAGED)

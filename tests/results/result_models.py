@@ -16,13 +16,11 @@ def bounce(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     return {
         "outcome": "clear",
         "outputs": {
-            "velocity_out_x": speed * math.cos(elevation),
-            "velocity_out_y": 0.0,
-            "velocity_out_z": speed * math.sin(elevation),
-            "spin_out": 1.0 + inputs["lander.friction"],
+            "velocity_out_x": speed * math.cos(elevation), "velocity_out_y": 0.0,
+            "velocity_out_z": speed * math.sin(elevation), "spin_out": 1.0 + inputs["lander.friction"],
             "azimuth_out": math.nan,
         },
-    }
+    }  # fmt: skip
 
 
 def contradicts_itself(inputs: dict[str, float], seed: int) -> dict[str, Any]:
@@ -34,11 +32,8 @@ def lifted(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     """A rebound straight up, by a part of the speed that only this model knows."""
     speed = inputs["solver.inputs.lift"] * inputs["impact.speed"]
     outputs = {
-        "velocity_out_x": 0.0,
-        "velocity_out_y": 0.0,
-        "velocity_out_z": speed,
-        "spin_out": inputs["impact.speed"],
-    }
+        "velocity_out_x": 0.0, "velocity_out_y": 0.0, "velocity_out_z": speed, "spin_out": inputs["impact.speed"],
+    }  # fmt: skip
     return {"outcome": "clear", "outputs": outputs}
 
 

@@ -18,26 +18,21 @@ from lithobrake.results.study_files import intact_file
 
 BODY = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 SUMMARY = {
-    "format_version": 4,
-    "study": {},
-    "results": {"headline": ["75 % return"], "answer": ["75 % return"], "beds": [{"mass": 1.0}]},
-    "provenance": {},
-}
+    "format_version": 4, "study": {},
+    "results": {"headline": ["75 % return"], "answer": ["75 % return"], "beds": [{"mass": 1.0}]}, "provenance": {},
+}  # fmt: skip
 FLIGHTS = "sample,status,latitude_deg,longitude_deg,facet\n0,impact,1.0,2.0,3\n"
 ASKED: dict[str, tuple[str, Callable[[StudyResults], Any]]] = {
     "summary.json": (json.dumps(SUMMARY), lambda results: results.headline),
-    "body.obj": (BODY, lambda results: results.body_shape),
-    "flights.csv": (FLIGHTS, lambda results: results.flights),
+    "body.obj": (BODY, lambda results: results.body_shape), "flights.csv": (FLIGHTS, lambda results: results.flights),
     "study.toml": ("[site]\n", lambda results: results.study_text),
     "designs/drawn.csv": ("key,outcome\na,clear\n", lambda results: results.runs),
     "emulator.json": ("{}", lambda results: results.emulator),
-    "refined.json": ("{}", lambda results: results.surrogate),
-    "scores.json": ("{}", lambda results: results.scores),
-    "samples.h5": ("", lambda results: results.samples),
-    "landing.h5": ("", lambda results: results.median_landing),
+    "refined.json": ("{}", lambda results: results.surrogate), "scores.json": ("{}", lambda results: results.scores),
+    "samples.h5": ("", lambda results: results.samples), "landing.h5": ("", lambda results: results.median_landing),
     "explorer.h5": ("", lambda results: results.explorer),
     "beds/bed_0.h5": ("", lambda results: results.bed_bodies()),
-}
+}  # fmt: skip
 
 
 @pytest.fixture

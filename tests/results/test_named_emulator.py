@@ -20,15 +20,8 @@ BOUND = {
     "surface.gravity": 1e-4, "lander.mass": 1.0, "lander.diameter": 0.1,
 }  # fmt: skip
 NAMES = (
-    "speed_out",
-    "elevation_out",
-    "spin_out",
-    "azimuth_out",
-    "spin_out_x",
-    "spin_out_y",
-    "spin_out_z",
-    "penetration",
-)
+    "speed_out", "elevation_out", "spin_out", "azimuth_out", "spin_out_x", "spin_out_y", "spin_out_z", "penetration",
+)  # fmt: skip
 
 
 def allowed(speed: np.ndarray) -> np.ndarray:
@@ -98,22 +91,16 @@ def test_no_sample_leaves_with_more_than_energy_allows_at_its_inputs() -> None:
     np.testing.assert_allclose(table["speed_out"], drawn[:, :, 0].ravel(), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("inputs", "words"),
-    [
-        (
-            {"grain.friction": 0.5},
-            r"inputs lack grain.young_modulus \[Pa\], impact.speed \[m/s\]; give all of: grain.f",
-        ),
-        (SOIL | {"grain.fricton": 0.5}, r"'grain.fricton' is no input .*; did you mean grain.friction\?"),
-        (SOIL | {"grain.friction": 2.0}, r"grain.friction is 2, but its support is \[0.2, 0.9\]"),
-        (SOIL | {"grain.friction": "much"}, "grain.friction must be an array of real numbers"),
-        (SOIL | {"grain.friction": float("nan")}, "grain.friction is nan"),
-        (SOIL | {"grain.friction": [0.3, 0.4], "impact.speed": [0.1, 0.2, 0.3]}, "arrays of one length"),
-        (SOIL | {"grain.friction": []}, "inputs have no point: an array is empty; give all of: grain.friction"),
-        ([[0.5, 1e7, 0.2]], "must be a dict by name; give all of: grain.friction, grain.young_modulus"),
-    ],
-)
+@pytest.mark.parametrize(("inputs", "words"), [
+    ({"grain.friction": 0.5}, r"inputs lack grain.young_modulus \[Pa\], impact.speed \[m/s\]; give all of: grain.f"),
+    (SOIL | {"grain.fricton": 0.5}, r"'grain.fricton' is no input .*; did you mean grain.friction\?"),
+    (SOIL | {"grain.friction": 2.0}, r"grain.friction is 2, but its support is \[0.2, 0.9\]"),
+    (SOIL | {"grain.friction": "much"}, "grain.friction must be an array of real numbers"),
+    (SOIL | {"grain.friction": float("nan")}, "grain.friction is nan"),
+    (SOIL | {"grain.friction": [0.3, 0.4], "impact.speed": [0.1, 0.2, 0.3]}, "arrays of one length"),
+    (SOIL | {"grain.friction": []}, "inputs have no point: an array is empty; give all of: grain.friction"),
+    ([[0.5, 1e7, 0.2]], "must be a dict by name; give all of: grain.friction, grain.young_modulus"),
+])  # fmt: skip
 def test_inputs_that_do_not_fit_are_refused_by_name(inputs: object, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         named().sample(inputs, 5)  # type: ignore[arg-type]

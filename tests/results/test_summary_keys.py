@@ -72,14 +72,11 @@ def test_a_key_that_is_not_there_is_named_with_its_place(folder: Path) -> None:
         results_in(PaperResults, table | {"returns": {}}, "results")
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"share": "much"}, r"shares\.impact\.share is 'much', and must be a valid number"),
-        ({"count": True}, r"shares\.impact\.count is True, and must be a valid integer"),
-        ({"lower": "none"}, r"shares\.impact\.lower is 'none', and must be a valid number"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"share": "much"}, r"shares\.impact\.share is 'much', and must be a valid number"),
+    ({"count": True}, r"shares\.impact\.count is True, and must be a valid integer"),
+    ({"lower": "none"}, r"shares\.impact\.lower is 'none', and must be a valid number"),
+])  # fmt: skip
 def test_a_value_of_another_type_is_named_with_its_place(changes: dict[str, Any], words: str) -> None:
     entry = {"count": 1, "share": 0.5, "lower": None, "upper": None}
     counts = {"sample_count": 2, "flight_count": 1, "level": 0.9, "why": None}
@@ -94,15 +91,12 @@ def test_the_page_is_what_its_script_makes(script: dict[str, Any]) -> None:
     assert page == script["page"](), "make it again with: python docs/make_summary_page.py"
 
 
-@pytest.mark.parametrize(
-    ("heading", "key", "unit"),
-    [
-        ("### `results.site`", "effective_acceleration_outward", "[m/s2]"),
-        ("### `results.flights`", "jacobi_drift_median_m2_s2", "[m2/s2]"),
-        ("### `results.flights`", "impact_speed", "[m/s]"),
-        ("### `results.rest.soil`", "path_length", "[m]"),
-    ],
-)
+@pytest.mark.parametrize(("heading", "key", "unit"), [
+    ("### `results.site`", "effective_acceleration_outward", "[m/s2]"),
+    ("### `results.flights`", "jacobi_drift_median_m2_s2", "[m2/s2]"),
+    ("### `results.flights`", "impact_speed", "[m/s]"),
+    ("### `results.rest.soil`", "path_length", "[m]"),
+])  # fmt: skip
 def test_a_quantity_without_its_unit_in_the_name_has_it_in_the_words(heading: str, key: str, unit: str) -> None:
     section = (DOCS / "summary.md").read_text(encoding="utf-8").split(f"{heading}\n")[1].split("###")[0]
     assert (

@@ -25,10 +25,8 @@ def test_a_server_says_where_it_is_and_ends_with_an_interrupt(tmp_path: Path) ->
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as server:
-        assert server.stdout is not None
         said = server.stdout.readline()
         found = re.fullmatch(r"Serving flight, landing at (http://127\.0\.0\.1:\d+); Ctrl-C ends it\.\n", said)
-        assert found is not None
         with urllib.request.urlopen(f"{found[1]}/Info") as response:
             assert response.read() == b'{"protocolVersion": 1.0, "models": ["flight", "landing"]}'
         server.send_signal(signal.SIGINT)
@@ -42,16 +40,13 @@ def test_an_address_that_is_not_to_be_had_is_told(tmp_path: Path) -> None:
     assert len(found.stderr.splitlines()) == 1
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--host", ""], "host is '' (an unset variable?) and would open the server to every network"),
-        (["--host", " \t"], "host is ' \\t' (an unset variable?)"),
-        (["--host", "a" * 70], "is no address of this machine"),
-        (["--time-limit", "0"], "the time limit is 0 s; allowed: above 0"),
-        (["--time-limit", "nan"], "the time limit is nan s; allowed: above 0"),
-    ],
-)
+@pytest.mark.parametrize(("options", "said"), [
+    (["--host", ""], "host is '' (an unset variable?) and would open the server to every network"),
+    (["--host", " \t"], "host is ' \\t' (an unset variable?)"),
+    (["--host", "a" * 70], "is no address of this machine"),
+    (["--time-limit", "0"], "the time limit is 0 s; allowed: above 0"),
+    (["--time-limit", "nan"], "the time limit is nan s; allowed: above 0"),
+])  # fmt: skip
 def test_what_cannot_be_served_is_one_sentence(options: list[str], said: str, tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["serve", str(BALL), "--out", str(tmp_path / "out"), "--port", "0", *options])
     assert found.exit_code == 2

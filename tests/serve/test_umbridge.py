@@ -49,16 +49,13 @@ def test_the_public_client_finds_and_evaluates_a_model(address: str) -> None:
     assert model([[3.0, 0.5]], {"factor": 10.0}) == [[30.5]]
 
 
-@pytest.mark.parametrize(
-    ("point", "said"),
-    [
-        ([[-1.0, 0.0]], "InvalidInput: x is below 0"),
-        ([[1.0, 0.0]], "InvalidOutput: RuntimeError: it broke"),
-        ([[2.0, 0.0]], "InvalidOutput: model double gave"),
-        ([[1.0]], "list of 2 numbers: x, y"),
-        ([[1.0, 2.0], [3.0]], "list of 2 numbers"),
-    ],
-)
+@pytest.mark.parametrize(("point", "said"), [
+    ([[-1.0, 0.0]], "InvalidInput: x is below 0"),
+    ([[1.0, 0.0]], "InvalidOutput: RuntimeError: it broke"),
+    ([[2.0, 0.0]], "InvalidOutput: model double gave"),
+    ([[1.0]], "list of 2 numbers: x, y"),
+    ([[1.0, 2.0], [3.0]], "list of 2 numbers"),
+])  # fmt: skip
 def test_errors_come_back_as_the_protocol_has_them(address: str, point: list[list[float]], said: str) -> None:
     with pytest.raises(Exception, match=said):
         umbridge.HTTPModel(address, "double")(point)
@@ -119,44 +116,38 @@ def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
     assert east[3] > west[3]
 
 
-@pytest.mark.parametrize(
-    ("config", "said"),
-    [
-        ({"lattitude_deg": 3.0}, "config has .lattitude_deg.; did you mean latitude_deg\\?; allowed: latitude_deg"),
-        ({"north_error": 1e9}, "site.north_error reaches 1e.09 m; allowed: at most 590"),
-        ({"spin_period": 1e-9}, "site.spin_period reaches down to 1e-09 s; allowed: at least 1 s"),
-        ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
-        ({"mass": "5e11"}, 'site.mass is "5e11"; allowed: above 0 .kg.; write a finite number without quotes'),
-        ({"latitude_deg": 91}, "site.latitude_deg is 91; allowed: at least -90 and at most 90 .deg."),
-        ({"heading_deg": True}, "site.heading_deg is true; allowed"),
-        ({"heading_deg": {"distribution": "uniform", "lower": 0, "upper": 9}}, "allowed: one number"),
-    ],
-)
+@pytest.mark.parametrize(("config", "said"), [
+    ({"lattitude_deg": 3.0}, "config has .lattitude_deg.; did you mean latitude_deg\\?; allowed: latitude_deg"),
+    ({"north_error": 1e9}, "site.north_error reaches 1e.09 m; allowed: at most 590"),
+    ({"spin_period": 1e-9}, "site.spin_period reaches down to 1e-09 s; allowed: at least 1 s"),
+    ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
+    ({"mass": "5e11"}, 'site.mass is "5e11"; allowed: above 0 .kg.; write a finite number without quotes'),
+    ({"latitude_deg": 91}, "site.latitude_deg is 91; allowed: at least -90 and at most 90 .deg."),
+    ({"heading_deg": True}, "site.heading_deg is true; allowed"),
+    ({"heading_deg": {"distribution": "uniform", "lower": 0, "upper": 9}}, "allowed: one number"),
+])  # fmt: skip
 def test_a_flight_takes_what_the_study_file_does(config: dict[str, Any], said: str, tmp_path: Path) -> None:
     flight = served_models(BALL, tmp_path / "out")[0]
     with pytest.raises(ValueError, match=said):
         flight.evaluate([0.0, 0.0, 0.02], config)
 
 
-@pytest.mark.parametrize(
-    ("config", "said"),
-    [
-        ({"sed": 4}, "config has .sed.; did you mean seed\\?; allowed: seed, inputs, setting"),
-        ({"inputs": {"lander.fricton": 0.9}}, "lander.fricton is not a known key; did you mean friction"),
-        ({"inputs": {"lander.friction": -0.1}}, "lander.friction is -0.1; allowed: at least 0"),
-        ({"inputs": {"lander.mass": "1"}}, 'lander.mass is "1"; allowed: above 0 .kg.'),
-        ({"inputs": {"impact.incidence_deg": 100}}, "impact.incidence_deg is 100; allowed: at least 0 and below 90"),
-        ({"inputs": {"impact.place.x": 5.0}}, "impact.place.x reaches from 5 to 5 m; allowed: -0.3 to 0.3 m"),
-        ({"inputs": {"impact.place.x": None}}, "impact.place.x is None; allowed"),
-        ({"inputs": {"solver.inputs.tilt": 1.0}}, "solver.inputs.tilt is not read here; did you mean solver.inputs.pl"),
-        ({"inputs": {"contact.held_speed": 0.1}}, "contact.held_speed is not read here"),
-        ({"inputs": {"site.mass": 5e11}}, "site.mass is not read here"),
-        ({"inputs": {"impact.azimuth_deg": "random"}}, 'impact.azimuth_deg is "random"; allowed: one number'),
-        ({"inputs": {"bed": 0.5}}, "bed is 0.5; allowed: a whole number"),
-        ({"inputs": [1.0]}, r"config.inputs is \[1\]; allowed: numbers by the dotted keys"),
-        ({"inputs": None}, "config.inputs is None; allowed: numbers by the dotted keys"),
-    ],
-)
+@pytest.mark.parametrize(("config", "said"), [
+    ({"sed": 4}, "config has .sed.; did you mean seed\\?; allowed: seed, inputs, setting"),
+    ({"inputs": {"lander.fricton": 0.9}}, "lander.fricton is not a known key; did you mean friction"),
+    ({"inputs": {"lander.friction": -0.1}}, "lander.friction is -0.1; allowed: at least 0"),
+    ({"inputs": {"lander.mass": "1"}}, 'lander.mass is "1"; allowed: above 0 .kg.'),
+    ({"inputs": {"impact.incidence_deg": 100}}, "impact.incidence_deg is 100; allowed: at least 0 and below 90"),
+    ({"inputs": {"impact.place.x": 5.0}}, "impact.place.x reaches from 5 to 5 m; allowed: -0.3 to 0.3 m"),
+    ({"inputs": {"impact.place.x": None}}, "impact.place.x is None; allowed"),
+    ({"inputs": {"solver.inputs.tilt": 1.0}}, "solver.inputs.tilt is not read here; did you mean solver.inputs.pl"),
+    ({"inputs": {"contact.held_speed": 0.1}}, "contact.held_speed is not read here"),
+    ({"inputs": {"site.mass": 5e11}}, "site.mass is not read here"),
+    ({"inputs": {"impact.azimuth_deg": "random"}}, 'impact.azimuth_deg is "random"; allowed: one number'),
+    ({"inputs": {"bed": 0.5}}, "bed is 0.5; allowed: a whole number"),
+    ({"inputs": [1.0]}, r"config.inputs is \[1\]; allowed: numbers by the dotted keys"),
+    ({"inputs": None}, "config.inputs is None; allowed: numbers by the dotted keys"),
+])  # fmt: skip
 def test_a_landing_takes_what_the_study_file_does(config: dict[str, Any], said: str, tmp_path: Path) -> None:
     landing = served_models(BALL, tmp_path / "out")[1]
     with pytest.raises(ValueError, match=said):
@@ -280,13 +271,10 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
     assert len(np.unique(draws, axis=0)) > 25
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("lander.fricton", "lander.fricton is not a known key; did you mean friction"),
-        ("mass", "mass is not a known key"),
-    ],
-)
+@pytest.mark.parametrize(("name", "said"), [
+    ("lander.fricton", "lander.fricton is not a known key; did you mean friction"),
+    ("mass", "mass is not a known key"),
+])  # fmt: skip
 def test_a_key_that_no_run_reads_is_refused_by_the_emulator_too(name: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "emulator.json").touch()
     emulator = served_models(BALL, tmp_path)[2]

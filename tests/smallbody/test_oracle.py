@@ -12,20 +12,16 @@ oracle = pytest.importorskip("polyhedral_gravity", reason="polyhedral-gravity is
 
 def asked(body: Body, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Potential, acceleration and its derivatives xx, yy, zz, xy, xz, yz of the library."""
-    polyhedron = oracle.Polyhedron(
-        polyhedral_source=(body.shape.vertices, body.shape.faces),
-        density=body.density,
+    polyhedron = oracle.Polyhedron(polyhedral_source=(body.shape.vertices, body.shape.faces), density=body.density,
         normal_orientation=oracle.NormalOrientation.OUTWARDS,
-        integrity_check=oracle.PolyhedronIntegrity.DISABLE,
-    )
+        integrity_check=oracle.PolyhedronIntegrity.DISABLE)  # fmt: skip
     answers = oracle.evaluate(polyhedron, points, parallel=False)
     potential, acceleration, gradient = (np.array([answer[i] for answer in answers]) for i in range(3))
     return potential, acceleration, gradient
 
 
 def bodies() -> list[Body]:
-    cube = Shape(cube_vertices(100.0) + 20.0, CUBE_FACES)
-    return [Body(cube, mass=2e9, spin_period=1e4), didymos(partner=False)]
+    return [Body(Shape(cube_vertices(100.0) + 20.0, CUBE_FACES), mass=2e9, spin_period=1e4), didymos(partner=False)]
 
 
 @pytest.mark.parametrize("body", bodies(), ids=lambda body: body.name)

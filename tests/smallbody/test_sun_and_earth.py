@@ -1,17 +1,61 @@
-"""Where Sun and Earth stand, against closed forms and another library."""
+"""Where Sun and Earth stand, against closed forms and another library; spin and partner from kernels of SPICE."""
 
 import math
 from datetime import datetime, timedelta
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lithobrake.smallbody import HeliocentricOrbit, latitudes_over
+from lithobrake.smallbody import HeliocentricOrbit, latitudes_over, read_partner, read_spin
 from lithobrake.smallbody.sky import earth_place
 from lithobrake.study.question_sections import OrbitSection
 
-pytest.importorskip("spiceypy")
+from .kernels import PERIOD, write_kernels
+
+spice = pytest.importorskip("spiceypy")
 pytest.importorskip("erfa")
+
+
+@pytest.fixture
+def kernels(tmp_path: Path) -> list[Path]:
+    """Constants, leap seconds, and an ephemeris."""
+    return write_kernels(tmp_path)
+
+
+def test_spin_is_that_of_the_constants(kernels: list[Path]) -> None:
+    for body in ("Didymos", 920065803):
+        spin = read_spin(kernels[:1], body)
+        assert spin.period == pytest.approx(360.0 / 3823.0 * 86_400.0, rel=1e-15)
+        assert spin[1:] == (69.327, -72.725, 120.0)
+
+
+def test_the_partner_stands_where_its_orbit_has_it(kernels: list[Path]) -> None:
+    """In its own equator: longitude of the node, less how far the prime meridian is from it."""
+    epoch = "2026-11-22T12:00:00"
+    place = read_partner(kernels, "didymos", "dimorphos", epoch)
+    spice.furnsh(str(kernels[1]))
+    time = spice.str2et(epoch)
+    spice.unload(str(kernels[1]))
+    longitude = math.degrees(2.0 * math.pi * time / PERIOD) - (120.0 + 3823.0 * time / 86_400.0)
+    assert (place.distance, place.period) == (pytest.approx(1150.0, rel=1e-9), pytest.approx(PERIOD, rel=1e-9))
+    assert place.latitude_deg == pytest.approx(0.0, abs=1e-9)
+    # An angle of 4e7 degrees keeps eight digits of its fraction.
+    assert math.remainder(place.longitude_deg - longitude, 360.0) == pytest.approx(0.0, abs=1e-5)
+
+
+def test_what_the_kernels_do_not_say_is_refused(kernels: list[Path]) -> None:
+    with pytest.raises(ValueError, match="no BODY2101955_POLE_RA"):
+        read_spin(kernels[:1], 2101955)
+    with pytest.raises(ValueError, match="counter-clockwise"):
+        read_spin(kernels[:1], "dimorphos")
+    with pytest.raises(ValueError, match="add the kernel that has it"):
+        read_partner(kernels[:2], "didymos", "dimorphos", "2026-11-22T12:00:00")
+    with pytest.warns(UserWarning, match="920065803"), pytest.raises(ValueError, match="BODY2065803_POLE_RA"):
+        read_spin(kernels[:1], 2065803)
+    # Nothing of it stays loaded.
+    assert spice.ktotal("ALL") == 0
+
 
 EPOCH = datetime(2027, 4, 20)
 OBLIQUITY = math.radians(84381.448 / 3600.0)
@@ -22,8 +66,7 @@ YEAR = timedelta(days=365.2568983 * 2.0**1.5)
 
 def test_the_sun_goes_to_and_fro_over_a_circle_by_the_tilt_of_the_pole() -> None:
     """With the pole of ICRF: from 0 by -arcsin(sin(obliquity) sin(angle)), to the other side of the body's place."""
-    dates = [EPOCH + YEAR * part for part in (0.0, 0.125, 0.25, 0.75)]
-    found = latitudes_over(CIRCLE, 0.0, 90.0, dates)["sun"]
+    found = latitudes_over(CIRCLE, 0.0, 90.0, [EPOCH + YEAR * part for part in (0.0, 0.125, 0.25, 0.75)])["sun"]
     angles = 2.0 * np.pi * np.array([0.0, 0.125, 0.25, 0.75])
     assert found == pytest.approx(-np.degrees(np.arcsin(np.sin(OBLIQUITY) * np.sin(angles))), abs=1e-4)
 

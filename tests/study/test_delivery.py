@@ -1,4 +1,4 @@
-"""Deliveries by states, by a release and with correlations: what a study file may say, and what is refused."""
+"""Deliveries by states, by a release and with correlations, and landers of several parts, in a study file."""
 
 from copy import deepcopy
 from pathlib import Path
@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.study import StudyError
+from lithobrake.pipeline.design.dependencies import touchdown_dependencies
+from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.delivered_states import read_states
-from lithobrake.study.reader import check_tables
-from lithobrake.study.study import Study
+from lithobrake.study.lander_checks import lander_radius
+from lithobrake.study.source import fixed_study
+from lithobrake.study.touchdown_model import lander, medians
 
-from ..small_ground import SMALL_GROUND
+from ..paper_tables import SMALL_GROUND, paper_tables, with_keys
 
 TABLES: dict[str, Any] = {
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
-    "journey": {"count": 2},
+    **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0}, "journey": {"count": 2},
     "site": {"body": "dimorphos"},
 }  # fmt: skip
 AIM = {"latitude_deg": 10.0, "longitude_deg": 20.0}
@@ -30,10 +30,7 @@ STATES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s\n0,0,200,0,0,-0.05,0\n1,0,210,
 
 
 def checked(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> Study:
-    tables = deepcopy(TABLES) | {"delivery": delivery}
-    for name, table in changes.items():
-        tables[name] = tables.get(name, {}) | table
-    return check_tables(tables, folder)
+    return check_tables(with_keys(deepcopy(TABLES) | {"delivery": delivery}, changes), folder)
 
 
 def refused(delivery: dict[str, Any], folder: Path = Path(), **changes: dict[str, Any]) -> str:
@@ -46,7 +43,6 @@ def test_a_release_needs_neither_speed_nor_incidence() -> None:
     study = checked(FLOWN)
     assert study.impact.speed is None
     assert "impact.speed" not in study.touchdown_values()
-    assert study.delivery is not None
     assert study.delivery.is_flown
 
 
@@ -64,20 +60,15 @@ def covariance(**entries: float) -> list[list[float]]:
     return matrix.tolist()
 
 
-@pytest.mark.parametrize(
-    ("matrix", "words"),
-    [
-        ([[1.0]], "allowed: 6 rows of 6 numbers"),
-        ([["1"] * 6] * 6, "write finite numbers without quotes"),
-        (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
-        (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
-        (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
-        (
-            covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
-            "has the eigenvalue -0.8; allowed: none below 0",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("matrix", "words"), [
+    ([[1.0]], "allowed: 6 rows of 6 numbers"),
+    ([["1"] * 6] * 6, "write finite numbers without quotes"),
+    (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
+    (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
+    (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
+    (covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
+     "has the eigenvalue -0.8; allowed: none below 0"),
+])  # fmt: skip
 def test_what_is_no_covariance_is_refused(matrix: Any, words: str) -> None:
     said = refused(FLOWN | {"release": RELEASE | {"covariance": matrix}})
     assert "delivery.release.covariance" in said
@@ -90,27 +81,22 @@ def test_covariances_without_full_rank_are_taken() -> None:
     checked(FLOWN | {"release": RELEASE | {"covariance": one.tolist()}})
 
 
-@pytest.mark.parametrize(
-    ("delivery", "words"),
-    [
-        ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
-        (
-            {"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
-            "has covariance and position_std; keep one",
-        ),
-        ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
-        ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
-        ({"heading_deg": 10.0}, "site.heading_deg is given"),
-        ({"north_error": NORMAL}, "site.north_error is given"),
-        ({"frame": None}, "delivery.frame is missing"),
-        ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
-        ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
-        ({"latitude_deg": None}, "delivery.latitude_deg is missing"),
-        ({"longitude_deg": SPEED}, "one number, that of the aim point"),
-        ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
-        ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
-    ],
-)
+@pytest.mark.parametrize(("delivery", "words"), [
+    ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
+    ({"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
+     "has covariance and position_std; keep one"),
+    ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
+    ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
+    ({"heading_deg": 10.0}, "site.heading_deg is given"),
+    ({"north_error": NORMAL}, "site.north_error is given"),
+    ({"frame": None}, "delivery.frame is missing"),
+    ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
+    ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
+    ({"latitude_deg": None}, "delivery.latitude_deg is missing"),
+    ({"longitude_deg": SPEED}, "one number, that of the aim point"),
+    ({"epoch": "soon"}, "delivery.epoch is 'soon'; allowed: a date and time"),
+    ({"states": "no.csv"}, "delivery.states and [delivery.release] are both given"),
+])  # fmt: skip
 def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], words: str) -> None:
     given = {key: value for key, value in (FLOWN | delivery).items() if value is not None}
     assert words.replace("'", '"') in refused(given).replace("'", '"')
@@ -124,21 +110,16 @@ def test_a_delivery_by_states_needs_a_journey() -> None:
     assert "delivery.frame goes with states or [delivery.release]" in refused(SURFACE | {"frame": "icrf"})
 
 
-@pytest.mark.parametrize(
-    ("pairs", "words"),
-    [
-        ([["north_error", "east_error"]], "allowed: two keys and a number between -1 and 1"),
-        ([["north_error", "east_error", 1.0]], "allowed: two keys and a number between -1 and 1"),
-        ([["north_error", "east", 0.5]], "names 'east'"),
-        ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
-        ([["speed", "speed", 0.5]], "allowed: two different keys"),
-        ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
-        (
-            [["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
-            "weaken the correlations that contradict each other",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("pairs", "words"), [
+    ([["north_error", "east_error"]], "allowed: two keys and a number between -1 and 1"),
+    ([["north_error", "east_error", 1.0]], "allowed: two keys and a number between -1 and 1"),
+    ([["north_error", "east", 0.5]], "names 'east'"),
+    ([["north_error", "incidence_deg", 0.5]], "names incidence_deg, which is 20"),
+    ([["speed", "speed", 0.5]], "allowed: two different keys"),
+    ([["speed", "east_error", 0.5], ["east_error", "speed", 0.4]], "the pair east_error and speed twice"),
+    ([["north_error", "east_error", 0.9], ["north_error", "speed", -0.9], ["east_error", "speed", 0.9]],
+     "weaken the correlations that contradict each other"),
+])  # fmt: skip
 def test_correlations_that_cannot_be_are_refused(pairs: Any, words: str) -> None:
     assert words.replace("'", '"') in refused(SURFACE | {"correlations": pairs}).replace("'", '"')
 
@@ -149,31 +130,25 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     assert checked(given, tmp_path).delivery.states == str(tmp_path / "states.csv")
     said = refused(given, tmp_path, journey={"count": 3})
     assert "journey.count is 3 and delivery.states has 2 rows; allowed: at most as many journeys as rows" in said
-    more = {"half_width": 0.1, "largest_run_count": 24}
-    said = refused(given, tmp_path, design=more)
+    said = refused(given, tmp_path, design={"half_width": 0.1, "largest_run_count": 24})
     assert "design.largest_run_count is 24 and delivery.states has 2 rows" in said
     assert "other.csv cannot be read" in refused(given | {"states": "other.csv"}, tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (("x_m", "x"), "line 1: x has no unit; write it into the title, as x_m"),
-        (("x_m", "x_kg"), "line 1: x_kg has the unit [kg]; allowed: m, km, cm"),
-        (("vx_m_s", "vx_m"), "line 1: vx_m has the unit [m]; allowed: m/s, km/s"),
-        (("x_m", "run"), "is no column"),
-        (("vz_m_s", "vy_km_s"), "line 1: vy has two columns"),
-        (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
-        (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
-        (("210", "nan"), "line 3: y is"),
-        ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
-        (("time_s", "<xml>"), "is XML"),
-        ((",vz_m_s", ""), "the column vz_m_s is missing"),
-    ],
-)
-def test_tables_that_cannot_be_read_are_refused_with_their_line(
-    change: tuple[str, str], words: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize(("change", "words"), [
+    (("x_m", "x"), "line 1: x has no unit; write it into the title, as x_m"),
+    (("x_m", "x_kg"), "line 1: x_kg has the unit [kg]; allowed: m, km, cm"),
+    (("vx_m_s", "vx_m"), "line 1: vx_m has the unit [m]; allowed: m/s, km/s"),
+    (("x_m", "run"), "is no column"),
+    (("vz_m_s", "vy_km_s"), "line 1: vy has two columns"),
+    (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
+    (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
+    (("210", "nan"), "line 3: y is"),
+    ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
+    (("time_s", "<xml>"), "is XML"),
+    ((",vz_m_s", ""), "the column vz_m_s is missing"),
+])  # fmt: skip
+def test_tables_that_cannot_be_read_are_told_their_line(change: tuple[str, str], words: str, tmp_path: Path) -> None:
     path = tmp_path / "states.csv"
     path.write_text(STATES.replace(*change))
     with pytest.raises(ValueError, match=r"states\.csv") as error:
@@ -185,10 +160,8 @@ def test_units_stand_in_the_titles(tmp_path: Path) -> None:
     path = tmp_path / "states.csv"
     path.write_text("# of another tool\n\nvx_cm_s,vy_mm_s,vz_m_s,time_h,x_km,y_m,z_m\n1,2,3,0.5,4,5,6\n")
     found = read_states(path, "body_fixed", None, ())
-    assert found.time.tolist() == [1800.0]
-    assert found.position.tolist() == [[4000.0, 5.0, 6.0]]
-    assert found.velocity[0] == pytest.approx([0.01, 0.002, 3.0])
-    assert found.source == ["states.csv, line 4"]
+    assert (found.time.tolist(), found.position.tolist()) == ([1800.0], [[4000.0, 5.0, 6.0]])
+    assert (found.velocity[0], found.source) == (pytest.approx([0.01, 0.002, 3.0]), ["states.csv, line 4"])
 
 
 def test_an_attitude_is_whole_and_of_length_one(tmp_path: Path) -> None:
@@ -202,8 +175,7 @@ def test_an_attitude_is_whole_and_of_length_one(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"line 2: q_w to q_z have the length 0\.5"):
         read_states(path, "body_fixed", None, ())
     path.write_text(f"{titles}\n{lines[1]},0,1,0,0,1,0,0\n")
-    found = read_states(path, "body_fixed", None, ())
-    assert found.rates[0] == pytest.approx([np.pi / 180.0, 0.0, 0.0])
+    assert read_states(path, "body_fixed", None, ()).rates[0] == pytest.approx([np.pi / 180.0, 0.0, 0.0])
 
 
 OEM = """CCSDS_OEM_VERS = 2.0
@@ -218,19 +190,16 @@ META_STOP
 """
 
 
-@pytest.mark.parametrize(
-    ("change", "frame", "words"),
-    [
-        (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
-        (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
-        (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
-        (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
-        (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
-        (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
-        (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
-        (("META_START", "META_STOP"), "icrf", "the segment has no"),
-    ],
-)
+@pytest.mark.parametrize(("change", "frame", "words"), [
+    (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
+    (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
+    (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
+    (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
+    (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
+    (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
+    (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
+    (("META_START", "META_STOP"), "icrf", "the segment has no"),
+])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path
 ) -> None:
@@ -245,6 +214,116 @@ def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
     path = tmp_path / "states.oem"
     path.write_text(OEM)
     found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
-    assert found.time.tolist() == [0.5, 10.0]
-    assert found.position[0].tolist() == [0.0, 200.0, 0.0]
+    assert (found.time.tolist(), found.position[0].tolist()) == ([0.5, 10.0], [0.0, 200.0, 0.0])
     assert read_states(path, "icrf", None, ()).time.tolist() == [0.0, 9.5]
+
+
+BOOM = {"shape": "box", "edges": [1.5, 0.01, 0.02], "centre": [0.93, 0.0, 0.01], "mass": 0.05}
+# A quarter turn about z.
+ASIDE = {**BOOM, "centre": [0.0, 0.86, 0.0], "orientation": [1.0, 0.0, 0.0, 1.0]}
+FOOT = {"shape": "sphere", "diameter": 0.06, "centre": [-0.15, 0.1, -0.1], "density": 1000.0, "restitution": 0.1}
+
+
+def tables(**changes: Any) -> dict[str, Any]:
+    found = deepcopy(paper_tables())
+    found["bed"]["width"] = [6.0, 6.0]
+    box = {"shape": "box", "edges": [0.366, 0.226, 0.1], "mass": 12.0, "part": {"boom": BOOM, "aside": ASIDE}}
+    found["lander"] = {**box, **changes}
+    return found
+
+
+def study(**changes: Any) -> Study:
+    return check_tables(tables(**changes), Path())
+
+
+def test_reach_and_masses_are_those_of_the_engine() -> None:
+    one = study(part={"boom": BOOM, "aside": ASIDE, "foot": FOOT})
+    body = lander(one, medians(one))
+    # Edges and corners of hulls are rounded, by a fiftieth of their least width at most.
+    assert lander_radius(one.lander) == pytest.approx(body.reach, rel=1e-3)
+    assert body.own_mass == pytest.approx(12.0 - 0.1 - 1000.0 * np.pi / 6.0 * 0.06**3)
+    assert [part.shape.volume for part in body.parts[:2]] == pytest.approx([3e-4, 3e-4])
+    np.testing.assert_allclose(np.ptp(body.parts[1].shape.vertices, axis=0), [0.01, 1.5, 0.02], atol=1e-12)
+    assert body.parts[2].material.restitution == 0.1
+    assert body.parts[0].material.restitution == body.material.restitution
+
+
+def test_centre_of_mass_and_inertia_are_the_sums_over_point_like_parts() -> None:
+    """Two heavy balls far out: m d^2 about each axis across, by hand."""
+    ball = {"shape": "sphere", "diameter": 0.01, "mass": 1.0}
+    ends = {"one": {**ball, "centre": [1.0, 0.0, 0.0]}, "two": {**ball, "centre": [0.0, 1.0, 0.0]}}
+    one = study(part=ends, mass=2.0 + 1e-6)
+    body = lander(one, medians(one)).body
+    np.testing.assert_allclose(body.centre_of_mass, [0.5, 0.5, 0.0], atol=1e-6)
+    np.testing.assert_allclose(body.inertia, [[0.5, 0.5, 0], [0.5, 0.5, 0], [0, 0, 1.0]], atol=1e-4)
+
+
+def test_what_is_given_stands_in_the_axes_of_the_lander() -> None:
+    one = study(centre_of_mass={"x": 0.01, "z": -0.02}, inertia=[0.2, 0.3, 0.4, 0.05, 0.0, -0.02])
+    body = lander(one, medians(one)).body
+    np.testing.assert_allclose(body.centre_of_mass, [0.01, 0.0, -0.02])
+    np.testing.assert_allclose(body.inertia, [[0.2, 0.05, 0.0], [0.05, 0.3, -0.02], [0.0, -0.02, 0.4]])
+
+
+def test_uncertain_properties_of_parts_are_inputs_by_their_keys() -> None:
+    law = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
+    one = study(part={"foot": {**FOOT, "restitution": law}}, centre_of_mass={"y": {**law, "lower": -0.1}})
+    values = medians(one)
+    assert values["lander.part.foot.restitution"] == pytest.approx(0.2)
+    values |= {"lander.part.foot.restitution": 0.15, "lander.centre_of_mass.y": 0.05}
+    made = lander(one, values)
+    assert (made.parts[0].material.restitution, made.body.centre_of_mass[1]) == (0.15, 0.05)
+
+
+def test_numbers_of_a_run_stand_in_the_tables_of_parts() -> None:
+    one = study(part={"foot": FOOT}, centre_of_mass={"y": 0.0})
+    given = {"lander.part.foot.restitution": 0.4, "lander.centre_of_mass.y": 0.03}
+    orientation = {f"impact.orientation.{part}": float(part == "w") for part in "wxyz"}
+    fixed = fixed_study(one, {**medians(one), **orientation, **given})
+    assert (fixed.lander.part["foot"].restitution, fixed.lander.centre_of_mass.y) == (0.4, 0.03)
+    for key in ("lander.part.foot", "lander.part.hand.restitution", "lander.part.foot.speed"):
+        with pytest.raises(StudyError, match=key):
+            fixed_study(one, {**medians(one), **orientation, key: 0.4})
+
+
+def test_a_landing_depends_on_the_parts_and_on_nothing_more_without_any() -> None:
+    assert "parts" not in touchdown_dependencies(study(part={}))
+    one, other = (touchdown_dependencies(study(part={"boom": {**BOOM, "mass": mass}})) for mass in (0.05, 0.06))
+    assert one != other
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"part": {"a b": BOOM}}, ["lander.part.a b is no name"]),
+    ({"part": {"a": {**BOOM, "diameter": 0.1}}}, ["lander.part.a.diameter does not go with this shape"]),
+    ({"part": {"a": {**BOOM, "mass": None}}}, ["lander.part.a takes mass or density", "neither"]),
+    ({"part": {"a": {**BOOM, "density": 2.0}}}, ["lander.part.a takes mass or density", "both"]),
+    ({"part": {"a": {**BOOM, "mass": 12.5}}}, ["lander.part has 12.5 kg", "raise it"]),
+    ({"part": {"a": {**BOOM, "edges": [1.5, 1e-3, 0.1]}}}, ["lander.part.a.edges", "thicken the box"]),
+    ({"part": {"a": {**BOOM, "orientation": [0, 0, 0, 0]}}}, ["lander.part.a.orientation", "[1, 0, 0, 0]"]),
+    ({"part": {"a": {**BOOM, "resitution": 0.2}}}, ["lander.part.a.resitution", "did you mean restitution?"]),
+    ({"part": {"a": {**BOOM, "shape": "hull"}}}, ["lander.part.a.file is missing"]),
+    ({"part": {"a": {**BOOM, "unit": "mm"}}}, ["lander.part.a.unit"]),
+    ({"part": {"a": {**BOOM, "centre": [9.0, 0.0, 0.0]}}}, ["bed.width", "with its parts, reaches"]),
+    ({"inertia": [0.1, 0.1, 0.3]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [1.0, 1.0, 1.0, 0.9, 0.9, -0.9]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [0.5, 0.5, 1.0, 0.5, 0.0, 0.0]}, ["lander.inertia", "as every body has it"]),
+    ({"inertia": [1.0, 1.0, -1.0]}, ["lander.inertia", "moments above 0"]),
+    ({"inertia": [1.0, 1.0, 1.0, 0.0]}, ["lander.inertia", "3 or 6 numbers"]),
+])  # fmt: skip
+def test_parts_that_make_no_lander_are_refused(changes: dict[str, Any], words: list[str]) -> None:
+    found = tables(**changes)
+    for part in found["lander"].get("part", {}).values():
+        for key in [key for key, value in part.items() if value is None]:
+            del part[key]
+    with pytest.raises(StudyError) as refusal:
+        check_tables(found, Path())
+    assert len(refusal.value.problems) <= 2
+    assert all(word in str(refusal.value) for word in words)
+
+
+def test_an_uncertain_diameter_does_not_go_with_parts() -> None:
+    ball = {"shape": "sphere", "diameter": {"distribution": "uniform", "lower": 0.1, "upper": 0.2}, "mass": 1.0}
+    found = tables()
+    found["lander"] = {**ball, "part": {"boom": BOOM}}
+    with pytest.raises(StudyError, match=r"lander\.diameter is uncertain"):
+        check_tables(found, Path())

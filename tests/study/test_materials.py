@@ -8,7 +8,7 @@ import lithobrake
 from lithobrake.dem import Material
 from lithobrake.dem.bodies.arrays import Laws
 from lithobrake.dem.law.restitution import PairLaw
-from lithobrake.report.words.labels import INPUT_LABELS
+from lithobrake.statements.labels import INPUT_LABELS
 from lithobrake.study.ground_sections import GrainSection, SoilGrainSection
 from lithobrake.study.lander_section import LanderSection, PartSection
 from lithobrake.study.units import limits

@@ -1,11 +1,10 @@
-"""One small bed for all tests of a process: 24 grains, poured once."""
+"""Two small beds for all tests of a process, poured once: 24 grains in a box, 48 on ground that repeats."""
 
 import pytest
 
-from lithobrake.dem import Material
 from lithobrake.touchdown import BedRecipe, ContactModel, GrainSizes, pour_bed
 
-ROCK = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
+from .landings import ROCK
 
 
 def small_recipe(**changes):
@@ -19,10 +18,14 @@ def small_recipe(**changes):
 
 @pytest.fixture(scope="session")
 def recipe():
-    """The recipe of the small bed, with changes."""
     return small_recipe
 
 
 @pytest.fixture(scope="session")
 def bed():
     return pour_bed(small_recipe())
+
+
+@pytest.fixture(scope="session")
+def ground():
+    return pour_bed(small_recipe(sides="periodic", width=(0.52, 0.56), grain_count=48))

@@ -1,14 +1,26 @@
-"""Grains, pouring, settling, and the file of a bed."""
+"""Grains, pouring, settling, and the file of a bed; the library, where what was poured once is found again."""
 
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
 from decimal import Decimal, localcontext
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lithobrake.dem import Material, Sphere, StepTooLargeError, World
-from lithobrake.touchdown import Bed, GrainSizes, pour_bed, pouring, settling
+from lithobrake.dem import Sphere, StepTooLargeError, World
+from lithobrake.touchdown import Bed, ContactModel, GrainSizes, pour_bed, pouring, settling, stored_or_poured
+from lithobrake.touchdown import bed_library as module
 from lithobrake.touchdown.bed import height_map
 from lithobrake.touchdown.grains import make_grain
+
+from .landings import ROCK
 
 
 def test_sizes_follow_their_distribution():
@@ -20,8 +32,7 @@ def test_sizes_follow_their_distribution():
     share = (0.1**-2.5 - 0.2**-2.5) / (0.1**-2.5 - 0.4**-2.5)
     assert (power < 0.2).mean() == pytest.approx(share, abs=1e-4)
     normal = GrainSizes(distribution="normal", lower=0.05, upper=0.15, mean=0.1, std=0.01).draw(uniforms)
-    assert normal.mean() == pytest.approx(0.1, abs=1e-5)
-    assert normal.std() == pytest.approx(0.01, rel=1e-3)
+    assert (normal.mean(), normal.std()) == (pytest.approx(0.1, abs=1e-5), pytest.approx(0.01, rel=1e-3))
     assert np.all(GrainSizes(distribution="constant", lower=0.1, upper=0.1).draw(uniforms) == 0.1)
 
 
@@ -47,22 +58,19 @@ def test_the_mean_diameter_is_that_of_the_law():
     assert GrainSizes(distribution="constant", lower=0.1, upper=0.1).mean_diameter == pytest.approx(0.1, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"distribution": "gamma", "lower": 0.1, "upper": 0.2},
-        {"distribution": "constant", "lower": 0.1, "upper": 0.2},
-        {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -2.5},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -500.0},
-        {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": float("nan")},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": float("nan"), "std": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 1e300, "std": 0.1},
-        {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
-    ],
-)
+@pytest.mark.parametrize("wrong", [
+    {"distribution": "gamma", "lower": 0.1, "upper": 0.2},
+    {"distribution": "constant", "lower": 0.1, "upper": 0.2},
+    {"distribution": "uniform", "lower": 0.2, "upper": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -2.5},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": -500.0},
+    {"distribution": "power_law", "lower": 0.1, "upper": 0.2, "exponent": float("nan")},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": float("nan"), "std": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 1e300, "std": 0.1},
+    {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
+])  # fmt: skip
 def test_wrong_sizes_are_refused(wrong):
     with pytest.raises(ValueError, match=r"grain|sizes"):
         GrainSizes(**wrong)
@@ -77,8 +85,7 @@ def test_grain_has_the_volume_of_its_sphere_and_its_centroid_at_the_origin():
 def test_bed_is_at_rest_in_its_box(bed):
     assert bed.history["kinetic_ratio"][-1] < settling.KINETIC_RATIO
     assert bed.history["unbalanced_force"][-1] < settling.UNBALANCED_FORCE
-    assert bed.history["gravity"][-1] == pytest.approx(5e-4)
-    assert bed.history["gravity"][0] == pytest.approx(0.5)
+    assert (bed.history["gravity"][-1], bed.history["gravity"][0]) == (pytest.approx(5e-4), pytest.approx(0.5))
     assert np.abs(bed.position[:, :2]).max() < 0.18
     assert bed.position[:, 2].min() > 0.0
     assert 0.4 < bed.solid_fraction < 0.8
@@ -122,12 +129,8 @@ def test_floor_and_contacts_carry_the_weight(bed, recipe):
 
 def test_rest_period_is_that_of_the_linearised_contact():
     """VALIDATION: 0.13 s at E = 1e8 and 0.6 s at 1e6, for 0.1 m grains at 5e-5 m/s2."""
-    from lithobrake.dem import Material
-
-    stiff = Material(young_modulus=1e8, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
-    soft = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
-    assert settling.rest_period(stiff, 0.1, 5e-5) == pytest.approx(0.13, abs=0.01)
-    assert settling.rest_period(soft, 0.1, 5e-5) == pytest.approx(0.6, abs=0.02)
+    assert settling.rest_period(replace(ROCK, young_modulus=1e8), 0.1, 5e-5) == pytest.approx(0.13, abs=0.01)
+    assert settling.rest_period(ROCK, 0.1, 5e-5) == pytest.approx(0.6, abs=0.02)
 
 
 def test_bed_survives_its_file(bed, tmp_path):
@@ -136,8 +139,7 @@ def test_bed_survives_its_file(bed, tmp_path):
     assert np.array_equal(bed.position, other.position)
     assert np.array_equal(bed.orientation, other.orientation)
     assert all(np.array_equal(a.core, b.core) for a, b in zip(bed.grains, other.grains, strict=True))
-    assert other.width == bed.width
-    assert other.seed == bed.seed
+    assert (other.width, other.seed) == (bed.width, bed.seed)
     assert np.array_equal(bed.frames["position"], other.frames["position"])
 
 
@@ -191,27 +193,23 @@ def test_height_map_sees_the_top_of_every_grain(bed):
     assert (one == 0.0).any()
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("grain_count", 0),
-        ("cloud_point_count", 3),
-        ("width", (0.1, 0.4)),
-        ("gravity", (0, 0, 1e-4)),
-        ("pour_gravity", 1e-5),
-    ],
-)
+@pytest.mark.parametrize(("name", "value"), [
+    ("grain_count", 0),
+    ("cloud_point_count", 3),
+    ("width", (0.1, 0.4)),
+    ("gravity", (0, 0, 1e-4)),
+    ("pour_gravity", 1e-5),
+])  # fmt: skip
 def test_impossible_recipes_are_refused(recipe, name, value):
     with pytest.raises(ValueError, match=f"BedRecipe.{name}"):
         recipe(**{name: value})
 
 
 def test_a_grain_that_meets_another_hard_makes_the_steps_smaller_and_is_not_refused():
-    rock = Material(young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
     worlds = World(), World(), World()
     for world in worlds:
-        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), rock)
-        world.add_body(Sphere(0.05), rock, (0.0, 0.0, 0.0501), (0.0, 0.0, -0.05))
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROCK)
+        world.add_body(Sphere(0.05), ROCK, (0.0, 0.0, 0.0501), (0.0, 0.0, -0.05))
     world, other, last = worlds
     chunk = 0.8 * world.shortest_contact(0.05)
     world.time_step = chunk / 4.0
@@ -223,3 +221,183 @@ def test_a_grain_that_meets_another_hard_makes_the_steps_smaller_and_is_not_refu
     assert other.velocity[0, 2] == pytest.approx(0.5 * 0.05, rel=0.04)
     with pytest.raises(StepTooLargeError, match="make it smaller"):
         settling.run_quietly(last, 3.0 * chunk)
+
+
+@pytest.fixture
+def library(tmp_path, monkeypatch):
+    """The folder of an empty library of a megabyte."""
+    monkeypatch.setenv("LITHOBRAKE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("LITHOBRAKE_BED_LIBRARY_GB", "0.001")
+    module._library.cache_clear()
+    yield tmp_path / "cache" / "lithobrake" / "beds"
+    module._library.cache_clear()
+
+
+def kept(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir() if not path.name.startswith("lock"))
+
+
+def never() -> Bed:
+    raise AssertionError("the bed was in the library")
+
+
+def test_a_bed_that_was_poured_is_found_again_bit_for_bit(library, recipe, tmp_path):
+    # A pour of its own: the bed of the other tests is not asked how it was poured.
+    few = recipe(grain_count=4, width=(0.25, 0.25))
+    assert stored_or_poured(few, tmp_path / "first.h5", lambda: pour_bed(few))
+    assert kept(library) == [module.bed_key(few)]
+    assert not stored_or_poured(few, tmp_path / "second.h5", never)
+    assert (tmp_path / "first.h5").read_bytes() == (tmp_path / "second.h5").read_bytes()
+    found, again = Bed.load(tmp_path / "second.h5"), pour_bed(few)
+    assert found.position.tobytes() == again.position.tobytes()
+    assert found.orientation.tobytes() == again.orientation.tobytes()
+    assert found.seed == few.seed
+
+
+def test_the_key_holds_what_a_bed_follows_from_and_nothing_else(recipe, monkeypatch):
+    first = recipe()
+    others = [recipe(seed=4), recipe(grain_count=25), recipe(pour_gravity=0.6), recipe(gravity=(0.0, 0.0, -6e-4)),
+        recipe(material=replace(first.material, friction=0.6)), recipe(contact=ContactModel(steps_per_contact=26.0)),
+        recipe(sizes=replace(first.sizes, upper=0.12)), recipe(sides="periodic")]  # fmt: skip
+    assert len({module.bed_key(one) for one in (first, *others)}) == 9
+    assert module.bed_key(recipe()) == module.bed_key(first)
+    # How a landing is stepped changes no bed.
+    assert module.bed_key(recipe(contact=replace(first.contact, stepping="local"))) == module.bed_key(first)
+    before = module.bed_key(first)
+    monkeypatch.setattr(module, "_code", lambda: ["edited"])
+    assert module.bed_key(first) != before
+
+
+@pytest.mark.parametrize("damage", [lambda whole: whole[:-40], lambda whole: b"x" + whole[1:], lambda whole: b""])
+def test_a_damaged_bed_is_poured_anew_with_a_word(library, recipe, bed, tmp_path, caplog, damage):
+    stored_or_poured(recipe(), tmp_path / "first.h5", lambda: bed)
+    (name,) = kept(library)
+    whole = (library / name).read_bytes()
+    (library / name).write_bytes(damage(whole))
+    with caplog.at_level(logging.WARNING):
+        assert stored_or_poured(recipe(), tmp_path / "second.h5", lambda: bed)
+    assert f"{library / name} is damaged, or was not written with this user's key: it is made again." in caplog.messages
+    assert (library / name).read_bytes()[:-32] == (tmp_path / "second.h5").read_bytes()
+    assert not stored_or_poured(recipe(), tmp_path / "third.h5", never)
+
+
+def test_the_beds_that_were_unused_for_longest_make_room(library, recipe, bed, tmp_path, monkeypatch):
+    def ask(seed: int) -> bool:
+        return stored_or_poured(recipe(seed=seed), tmp_path / f"{seed}.h5", lambda: bed)
+
+    assert ask(1)
+    size = (library / module.bed_key(recipe(seed=1))).stat().st_size
+    monkeypatch.setenv("LITHOBRAKE_BED_LIBRARY_GB", str(3.5 * size / 1e9))
+    # A draft that a process left behind when it was killed counts, one that is being written does not.
+    old, new = f".{'0' * 64}.1.part", f".{'0' * 64}.2.part"
+    for name, age in ((old, 2e5), (new, 0.0)):
+        (library / name).write_bytes(b"0" * size)
+        os.utime(library / name, (time.time() - age,) * 2)
+    for seed in (2, 3):
+        assert ask(seed)
+    # Used again, the first is no longer the one that was unused for longest.
+    for seed, age in ((1, 30.0), (2, 20.0), (3, 10.0)):
+        os.utime(library / module.bed_key(recipe(seed=seed)), (time.time() - age,) * 2)
+    assert not ask(1)
+    assert ask(4)
+    assert kept(library) == sorted([new, *(module.bed_key(recipe(seed=seed)) for seed in (1, 3, 4))])
+    assert all((tmp_path / f"{seed}.h5").is_file() for seed in (1, 2, 3, 4))
+
+
+@pytest.mark.parametrize("size", ["0", "1e-9"])
+def test_a_library_without_room_keeps_nothing_and_pours(library, recipe, bed, tmp_path, monkeypatch, size):
+    monkeypatch.setenv("LITHOBRAKE_BED_LIBRARY_GB", size)
+    for _ in range(2):
+        assert stored_or_poured(recipe(), tmp_path / "bed.h5", lambda: bed)
+    assert not library.exists() or kept(library) == []
+    assert Bed.load(tmp_path / "bed.h5").position.tobytes() == bed.position.tobytes()
+
+
+def test_without_a_library_no_bed_of_it_is_taken(library, recipe, bed, tmp_path, monkeypatch):
+    stored_or_poured(recipe(), tmp_path / "bed.h5", lambda: bed)
+    monkeypatch.setenv("LITHOBRAKE_BED_LIBRARY_GB", "0")
+    assert stored_or_poured(recipe(), tmp_path / "bed.h5", lambda: bed)
+
+
+@pytest.mark.parametrize("size", ["much", "-1", "nan", "inf", "1e300"])
+def test_a_size_that_is_none_is_refused(library, recipe, tmp_path, monkeypatch, size):
+    monkeypatch.setenv("LITHOBRAKE_BED_LIBRARY_GB", size)
+    with pytest.raises(ValueError, match=f"LITHOBRAKE_BED_LIBRARY_GB is '{size}'; allowed: 1e.09 gigabytes"):
+        stored_or_poured(recipe(), tmp_path / "bed.h5", never)
+
+
+# A process that asks for the bed of a seed and pours, slowly, what lies in a file.
+PROCESS = """
+import json, sys, time
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+from touchdown.conftest import small_recipe
+from lithobrake.touchdown import Bed, stored_or_poured
+bed = Bed.load({bed!r})
+
+def pour():
+    Path({started!r}).touch()
+    time.sleep(float(sys.argv[2]))
+    return bed
+
+print("ready", flush=True)
+sys.stdin.readline()
+print(json.dumps(stored_or_poured(small_recipe(seed=7), Path(sys.argv[1]), pour)))
+"""
+
+
+@pytest.fixture
+def process(library, bed, tmp_path):
+    """Start a process that waits for a word and then asks for a bed, which takes so many seconds to pour."""
+    bed.save(tmp_path / "ready.h5")
+    started = tmp_path / "started"
+    script = PROCESS.format(tests=str(Path(__file__).parents[1]), bed=str(tmp_path / "ready.h5"), started=str(started))
+    running = []
+
+    def start(number: int, seconds: float) -> "subprocess.Popen[str]":
+        words = [sys.executable, "-c", script, str(tmp_path / f"out_{number}.h5"), str(seconds)]
+        one = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        running.append(one)
+        assert one.stdout.readline() == "ready\n"
+        return one
+
+    yield start
+    for one in running:
+        one.kill()
+        one.communicate()
+
+
+def ask(one: "subprocess.Popen[str]") -> None:
+    one.stdin.write("\n")
+    one.stdin.flush()
+
+
+def answer(one: "subprocess.Popen[str]") -> bool:
+    return bool(json.loads(one.communicate(timeout=60)[0]))
+
+
+def wait_for(path: Path) -> None:
+    for _ in range(3000):
+        if path.exists():
+            return
+        time.sleep(0.01)
+    raise AssertionError(f"{path} did not come")
+
+
+def test_of_two_processes_one_pours_and_the_other_waits_for_it(process, tmp_path):
+    both = [process(number, 0.5) for number in (1, 2)]
+    for one in both:
+        ask(one)
+    assert sorted(answer(one) for one in both) == [False, True]
+    assert (tmp_path / "out_1.h5").read_bytes() == (tmp_path / "out_2.h5").read_bytes()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
+def test_a_process_that_dies_while_it_pours_leaves_its_turn_to_the_next(process, tmp_path):
+    first, second = process(1, 600.0), process(2, 0.0)
+    ask(first)
+    wait_for(tmp_path / "started")
+    ask(second)
+    first.send_signal(signal.SIGKILL)
+    assert answer(second)
+    assert (tmp_path / "out_2.h5").is_file()

@@ -1,18 +1,33 @@
-"""Boulders among grains: as many, as large and as deep as asked, cut off at the floor, at rest among the grains."""
+"""Beds with boulders, beds of spheres, and the smallest bed."""
 
 import math
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from lithobrake.dem import Box, ConvexHull
+from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
 from lithobrake.geometry.limits import BOULDER_REACH
-from lithobrake.touchdown import Bed, Boulders, GrainSizes, pour_bed, settling
+from lithobrake.touchdown import (
+    Bed,
+    Boulders,
+    ContactModel,
+    GrainSizes,
+    Lander,
+    land,
+    pour_bed,
+    settling,
+    smallest_bed,
+    wave_speed,
+)
 from lithobrake.touchdown.bed import heights_at
 from lithobrake.touchdown.grains import SOLID_FRACTION, cut_below, free_places, lowered, place_boulders, surface_among
 from lithobrake.touchdown.pouring import rain
+
+from .landings import LANDER, landing
 
 WIDTH = (0.8, 0.8)
 SIZES = GrainSizes(distribution="power_law", lower=0.15, upper=0.4, exponent=3.65)
@@ -33,8 +48,7 @@ def ground(recipe: Any) -> Bed:
 
 
 def test_a_boulder_rests_among_the_grains_as_deep_as_asked(ground: Bed) -> None:
-    assert ground.boulder_count == 1
-    assert len(ground.grains) == 97
+    assert (ground.boulder_count, len(ground.grains)) == (1, 97)
     assert ground.history["kinetic_ratio"][-1] < settling.KINETIC_RATIO
     # It has not turned over, nor has it been lifted.
     assert abs(ground.orientation[0, 0]) > 0.999
@@ -73,8 +87,7 @@ def test_the_mean_coverage_over_beds_is_that_asked_for() -> None:
     asked, area = boulders(0.13), 0.9 * 1.1
     counts = [asked.count(area, (k + 0.5) / 1000) for k in range(1000)]
     mean = asked.mean_count(area)
-    assert set(counts) == {int(mean), int(mean) + 1}
-    assert np.mean(counts) == pytest.approx(mean, abs=1e-3)
+    assert (set(counts), np.mean(counts)) == ({int(mean), int(mean) + 1}, pytest.approx(mean, abs=1e-3))
     square = np.mean(SIZES.draw((np.arange(1000) + 0.5) / 1000) ** 2)
     assert mean * 0.25 * math.pi * square / area == pytest.approx(0.13)
 
@@ -114,8 +127,7 @@ def test_a_coverage_or_cover_of_no_bed_is_refused(coverage: float, cover: tuple[
 def test_what_is_cut_off_at_a_height_has_the_volume_above_it() -> None:
     box = ConvexHull(Box((1.0, 2.0, 4.0)).vertices + np.array([0.0, 0.0, 1.0]))
     cut = cut_below(box, 0.0)
-    assert cut.volume == pytest.approx(6.0)
-    assert cut.vertices[:, 2].min() == 0.0
+    assert (cut.volume, cut.vertices[:, 2].min()) == (pytest.approx(6.0), 0.0)
     assert cut_below(box, -2.0) is box
 
 
@@ -131,19 +143,77 @@ def test_a_boulder_goes_where_its_top_is_to_be_and_never_floats() -> None:
 def test_grains_fill_what_a_boulder_leaves() -> None:
     """A cube of 1 m on 4 m2, half of it in the grains: 4 h = V / 0.6 + h, with its top 1 - h above the surface."""
     volume = SOLID_FRACTION * 1.5
-    surface = surface_among([Box((1.0, 1.0, 1.0))], np.array([-0.5]), volume, 4.0)
-    assert surface == pytest.approx(0.5, abs=1e-5)
+    assert surface_among([Box((1.0, 1.0, 1.0))], np.array([-0.5]), volume, 4.0) == pytest.approx(0.5, abs=1e-5)
     # The same height without it takes more grains.
     assert surface_among([], np.zeros(0), SOLID_FRACTION * 2.0, 4.0) == pytest.approx(0.5)
 
 
 def test_rain_stays_clear_of_boulders(ground: Bed) -> None:
     grains = ground.grains[1:40]
-    position, turned = rain(
-        np.random.default_rng(1), grains, WIDTH, WIDTH, ground.grains[:1], ground.position[:1]
-    )  # fmt: skip
+    position, turned = rain(np.random.default_rng(1), grains, WIDTH, WIDTH, ground.grains[:1],
+        ground.position[:1])  # fmt: skip
     assert (turned[0] == (1.0, 0.0, 0.0, 0.0)).all()
     way = position[1:] - position[0]
     way[:, :2] -= 0.8 * np.rint(way[:, :2] / 0.8)
     reach = np.array([grain.bounding_radius for grain in grains]) + ground.grains[0].bounding_radius
     assert (np.linalg.norm(way, axis=1) > reach - 1e-12).all()
+
+
+VALIDATION = Path(__file__).parents[2] / "validation"
+
+
+def test_spheres_rest_on_ground_that_repeats_and_are_landed_on(
+    recipe: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "path", [str(VALIDATION), *sys.path])
+    from sphere_beds import SphereBed, pour_spheres
+
+    asked = recipe(sides="periodic", width=(0.52, 0.56), grain_count=48,
+        sizes=GrainSizes(distribution="constant", lower=0.1, upper=0.1))  # fmt: skip
+    rock = replace(asked.material, rolling_friction=0.1)
+    poured = pour_spheres(replace(asked, material=rock))
+    assert poured.history["unbalanced_force"][-1] < settling.UNBALANCED_FORCE
+    poured.save(tmp_path / "bed.h5")
+    bed = SphereBed.of(Bed.load(tmp_path / "bed.h5"))
+    world = bed.world(rock, asked.gravity, ContactModel())
+    assert {type(body.shape) for body in world.bodies} == {Sphere}
+    np.testing.assert_allclose([body.shape.bounding_radius for body in world.bodies], 0.05)
+    assert land(bed, LANDER, landing(grain=rock, time_limit=5.0)).outputs["peak_acceleration"] > 0.0
+
+
+def rock(young_modulus=1e7):
+    return Material(young_modulus=young_modulus, poisson_ratio=0.25, restitution=1.0, friction=0.0, density=2500.0)
+
+
+def test_wave_runs_through_a_chain_at_its_speed():
+    """Nesterenko (1983): the wave in a chain of touching spheres, struck by one of them."""
+    diameter, speed, count = 0.1, 0.1, 60
+    world = World((0.0, 0.0, 0.0))
+    for k in range(count):
+        world.add_body(Sphere(0.05), rock(), (diameter * k, 0, 0), velocity=(speed if k == 0 else 0.0, 0, 0))
+    times = []
+    for probe in (20, 50):
+        while world.velocity[probe, 0] < 0.25 * speed:
+            world.run(steps=1)
+        times.append(world.time)
+    measured = 30 * diameter / (times[1] - times[0])
+    # What runs on is a solitary wave about five grains long whose peak is 0.68 of the striker's speed.
+    assert wave_speed(rock(), diameter, 0.68 * speed) == pytest.approx(measured, rel=0.05)
+
+
+def test_rule_does_not_depend_on_speed_or_stiffness():
+    """Wave speed goes with v^(1/5) E^(2/5), contact time with their inverse."""
+    lander = Lander(shape=Sphere(0.1), mass=2.0, inertia=None, material=rock())
+    width, depth = smallest_bed(lander, rock(), 0.05, 0.1)
+    assert smallest_bed(lander, rock(1e6), 0.05, 0.4) == pytest.approx((width, depth), rel=1e-9)
+    assert width == pytest.approx(0.2 + 2.0 * depth, rel=1e-12)
+    assert 0.05 < depth < 0.2
+
+
+def test_rule_grows_with_the_mass_of_the_lander():
+    depths = [
+        smallest_bed(Lander(shape=Sphere(0.1), mass=mass, inertia=None, material=rock()), rock(), 0.05, 0.1)[1]
+        for mass in (0.1, 1.0, 10.0)
+    ]
+    assert depths == sorted(depths)
+    assert math.isfinite(depths[-1])

@@ -1,4 +1,4 @@
-"""Rows of the validation tables come out again: the runner itself, and three small rows from nothing."""
+"""Studies that are made again, bands of the validation, and its descents."""
 
 import json
 import runpy
@@ -6,7 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from lithobrake.smallbody import fly
 
 ROOT = Path(__file__).parents[2]
 RUNNER = runpy.run_path(str(ROOT / "validation" / "recreate.py"))
@@ -104,8 +107,45 @@ SMALL = [
 @pytest.mark.parametrize(("arguments", "within"), SMALL, ids=[arguments[0] for arguments, _ in SMALL])
 def test_small_rows_of_the_validation_come_out_again(arguments: list[str], within: float, tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "validation" / "recreate.py"), *arguments]
-    done = subprocess.run(
-        [*command, "--within", str(within), "--work", str(tmp_path)], capture_output=True, text=True, check=False
-    )
+    command += ["--within", str(within), "--work", str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "same digits" in done.stdout
+
+
+BANDS = runpy.run_path(str(Path(__file__).parents[2] / "validation" / "ballistic_descent" / "bands.py"))
+LONGITUDES = np.arange(0.0, 360.0, 10.0)
+
+
+def test_ends_are_where_a_triangle_around_the_seam_crosses_the_level() -> None:
+    away = np.abs((LONGITUDES - 350.0 + 180.0) % 360.0 - 180.0)
+    band = BANDS["band_of"](LONGITUDES, np.maximum(1.0 - away / 60.0, 0.0), 0.5)
+    assert (band.begin, band.end) == pytest.approx((320.0, 380.0))
+    assert str(band) == "320 to 20"
+    assert band.agrees(BANDS["Band"](311.0, 29.0 + 360.0), 10.0)
+    assert not band.agrees(BANDS["Band"](309.0, 380.0), 10.0)
+
+
+def test_no_and_every_longitude_have_words_and_agree_with_nothing() -> None:
+    flat = np.full(36, 0.8)
+    every, none = (BANDS["band_of"](LONGITUDES, flat, level) for level in (0.7, 0.9))
+    assert (str(every), str(none)) == ("all", "none")
+    assert not every.agrees(BANDS["Band"](0.0, 360.0), 10.0)
+    assert not none.agrees(BANDS["Band"](0.0, 360.0), 10.0)
+
+
+DESCENTS = runpy.run_path(str(Path(__file__).parents[2] / "validation" / "ballistic_descent" / "descents.py"))
+
+
+@pytest.mark.parametrize("longitude", [0.0, 70.0, 200.0])
+def test_a_descent_flown_forward_comes_down_vertically_at_its_site(longitude: float) -> None:
+    """Against facets and exact gravity; a wrong sense of the Coriolis acceleration misses by tens of degrees."""
+    body, east, speed = DESCENTS["balls"](), np.radians(longitude), 0.09
+    up = np.array([[np.cos(east), np.sin(east), 0.0]])
+    state = DESCENTS["back_in_time"](body, up, np.array([speed]), (200.0,))[200.0].states[0]
+    flight = fly(body, state[:3], state[3:], 86_400.0)
+    assert flight.status[0] == "impact"
+    assert np.linalg.norm(state[:3]) == pytest.approx(200.0, abs=2.0)
+    assert abs((flight.longitude[0] - longitude + 180.0) % 360.0 - 180.0) < 1.0
+    assert flight.impact_speed[0] == pytest.approx(speed, rel=0.01)
+    assert np.degrees(flight.incidence[0]) < 5.0

@@ -68,7 +68,6 @@ def test_narrowed_shares_hold_the_truth(slope: float, predicted: float, narrows:
         plain = plain_shares(table)
         control, shares = _narrowed(table, plain, fresh, own)
         lower, upper = shares[REST].share.lower, shares[REST].share.upper
-        assert lower is not None
         assert upper is not None
         assert sum(one.share.value for one in shares.values()) == pytest.approx(1.0, abs=1e-12)
         held.append(lower <= truth <= upper)

@@ -16,14 +16,9 @@ from ..synthetic_lander import SyntheticLander, synthetic_tables
 # About a tenth and a two-hundredth of the landers that leave are faster [m/s].
 FAST, FASTEST = 0.14, 0.21
 CONDITIONS = {
-    "fast": f"speed_out > {FAST}",
-    "fastest": f"speed_out > {FASTEST}",
-    "gone": "returns == false",
-    "caught": "captured",
-    "fast_and_back": f"speed_out > {FAST} and returns",
-    "held": "settled",
-    "lifted": "lofted",
-}
+    "fast": f"speed_out > {FAST}", "fastest": f"speed_out > {FASTEST}", "gone": "returns == false",
+    "caught": "captured", "fast_and_back": f"speed_out > {FAST} and returns", "held": "settled", "lifted": "lofted",
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,9 @@
 
 SOIL_JOURNEYS = """
 seed = 5
+lander = { shape = "box", edges = [0.06, 0.07, 0.08], mass = 1.0 }
+journey = { count = 2, duration = 20000.0 }
+site = { body = "dimorphos" }
 [bed]
 grain_count = 60
 width = [0.5, 0.5]
@@ -15,19 +18,10 @@ young_modulus = 2e5
 poisson_ratio = 0.25
 restitution = 0.8
 friction = { distribution = "uniform", lower = 0.4, upper = 0.9 }
-[lander]
-shape = "box"
-edges = [0.06, 0.07, 0.08]
-mass = 1.0
 [delivery]
 latitude_deg = 10.0
 longitude_deg = -60.0
 north_error = { distribution = "normal", mean = 0.0, std = 15.0 }
 speed = { distribution = "uniform", lower = 0.08, upper = 0.1 }
 incidence_deg = { distribution = "uniform", lower = 40.0, upper = 70.0 }
-[journey]
-count = 2
-duration = 20000.0
-[site]
-body = "dimorphos"
 """

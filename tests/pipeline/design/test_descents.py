@@ -1,6 +1,8 @@
-"""Flights from delivered states to the first touchdown: closed forms, frames, files, and what is refused."""
+"""Flights from delivered states to the first touchdown; and runs out of one sequence: laws, beds, attitudes."""
 
 import math
+import tomllib
+from collections import Counter
 from copy import deepcopy
 from pathlib import Path
 from typing import Any
@@ -11,29 +13,34 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ndtri
 
 from lithobrake.files.ephemeris_message import message_states
-from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, turned
+from lithobrake.pipeline import stage_keys
+from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
+from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
-from lithobrake.study import StudyError
+from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.delivery_sections import ReleaseSection
+from lithobrake.study.ground_sections import LANDINGS_A_BED, default_bed_count
 from lithobrake.study.impact_sections import SiteSection
+from lithobrake.study.lander_section import directions_of_sides, side_words, sides_down
 from lithobrake.study.source import StudySource
-from lithobrake.study.study import Study
+from lithobrake.study.template import template
+from lithobrake.study.touchdown_model import PLACE, draw, medians
 from lithobrake.vocabulary.outcomes import FlightStatus
+from lithobrake.vocabulary.quantities import ORIENTATION
 
-from ...small_ground import SMALL_GROUND
+from ...paper_tables import SMALL_GROUND, with_keys
 from ...smallbody.meshes import sphere_mesh
+from ..journeys.soil_journeys import STUDY
 
 TABLES: dict[str, Any] = {
-    "seed": 5,
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "seed": 5, **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
     "delivery": {"latitude_deg": 0.0, "longitude_deg": 90.0, "frame": "body_fixed"},
-    "journey": {"count": 8, "duration": 40000.0},
-    "site": {"body": "dimorphos", "partner": False, "mass": 4.3e9},
+    "journey": {"count": 8, "duration": 40000.0}, "site": {"body": "dimorphos", "partner": False, "mass": 4.3e9},
     "flight": {"gravity": "exact"},
 }  # fmt: skip
 # Above the trailing side of Dimorphos, some 3 cm/s towards it.
@@ -46,10 +53,7 @@ RADIUS, HEIGHT, DOWN, MASS = 80.0, 40.0, 0.02, 4.0e9
 
 
 def study(**changes: dict[str, Any]) -> Study:
-    tables = deepcopy(TABLES)
-    for name, table in changes.items():
-        tables.setdefault(name, {}).update(table)
-    return StudySource.of_tables(tables).study
+    return StudySource.of_tables(with_keys(deepcopy(TABLES), changes)).study
 
 
 def released(**release: Any) -> dict[str, Any]:
@@ -57,8 +61,7 @@ def released(**release: Any) -> dict[str, Any]:
 
 
 def write_table(path: Path, table: np.ndarray, titles: str) -> str:
-    lines = [titles, *(",".join(f"{value:.17g}" for value in row) for row in table)]
-    path.write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join([titles, *(",".join(f"{value:.17g}" for value in row) for row in table)]) + "\n")
     return str(path)
 
 
@@ -67,16 +70,13 @@ TITLES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 
 def some_states(count: int = 8) -> np.ndarray:
     """Times and body-fixed states, [count, 7]."""
-    random = np.random.default_rng(1)
-    off = random.standard_normal((count, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
+    off = np.random.default_rng(1).standard_normal((count, 6)) * [5.0, 5.0, 5.0, 1e-3, 1e-3, 1e-3]
     return np.column_stack([100.0 * np.arange(count), np.array([*POSITION, *VELOCITY]) + off])
 
 
 def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
     found = DrawnDesign(study(delivery=released(covariance=[[0.0] * 6] * 6))).descents
-    assert found is not None
-    site = Site(study(delivery=released()))
-    alone = fly(site.body, POSITION, VELOCITY, 40000.0)
+    alone = fly(Site(study(delivery=released())).body, POSITION, VELOCITY, 40000.0)
     assert (found.flights.status == "impact").all()
     assert (found.flights.position == alone.position).all()
     assert (found.flights.velocity == alone.velocity).all()
@@ -86,8 +86,7 @@ def test_a_release_without_spread_is_the_flight_of_that_one_state() -> None:
 def test_a_run_alone_is_the_same_as_among_others() -> None:
     design = DrawnDesign(study(delivery=released(position_std=5.0, velocity_std=1e-3)))
     assert [design.row(run) for run in range(8)] == design.rows
-    more = design.with_run_count(12)
-    assert more.rows[:8] == design.rows
+    assert design.with_run_count(12).rows[:8] == design.rows
     assert len({row["impact.speed"] for row in design.rows}) == 8
 
 
@@ -154,8 +153,7 @@ def test_the_spread_at_the_ground_is_that_of_the_linear_propagation(ball: Path) 
 
 
 def test_the_root_of_a_covariance_gives_it_back() -> None:
-    random = np.random.default_rng(2)
-    factor = random.standard_normal((6, 4)) * np.array([[30.0]] * 3 + [[0.007]] * 3)
+    factor = np.random.default_rng(2).standard_normal((6, 4)) * np.array([[30.0]] * 3 + [[0.007]] * 3)
     covariance = factor @ factor.T
     release = ReleaseSection(position=POSITION, velocity=VELOCITY, covariance=covariance.tolist())
     root = spread_root(release, np.array([0.0, 0.0, 1.0]))
@@ -181,8 +179,7 @@ def test_axes_of_icrf_go_through_pole_and_meridian() -> None:
         right_ascension, declination = POLE["pole_right_ascension_deg"], POLE["pole_declination_deg"]
         # The usual three turns of the frame: about z, x, z.
         turns = [90.0 + right_ascension, 90.0 - declination, angle]
-        expected = Rotation.from_euler("ZXZ", turns, degrees=True).inv().as_matrix()
-        assert rotation == pytest.approx(expected, abs=1e-12)
+        assert rotation == pytest.approx(Rotation.from_euler("ZXZ", turns, degrees=True).inv().as_matrix(), abs=1e-12)
 
 
 def to_icrf(table: np.ndarray) -> np.ndarray:
@@ -237,8 +234,7 @@ def message(states: np.ndarray, frame: str = "DIMORPHOS_FIXED", centre: str = "D
 def test_states_of_a_message_know_their_line_and_segment(tmp_path: Path) -> None:
     found = list(message_states(tmp_path / "a.oem", message(some_states(2))))
     assert [state.line for state in found] == [15, 16]
-    assert found[0].segment["REF_FRAME"] == "DIMORPHOS_FIXED"
-    assert found[1].epoch.second == 40
+    assert (found[0].segment["REF_FRAME"], found[1].epoch.second) == ("DIMORPHOS_FIXED", 40)
     by_day = message(some_states(1)).replace("2027-04-20T12:00:00.", "2027-110T12:00:00.")
     assert next(message_states(tmp_path / "a.oem", by_day)).epoch == found[0].epoch
 
@@ -277,8 +273,7 @@ def test_a_spin_of_a_lander_is_told_in_the_frame_of_its_bed(tmp_path: Path) -> N
     against = back - [0.0, 0.0, 2.0 * math.pi / SPIN_PERIOD]
     row = design.rows[0]
     assert np.linalg.norm([row[f"impact.spin_{axis}"] for axis in "xyz"]) == pytest.approx(np.linalg.norm(against))
-    outward = float(design.descents.axes[0, 2] @ against)
-    assert row["impact.spin_z"] == pytest.approx(outward)
+    assert row["impact.spin_z"] == pytest.approx(float(design.descents.axes[0, 2] @ against))
 
 
 def test_landers_that_never_touch_down_are_no_runs(tmp_path: Path) -> None:
@@ -311,3 +306,226 @@ def test_a_state_below_the_ground_is_refused_with_its_line(tmp_path: Path) -> No
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
     with pytest.raises(StudyError, match=r"impact\.speed reaches"):
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
+
+
+QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
+SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
+ARRIVAL = ("bed", *PLACE, "impact.azimuth_deg", *ORIENTATION)
+REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
+
+
+def drawn(run_count: int = 240, seed: int = 1, **changes: dict[str, Any]) -> Study:
+    """The template with so many runs out of the sequence, and with other keys in its tables."""
+    tables = QUICK | {name: {**QUICK.get(name, {}), **keys} for name, keys in changes.items()}
+    tables["design"] = {**tables["design"], "run_count": run_count}
+    return check_tables(tables | {"seed": seed}, Path())
+
+
+def columns(rows: list[dict[str, float]], *names: str) -> np.ndarray:
+    return np.array([[row[name] for name in names] for row in rows])
+
+
+@pytest.mark.parametrize(("few", "many"), [(2, 13), (12, 144), (115, 240), (240, 241), (599, 1200)])
+@pytest.mark.parametrize("beds", [{}, {"bed": {"bed_count": 2}}], ids=["beds grow", "two beds"])
+def test_more_runs_leave_every_run_its_bed_and_its_key(few: int, many: int, beds: dict[str, dict[str, Any]]) -> None:
+    first, second = drawn(few, **beds), drawn(many, **beds)
+    before, after = DrawnDesign(first).rows, DrawnDesign(second).rows
+    assert (len(before), len(after)) == (few, many)
+    assert before == after[:few]
+    assert touchdown_keys(first, before, 0) == touchdown_keys(second, after[:few], 0)
+    assert set(bed_files(first)) <= set(bed_files(second))
+    # A bed is poured from the same seed, however many there are.
+    assert stage_keys(first)["bed"] == stage_keys(second)["bed"]
+    assert stage_keys(first)["runs"] != stage_keys(second)["runs"]
+
+
+@pytest.mark.parametrize("beds", [1, 5, 12, 24, 60])
+def test_beds_that_are_given_have_equally_many_runs(beds: int) -> None:
+    for run_count in (max(beds, 2), 60, 120, 143, 240):
+        counts = Counter(beds_of_runs(drawn(run_count, bed={"bed_count": beds}), run_count))
+        assert len(counts) == beds
+        assert max(counts.values()) - min(counts.values()) <= 1
+
+
+def test_beds_that_grow_with_the_runs_are_all_used_and_full_at_each_twenty() -> None:
+    study = drawn(240)
+    for run_count in range(2, 800):
+        counts = Counter(beds_of_runs(study, run_count))
+        assert set(counts) == set(range(default_bed_count(run_count, LANDINGS_A_BED)))
+        # The newest bed fills next, and only where one has yet to be filled are the others ahead of it.
+        *filled, newest = (counts[bed] for bed in range(len(counts)))
+        assert max(filled) - min(filled) <= 1
+        assert newest <= max(filled) or max(counts.values()) - min(counts.values()) <= 1
+        if run_count % LANDINGS_A_BED == 0 and run_count >= 12 * LANDINGS_A_BED:
+            assert set(counts.values()) == {LANDINGS_A_BED}
+
+
+def test_blocks_of_beds_have_an_order_of_their_own_that_the_seed_decides() -> None:
+    first, other = (np.array(beds_of_runs(drawn(96, seed), 96)).reshape(8, 12) for seed in (1, 2))
+    assert first[0].tolist() == list(range(12))
+    assert len({tuple(block) for block in first.tolist()}) == 8
+    assert not np.array_equal(first[1:], other[1:])
+
+
+def test_every_coordinate_is_spread_evenly_over_its_law() -> None:
+    study = drawn(256, impact={"region": REGION})
+    rows = DrawnDesign(study).rows
+    names = (*SOIL, *PLACE, "impact.azimuth_deg")
+    laws = [study.grain.young_modulus, study.grain.friction, study.lander.restitution]
+    probability = [law.to_chaos().cdf(columns(rows, name)[:, 0]) for law, name in zip(laws, names, strict=False)]
+    probability += [(columns(rows, PLACE[0])[:, 0] + 0.1) / 0.15, columns(rows, PLACE[1])[:, 0] / 0.02]
+    probability += [columns(rows, "impact.azimuth_deg")[:, 0] / 360.0]
+    for one in probability:
+        # 256 points of a Sobol sequence: exactly one in each of 256 equal parts.
+        assert np.array_equal(np.sort(np.floor(one * 256)), np.arange(256))
+    assert np.abs(np.corrcoef(probability) - np.eye(len(names))).max() < 0.1
+    attitudes = columns(rows, *ORIENTATION)
+    assert np.linalg.norm(attitudes, axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert np.abs(attitudes.T @ attitudes / 256 - np.eye(4) / 4).max() < 0.03
+
+
+def test_what_is_given_is_not_drawn_and_leaves_the_rest_as_it_was() -> None:
+    free = DrawnDesign(drawn(40, impact={"region": REGION})).rows
+    held = {"azimuth_deg": 30.0, "place": {"x": 0.01, "y": 0.02}, "orientation": [2, 0, 0, 0]}
+    rows = DrawnDesign(drawn(40, impact=held)).rows
+    assert np.array_equal(columns(free, "bed", *SOIL), columns(rows, "bed", *SOIL))
+    assert np.array_equal(columns(rows, *ARRIVAL[1:]), np.tile([0.01, 0.02, 30.0, 1.0, 0.0, 0.0, 0.0], (40, 1)))
+
+
+def test_an_uncertain_place_or_azimuth_is_an_input_like_any_other() -> None:
+    rows = DrawnDesign(drawn(64, impact={"azimuth_deg": {"distribution": "uniform", "lower": 0.0, "upper": 10.0}})).rows
+    assert np.array_equal(np.sort(np.floor(columns(rows, "impact.azimuth_deg")[:, 0] * 6.4)), np.arange(64))
+
+
+def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
+    rows = DrawnDesign(drawn(64, impact={"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0})).rows
+    assert 9.0 < np.degrees(2.0 * np.arccos(columns(rows, ORIENTATION[0])[:, 0])).max() <= 10.0
+    assert np.all(columns(rows, ORIENTATION[3]) == 0.0)
+
+
+def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
+    arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
+    study = check_tables(QUICK | {"design": {"method": "paper"}, "impact": {**QUICK["impact"], **arrival}}, Path())
+    draws = [draw(study, medians(study), seed) for seed in range(50)]
+    assert 8.0 < np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0])).max() <= 10.0
+    # The error is drawn after all else, which is as it was without it.
+    given = {**QUICK["impact"], "orientation": [1, 0, 0, 0]}
+    without = check_tables(QUICK | {"design": {"method": "paper"}, "impact": given}, Path())
+    before, no_attitude = draw(without, medians(without), 3), dict.fromkeys(ORIENTATION, 0.0)
+    assert before | no_attitude == draws[3] | no_attitude
+
+
+def test_places_are_drawn_where_the_smallest_bed_leaves_room() -> None:
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400, "sides": "walls"})
+    region, width = place_region(study), smallest_width(study)
+    assert region == ((-0.5 * (0.8 - width), 0.5 * (0.8 - width)), (-0.5 * (1.0 - width), 0.5 * (1.0 - width)))
+    places = columns(DrawnDesign(study).rows, *PLACE)
+    assert np.all(np.abs(places) <= [region[0][1], region[1][1]])
+    # Half of 64 parts of the way to each end.
+    assert np.all(np.abs(places).max(axis=0) > 0.9 * np.array([region[0][1], region[1][1]]))
+
+
+def test_places_are_drawn_all_over_ground_that_repeats() -> None:
+    study = drawn(64, bed={"width": [0.8, 1.0], "grain_count": 400})
+    assert place_region(study) == ((-0.4, 0.4), (-0.5, 0.5))
+    assert np.all(np.abs(columns(DrawnDesign(study).rows, *PLACE)).max(axis=0) > 0.9 * np.array([0.4, 0.5]))
+
+
+def test_a_bed_that_is_too_narrow_for_its_rule_is_landed_on_in_the_middle() -> None:
+    # A heavy little ball is long in touch with a grain, and a wave goes far in that time.
+    ball = {"shape": "sphere", "diameter": 0.05, "mass": 50.0, "restitution": QUICK["lander"]["restitution"]}
+    narrow = {**QUICK["bed"], "width": [0.25, 2.0], "sides": "walls"}
+    study = check_tables(QUICK | {"lander": ball, "bed": narrow}, Path())
+    assert 0.25 < smallest_width(study) < 2.0
+    along, across = place_region(study) or ()
+    assert along == (0.0, 0.0)
+    assert across[0] < 0.0 < across[1]
+
+
+def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
+    seeds = {(seed, bed): pour_seed(drawn(seed=seed), bed) for seed in range(40) for bed in range(60)}
+    assert len(set(seeds.values())) == len(seeds)
+    assert seeds == {(seed, bed): pour_seed(drawn(700, seed=seed), bed) for seed, bed in seeds}
+    assert all(0 <= seed < 2**53 for seed in seeds.values())
+
+
+def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
+    study = drawn(50)
+    rows, pairs = DrawnDesign(study).rows, DrawnDesign(study).rows_of("soil_pairs")
+    assert len(pairs) == 20
+    assert np.array_equal(columns(rows[:20], *ARRIVAL), columns(pairs, *ARRIVAL))
+    assert np.all(columns(rows[:20], *SOIL) != columns(pairs, *SOIL))
+    assert len(DrawnDesign(drawn(7)).rows_of("soil_pairs")) == 7
+    assert DrawnDesign(drawn(500)).rows_of("soil_pairs") == pairs
+
+
+def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
+    study = drawn(50, design={"method": "drawn", "side_runs": True, "twin_shift": 2e-4})
+    rows, pairs = DrawnDesign(study).rows[:12], DrawnDesign(study).rows_of("twins")
+    assert len(pairs) == 12
+    shift = columns(pairs, *PLACE) - columns(rows, *PLACE)
+    assert np.linalg.norm(shift, axis=1) == pytest.approx(2e-4)
+    # In all directions, but for those toward a wall.
+    assert len(np.unique(np.round(np.arctan2(shift[:, 1], shift[:, 0]), 6))) == 12
+    assert np.all((shift * columns(rows, *PLACE)).sum(axis=1) <= 0.0)
+    names = [name for name in rows[0] if name not in PLACE]
+    assert np.array_equal(columns(rows, *names), columns(pairs, *names))
+
+
+def study_of(text: str) -> Study:
+    return check_tables(tomllib.loads(text), Path())
+
+
+BOX = study_of(STUDY)
+PRISM = study_of(STUDY.replace("[0.12, 0.1, 0.08]", "[0.08, 0.14, 0.08]"))
+BALL = study_of(STUDY.replace('"box", edges = [0.12, 0.1, 0.08]', '"sphere", diameter = 0.1'))
+
+
+def test_terms_follow_the_shape_and_a_ball_has_none() -> None:
+    assert [attitude_terms(one).names for one in (BOX, PRISM)] == [("x", "z"), ("y",)]
+    assert attitude_terms(BALL) is None
+    assert independent_terms(DrawnDesign(BALL), {}) is None
+
+
+def attitude_columns(turned: Rotation) -> dict[str, np.ndarray]:
+    """Inputs of touchdowns of these attitudes in the bed."""
+    quaternions = np.roll(turned.as_quat(), 1, axis=1)
+    return dict(zip(ORIENTATION, quaternions.T, strict=True)) | {"impact.azimuth_deg": np.zeros(len(quaternions))}
+
+
+def test_drawn_attitudes_have_independent_terms() -> None:
+    found = independent_terms(DrawnDesign(BOX), attitude_columns(Rotation.random(20_000, rng=0)))
+    assert found.mean(axis=0) == pytest.approx(np.zeros(6), abs=0.03)
+    assert np.cov(found.T) == pytest.approx(np.eye(6), abs=0.04)
+
+
+def test_one_attitude_has_no_terms_and_a_pointed_one_has_those_of_its_cone() -> None:
+    one = study_of(STUDY.replace("[delivery]", "[delivery]\norientation = [1.0, 0.0, 0.0, 0.0]"))
+    assert independent_terms(DrawnDesign(one), attitude_columns(Rotation.identity(20))) is None
+    tilts = 0.1 * np.random.default_rng(1).standard_normal((400, 3))
+    found = independent_terms(DrawnDesign(one), attitude_columns(Rotation.from_rotvec(tilts)))
+    # Over the runs themselves they are exactly independent, however small the cone.
+    assert found.mean(axis=0) == pytest.approx(np.zeros(found.shape[1]), abs=1e-9)
+    assert found.T @ found / 400 == pytest.approx(np.eye(found.shape[1]), abs=1e-6)
+
+
+def test_the_side_is_that_of_the_axis_nearest_to_the_normal() -> None:
+    normal = np.array([[0.9, 0.3, -0.3], [-0.2, 0.8, 0.5], [0.1, 0.2, -0.9]])
+    assert sides_down(BOX.lander, normal).tolist() == ["x", "y", "z"]
+    assert sides_down(PRISM.lander, normal).tolist() == ["x or z", "y", "x or z"]
+    assert sides_down(BALL.lander, normal).tolist() == ["", "", ""]
+    assert side_words(BOX.lander, "z") == "z, 0.12 m x 0.1 m"
+    assert side_words(PRISM.lander, "x or z") == "x or z, 0.14 m x 0.08 m"
+
+
+@pytest.mark.parametrize("study", [BOX, PRISM])
+def test_a_chosen_side_is_down_whatever_the_azimuth(study: Study) -> None:
+    random = np.random.default_rng(2)
+    for side, downs in directions_of_sides(study.lander).items():
+        down, azimuth = np.array(downs)[random.integers(len(downs), size=40)], 360.0 * random.random(40)
+        turned = with_side_down(down, azimuth, random.random(40))
+        normal, travel = seen(dict(zip(ORIENTATION, turned.T, strict=True)) | {"impact.azimuth_deg": azimuth})
+        assert normal == pytest.approx(-down, abs=1e-12)
+        assert set(sides_down(study.lander, normal)) == {side}
+        # It comes from all sides.
+        assert np.linalg.norm(travel.mean(axis=0)) < 0.35

@@ -63,8 +63,7 @@ def test_a_study_that_is_edited_goes_on_in_its_folder(tmp_path: Path) -> None:
 
 
 def test_a_study_and_its_folder_move_together(tmp_path: Path) -> None:
-    study = write_study(tmp_path / "a" / "study.toml")
-    begun(study, tmp_path / "a" / "runs" / "study")
+    begun(write_study(tmp_path / "a" / "study.toml"), tmp_path / "a" / "runs" / "study")
     (tmp_path / "a").rename(tmp_path / "b")
     begun(write_study(tmp_path / "b" / "study.toml", "seed = 2"), tmp_path / "b" / "runs" / "study")
 
@@ -109,9 +108,7 @@ def test_the_folder_of_another_study_of_the_same_name_is_refused_until_its_file_
 
 
 @pytest.mark.parametrize("keys", ['{"format_version": 1, "files": {}, "wall_s": {}}', "", "[3]"])
-def test_a_folder_of_the_first_format_or_with_damaged_keys_goes_on_with_its_study_file(
-    keys: str, tmp_path: Path
-) -> None:
+def test_a_folder_of_the_first_format_or_with_bad_keys_goes_on_with_its_study_file(keys: str, tmp_path: Path) -> None:
     study = write_study(tmp_path / "a" / "study.toml")
     begun(study, tmp_path / "out")
     (tmp_path / "out" / "keys.json").write_text(keys)
@@ -155,3 +152,17 @@ def test_runs_of_a_design_are_forgotten_when_its_stage_changes(tmp_path: Path) -
         study, study.read_bytes(), STAGES | {"test_runs": STAGES["test_runs"] | {"key": "2"}}, lambda sentence: None
     )
     assert set(json.loads((folder / "keys.json").read_text())["designs"]) == {"screening", "refined"}
+
+
+def test_a_file_that_is_named_as_a_probe_would_be_stays(tmp_path):
+    (tmp_path / ".writable").write_text("a note of mine")
+    StudyFolder(tmp_path)
+    assert (tmp_path / ".writable").read_text() == "a note of mine"
+    assert [path.name for path in tmp_path.iterdir()] == [".writable"]
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="here every folder can be written")
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(ValueError, match=r"cannot be written .*; choose another folder with --out"):
+        StudyFolder(tmp_path)

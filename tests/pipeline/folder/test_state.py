@@ -67,17 +67,15 @@ def home(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pat
 
 def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Path) -> None:
     before = {
-        path: path.read_bytes() for path in (home / "out").rglob("*") if path.is_file() and path.suffix != ".lock"
+        file: file.read_bytes() for file in (home / "out").rglob("*") if file.is_file() and file.suffix != ".lock"
     }
     lines = said_by("status", home).splitlines()
     assert lines[0] == f"{home / 'out'}: not running; the report is there"
     assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser found")
-    headline = open_study(home / "out").summary["results"]["headline"]
-    assert len(said_by("report", home).splitlines()) == len(headline) + 1
-    changed = {path.name for path, content in before.items() if path.read_bytes() != content}
-    assert changed <= {".lock", "keys.json"}
+    assert len(said_by("report", home).splitlines()) == len(open_study(home / "out").summary["results"]["headline"]) + 1
+    assert {path.name for path, content in before.items() if path.read_bytes() != content} <= {".lock", "keys.json"}
     assert said_by("status", home).splitlines() == lines
 
 
@@ -157,10 +155,8 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "empty summary": ("summary.json", lambda path: path.write_text("")),
     "a list as summary": ("summary.json", lambda path: path.write_text("[1, 2]")),
     "3000 brackets": ("summary.json", lambda path: path.write_text("[" * 3000)),
-    "400 digits": (
-        "flights.json",
-        lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '}),
-    ),
+    "400 digits": ("flights.json",
+                   lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '})),
     "empty flights": ("flights.csv", lambda path: path.write_text("")),
     "another table": ("flights.csv", lambda path: path.write_text("a,b\n1,2\n")),
     "empty rest": ("rest.json", lambda path: path.write_text("")),
@@ -169,18 +165,13 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
     "another expansion": ("screening.json", lambda path: path.write_text('{"format": "lithobrake expansion"}')),
     "truncated samples": ("samples.h5", lambda path: path.write_bytes(path.read_bytes()[:3000])),
     "samples without inputs": ("samples.h5", damage_hdf5),
-}
-KEYS = {
-    "empty": "",
-    "a list": "[1]",
-    "a number": "3",
-    "no format": "{}",
+}  # fmt: skip
+KEYS = {"empty": "", "a list": "[1]", "a number": "3", "no format": "{}",
     "files are a list": '{"format_version": 2, "files": []}',
     "a file is a number": '{"format_version": 2, "files": {"summary.json": 3}}',
     "stages without names": '{"format_version": 2, "stages": {"a": {"title": "a", "key": "b", "files": []}}}',
     "400 digits": '{"format_version": 2, "wall_s": {"bed": ' + 400 * "9" + "}}",
-    "3000 brackets": "[" * 3000 + "]" * 3000,
-}
+    "3000 brackets": "[" * 3000 + "]" * 3000}  # fmt: skip
 LEDGERS: dict[str, Callable[[Path], object]] = {
     "empty": lambda path: path.write_bytes(b""),
     "no database": lambda path: path.write_text("this is not a database, and long enough to be seen as such" * 20),
@@ -279,8 +270,6 @@ def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -
 def test_a_reader_that_has_enough_is_no_mistake(words: list[str], home: Path) -> None:
     command = [sys.executable, "-m", "lithobrake", *words, str(home / "out")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as writer:
-        assert writer.stdout is not None
-        assert writer.stderr is not None
         # As `| head -0` does: nobody reads a line.
         writer.stdout.close()
         said = writer.stderr.read()

@@ -2,6 +2,11 @@
 
 STUDY = """
 seed = 4
+lander = { shape = "box", edges = [0.12, 0.1, 0.08], mass = 0.4, restitution = 0.9 }
+contact = { pair_rule = "mean", steps_per_contact = 20.0 }
+journey = { count = 6, duration = 100_000.0, hop_height = 0.2 }
+site = { body = "dimorphos" }
+campaign = { retry_count = 20 }
 [bed]
 grain_count = 30
 width = [0.54, 0.54]
@@ -15,14 +20,6 @@ young_modulus = 1e5
 poisson_ratio = 0.25
 restitution = 0.6
 friction = { distribution = "uniform", lower = 0.5, upper = 0.9 }
-[lander]
-shape = "box"
-edges = [0.12, 0.1, 0.08]
-mass = 0.4
-restitution = 0.9
-[contact]
-pair_rule = "mean"
-steps_per_contact = 20.0
 [delivery]
 latitude_deg = 10.0
 longitude_deg = -60.0
@@ -30,13 +27,5 @@ heading_deg = { distribution = "uniform", lower = 0.0, upper = 360.0 }
 speed = { distribution = "uniform", lower = 0.05, upper = 0.15 }
 incidence_deg = { distribution = "uniform", lower = 0.0, upper = 60.0 }
 spin_x = { distribution = "uniform", lower = -0.1, upper = 0.1 }
-[journey]
-count = 6
-duration = 100_000.0
-hop_height = 0.2
-[site]
-body = "dimorphos"
-[campaign]
-retry_count = 20
 """
 EDGES, MASS = (0.12, 0.1, 0.08), 0.4

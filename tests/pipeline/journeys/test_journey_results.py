@@ -1,17 +1,52 @@
-"""The tables of journeys and touchdowns from Python."""
+"""Journeys from Python, in the files of other programs, by commands, on their page; and what decides their ends."""
 
+import dataclasses
+import json
+import math
+import re
+import shutil
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
+from lithobrake.emulator import law_tables
+from lithobrake.export import ExportOptions, export_study
+from lithobrake.export.flown import Flown
+from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
+from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
+from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.journeys.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
+from lithobrake.pipeline.runs.energy_bound import energy_bound
+from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.runs.solver import function_identity
+from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.results import StudyResults
-from lithobrake.study import read_study
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.report import write_report
+from lithobrake.report.content import Content, PageTable
+from lithobrake.report.figures.ground_map import GroundMap, round_length
+from lithobrake.report.live.body_view import end_views
+from lithobrake.report.pages.journey_page import journey_content
+from lithobrake.results import ExplorerTables, StudyResults
+from lithobrake.results.page_data import JourneyPage, page_results
+from lithobrake.results.run_results import CountedShare
+from lithobrake.statements import journeys as words
+from lithobrake.study import StudySource, check_tables, read_study
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
+from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
-from .bouncing_lander import FAILS, LEAVES, STUCK
+from ...command_line import lithobrake
+from ...report.browser import browser_page, needs_browser
+from ...report.page_scripts import answer_of, explorer_data, needs_node
+from ...report.page_text import visible_text
+from .bouncing_lander import FAILS, LEAVES, STUCK, bounce, journey_tables, run_without_emulator
 
 
 def test_each_journey_has_a_row_with_its_end(journeys: StudyResults) -> None:
@@ -23,9 +58,7 @@ def test_each_journey_has_a_row_with_its_end(journeys: StudyResults) -> None:
     assert table["end"].tolist() == list(expected.values())
     at_rest = table["end"] == JourneyEnd.AT_REST
     assert np.isfinite(table["tilt_deg"][at_rest]).all()
-    assert set(table["face"][~at_rest]) == {""}
-    assert table.columns["tilt_deg"].units == "deg"
-    assert journeys.results.ends is not None
+    assert (set(table["face"][~at_rest]), table.columns["tilt_deg"].units) == ({""}, "deg")
     assert sum(one.count for one in journeys.results.ends.values()) == table.row_count
 
 
@@ -73,3 +106,399 @@ def test_a_notebook_offers_journeys_and_touchdowns(journeys: StudyResults) -> No
 def test_what_a_study_of_journeys_has_not_is_refused(journeys: StudyResults) -> None:
     with pytest.raises(ValueError, match="ask for journeys"):
         _ = journeys.rest
+
+
+def test_flights_of_a_journey_go_from_touchdown_to_touchdown(journeys: StudyResults) -> None:
+    table, number = journeys.arcs, 0
+    flown = Flown.of(journeys).journeys(journeys, [number])
+    assert flown.arc.tolist() == table["arc"][table["sample"] == number].tolist()
+    position, _ = flown.ends()
+    touchdowns = journeys.touchdowns
+    there = (touchdowns["journey"] == number) & (touchdowns["touchdown"] > 0)
+    latitude = np.degrees(np.arcsin(position[:, 2] / np.linalg.norm(position, axis=1)))
+    assert latitude == pytest.approx(touchdowns["latitude_deg"][there], abs=1e-6)
+
+
+def test_every_flight_of_the_cloud_is_the_first_of_its_journey(journeys: StudyResults) -> None:
+    flown = Flown.of(journeys)
+    assert flown.sample.tolist() == list(range(48))
+    assert not flown.arc.any()
+    assert not flown.begin.any()
+    with pytest.raises(ValueError, match=r"sample 48 has no flight.*arcs\.csv"):
+        flown.journeys(journeys, [48])
+
+
+def test_maps_have_touchdowns_and_places_of_rest(journeys: StudyResults, tmp_path: Path) -> None:
+    touchdowns, rest = export_study(journeys, tmp_path, ["geojson"])
+    found = json.loads(touchdowns.read_text())["features"]
+    assert len(found) == journeys.touchdowns.row_count
+    assert {one["properties"]["journey"] for one in found} == set(range(48))
+    lying = json.loads(rest.read_text())["features"]
+    ended = journeys.journeys
+    assert [one["properties"]["face"] for one in lying] == ended["face"][ended["end"] == JourneyEnd.AT_REST].tolist()
+
+
+def test_an_ephemeris_of_a_journey_that_escapes_is_written(journeys: StudyResults, tmp_path: Path) -> None:
+    number = min(LEAVES)
+    paths = export_study(journeys, tmp_path, ["oem"], ExportOptions(samples=(number,), step=600.0))
+    assert [path.name for path in paths] == ["flight_mean.oem", f"flight_{number}.oem"]
+    assert paths[1].read_text().count("META_START") == 1
+
+
+def test_pictures_of_a_landing_are_refused_where_a_function_makes_it(journeys: StudyResults, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="a program or function of its own makes its touchdowns"):
+        export_study(journeys, tmp_path, ["sheet"])
+    key = journeys.touchdowns["key"][1]
+    with pytest.raises(ValueError, match=f"run {key} was made by a program or function"):
+        journeys.landing_bodies(str(key))
+
+
+class JobOf:
+    """What is asked of a job: its study, its design and its site."""
+
+    def __init__(self, results: StudyResults) -> None:
+        self.study = check_tables(journey_tables(), results.folder)
+        self.design, self.site = DrawnDesign(self.study), Site(self.study)
+
+
+def test_the_parts_of_each_end_add_up(journeys: StudyResults) -> None:
+    found = journeys.results.end_variance_shares
+    assert list(found) == ["at_rest", "time_s", "distance_m"]
+    assert any(found.values())
+    for one in (one for one in found.values() if one):
+        assert sum(part.value for part in one.parts.values()) == pytest.approx(1.0)
+        assert one.chaos is None
+
+
+def test_a_distance_that_follows_the_delivery_is_the_deliverys(journeys: StudyResults) -> None:
+    folder, job = StudyFolder(journeys.folder), JobOf(journeys)
+    runs, table = DesignRuns.load(folder, "drawn"), JourneyTable.load(folder)
+    speed = runs.inputs["impact.speed"]
+    random = np.random.default_rng(0)
+    numbers = {**table.numbers, "distance": speed / speed.std() + 0.2 * random.standard_normal(len(speed))}
+    all_rest = JourneyTable(np.full(len(speed), "at_rest"), table.bed, numbers, table.position, table.face)
+    found = parts_of_journeys(job, runs, all_rest)
+    assert found["at_rest"] is None
+    parts = found["distance_m"]
+    assert parts.arrival.value > 0.85
+    assert parts.soil.value < 0.1
+    assert parts.of == f"{len(speed)} of {len(speed)} journeys that ended at rest"
+
+
+TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")
+
+
+def test_status_counts_the_ends_of_the_journeys(journeys: StudyResults) -> None:
+    found = study_status(journeys.folder)
+    touchdowns = journeys.touchdowns.row_count
+    assert found.runs.journeys.lines() == [
+        f"journeys: 48 of 48 ended: 43 at rest, 3 escaped, 1 under way, 1 failed; {touchdowns} touchdowns"
+    ]
+    assert (found.runs.tally.total, found.runs.others) == (touchdowns, 0)
+    assert "first touchdowns:" in found.runs.lines()
+    assert json.loads(json.dumps(found.to_json()))["runs"]["journeys"]["ends"][JourneyEnd.AT_REST] == 43
+
+
+def test_status_counts_what_the_ledger_has_while_journeys_are_followed(journeys: StudyResults, tmp_path: Path) -> None:
+    folder = tmp_path / "half"
+    shutil.copytree(journeys.folder, folder)
+    for name in TABLES:
+        (folder / name).unlink()
+    found = study_status(folder).runs
+    # A lander that left is under way until its flight has an end.
+    known = 48 - len(LEAVES)
+    at_rest = known - len(FAILS) - len(STUCK)
+    assert found.journeys.lines() == [
+        f"journeys: {known} of 48 ended so far: {at_rest} at rest, 1 under way, 1 failed; "
+        f"{journeys.touchdowns.row_count} touchdowns"
+    ]
+    assert found.others == 0
+
+
+def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResults, tmp_path: Path) -> None:
+    folder = tmp_path / "edited"
+    shutil.copytree(journeys.folder, folder)
+    made = run_without_emulator(journey_tables(delivery={"incidence_deg": 25.0}), folder).touchdowns.row_count
+    for name in TABLES:
+        (folder / name).unlink()
+    found = study_status(folder).runs
+    assert (found.journeys.touchdowns, found.others) == (made, journeys.touchdowns.row_count)
+
+
+class Looks(Silent):
+    """Looks at the status of a study once, while its journeys are followed."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.told, self.seen = folder, "", list[str]()
+
+    def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
+        if what == "journeys" and done >= 24 and not self.seen:
+            self.told, self.seen = detail.splitlines()[0], study_status(self.folder).lines()
+
+
+def test_status_says_how_far_the_process_is_that_follows_journeys(tmp_path: Path) -> None:
+    looks = Looks(tmp_path / "out")
+    source = StudySource.of_tables(journey_tables(), function_identity(bounce))
+    run_study(source, looks.folder, until="runs", worker_count=1, model=bounce, shown=looks)
+    assert re.fullmatch(r"(2[4-9]|3\d) of 48 journeys, \d+ touchdowns, at rest so far \d+ \+- \d+ %", looks.told)
+    assert looks.told in looks.seen
+
+
+def test_runs_have_columns_of_journey_and_touchdown(journeys_folder: Path) -> None:
+    shown = lithobrake("runs", journeys_folder)
+    assert shown.returncode == 0
+    lines = shown.stdout.splitlines()
+    assert "touch-" in lines[0]
+    assert lines[1].split()[:3] == ["wall", "journey", "down"]
+
+
+@pytest.fixture
+def data(journeys: StudyResults) -> JourneyPage:
+    found = page_results(journeys)
+    assert isinstance(found, JourneyPage)
+    return found
+
+
+def tables_of(content: Content) -> dict[str, PageTable]:
+    return {table.title: table for section in content.sections for table in section.tables}
+
+
+def test_the_page_begins_with_the_share_at_rest_and_four_others(data: JourneyPage, journeys_folder: Path) -> None:
+    page = write_report(journeys_folder).read_text(encoding="utf-8")
+    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST].share
+    assert content.answer.startswith(with_interval(at_rest, level=LEVEL))
+    assert len(content.tiles) == 4
+    assert not any(tile.words.startswith("at rest") for tile in content.tiles)
+    assert float(content.tiles[0].value) == pytest.approx(
+        data.at_rest.time_s.median.value / words.time_unit(data)[0], rel=0.05
+    )
+    header = page[: page.index("</header>")]
+    assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
+    assert re.findall(r"<h2>([^<]+)</h2>", page) == ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
+
+
+def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:
+    table = tables_of(journey_content(data))["How the journeys ended"]
+    assert sum(float(row[2].split(" ")[0]) for row in table.rows) == pytest.approx(100.0, abs=1.0)
+
+
+def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
+    content = journey_content(data)
+    names = [plot.name for plot in content.plots]
+    assert names[:6] == ["ends", "outcomes", "attitude", "times", "counts", "end_variance"]
+    others = [plot for plot in content.plots[6:] if plot.name != "bed"]
+    assert others
+    assert [plot.name for plot in others if "first touchdown" not in f"{plot.title} {plot.sentence}".lower()] == []
+    appendix = next(section for section in content.sections if section.title == "Appendix")
+    titles = {table.title for table in appendix.tables}
+    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {"Beds",
+        "Sampled inputs"}  # fmt: skip
+
+
+def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None:
+    none = np.full(data.journeys.row_count, JourneyEnd.ESCAPED.value)
+    columns = dict(data.journeys.columns)
+    columns["end"] = dataclasses.replace(columns["end"], values=none)
+    nothing = dataclasses.replace(data.at_rest.time_s.median, value=math.nan, lower=None, upper=None)
+    empty = dataclasses.replace(data.at_rest.time_s, median=nothing, q95=nothing)
+    rest = dataclasses.replace(
+        data.at_rest, time_s=empty, contacts=empty, distance_m=empty, tilt_deg=empty, faces={}, regions=()
+    )
+    ends = {end.value: CountedShare(0, Estimate(0.0, 0.0, 0.2)) for end in JourneyEnd}
+    ends[JourneyEnd.ESCAPED] = CountedShare(48, Estimate(1.0, 0.8, 1.0))
+    table = type(data.journeys)(data.journeys.row, columns)
+    content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
+    assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
+    assert [tile.value for tile in content.tiles].count("0") == 3
+
+
+@pytest.mark.parametrize(("most", "length"), [(7.3, 5.0), (5.0, 5.0), (1.99, 1.0), (0.3, 0.2), (250.0, 200.0)])
+def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
+    assert round_length(most) == pytest.approx(length, rel=1e-12)
+
+
+def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyPage) -> None:
+    ways, ends = data.paths
+    assert len(ways) == len(ends) > len([end for end in ends if end == JourneyEnd.AT_REST]) > 0
+    (view,) = end_views(data)
+    on_ground = int(np.isfinite(data.journeys["latitude_deg"]).sum())
+    assert f"where {on_ground} landers ended on the ground" in view.html
+    assert f"--key: {END_COLOURS[JourneyEnd.AT_REST]}" in view.html
+    # A lander with several flights is one way, of so many flights.
+    flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
+    assert (sum(flights), len(flights)) == (len(ways), len(np.unique(data.path_times[1])))
+
+
+@needs_browser
+def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp_path: Path) -> None:
+    path = write_report(journeys_folder)
+    with browser_page(tmp_path) as page:
+        page.open(path, 1280)
+        assert 2 <= page.sheets() <= 3
+        assert page.complaints == []
+
+
+NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, journeys: StudyResults) -> None:
+    axes = Figure().subplots()
+    assert getattr(journeys.plot, name)(ax=axes) is axes
+    assert axes.has_data()
+    # The half of a body has a title in place of axes.
+    assert axes.get_xlabel() or (name == "map" and axes.get_title())
+    assert f"{name}()" in repr(journeys.plot)
+
+
+def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.ends(Figure().subplots())
+    found = journeys.results.ends
+    bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
+    for end, share in found.items():
+        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share.value)
+
+
+def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
+    axes = journeys.plot.map(Figure().subplots())
+    at_rest = journeys.journeys.where(journeys.journeys["end"] == "at_rest")
+    drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
+    site = journeys.results.site
+    ground = GroundMap(site.latitude_deg, site.longitude_deg, float(np.linalg.norm(site.place_m)))
+    for east, north in zip(*ground.places(at_rest["latitude_deg"], at_rest["longitude_deg"]), strict=True):
+        assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: StudyResults) -> None:
+    axes = journeys.plot.distances(Figure().subplots())
+    marks = [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "o"]
+    rest = journeys.results.rest.distance_m
+    assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]
+
+
+def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults) -> None:
+    axes = journeys.plot.sides(Figure().subplots())
+    widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
+    assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
+        {name: 100 * one.share.value for name, one in journeys.results.rest.faces.items()}
+    )
+
+
+SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
+BEGIN = "const { facts } = given, law = new Law(unpack(given.law), facts);"
+REST = "const shares = (found) => [found.returns, found.known].map((list) => list.reduce((all, one) => all + one, 0));"
+SHARE = "document.querySelector('#explorer .share').textContent"
+PHONE = 390
+
+
+@pytest.fixture
+def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
+    # A function has no beds.
+    monkeypatch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+    return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
+
+
+@pytest.fixture
+def explorer(journeys: StudyResults) -> ExplorerTables:
+    found = journeys.touchdown_explorer
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
+def page(journeys_folder: Path) -> Path:
+    return write_report(journeys_folder)
+
+
+@pytest.fixture
+def explored(page: Path) -> dict[str, Any]:
+    return explorer_data(page.read_text(encoding="utf-8"))
+
+
+def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: ExplorerTables) -> None:
+    assert explorer.input_names == model.inputs
+    # A prism: its axis, upright, leaning and along the travel.
+    terms = tuple(f"attitude.{term}_z" for term in ("upright", "lean", "along"))
+    assert explorer.input_names[-7:] == (*OF_TOUCHDOWN, *terms)
+    assert explorer.attitude.input_names == explorer.input_names[-3:]
+    assert [len(downs) for downs in explorer.attitude.sides.values()] == [4, 2]
+    assert explorer.group_count == len(set(model.bed))
+    for name, table in law_tables(model.refits).items():
+        assert np.array_equal(explorer.tables[name], table), name
+
+
+@needs_node
+def test_the_energy_bound_is_that_of_the_longest_way_and_the_median_spin(
+    model: TouchdownEmulator, explored: dict[str, Any], journeys: StudyResults
+) -> None:
+    spin = np.median(np.linalg.norm([journeys.touchdowns[f"impact.spin_{axis}"] for axis in "xyz"], axis=0))
+    assert spin > 0.0
+    moved = dict(zip(OF_TOUCHDOWN, (0.05, 20.0, 4e-5, 9.0), strict=True))
+    values = moved | {"impact.spin_x": 0.0, "impact.spin_y": spin, "impact.spin_z": 0.0}
+    at = {name: np.array([value]) for name, value in values.items()}
+    bound = energy_bound(model.design, model.bed_height, at, 1, model.across)
+    given = explored | {"values": [*(0.0 for _ in model.inputs[:-7]), *moved.values(), 0.0, 0.0, 0.0]}
+    found = answer_of(SCRIPTS, f"{BEGIN} return law.energyBoundAt(given.values);", given)
+    assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=1e-12)
+
+
+@needs_node
+def test_the_fraction_at_rest_is_the_chance_of_the_refits(model: TouchdownEmulator, explored: dict[str, Any]) -> None:
+    place = model.inputs.index(OF_TOUCHDOWN[0])
+    program = f"""{BEGIN} {REST}
+      const explorer = new Explorer(law, null, facts), ranges = facts.inputs.map(() => [0, 1]);
+      return [[0, 1], [0, 0.3], [0.9, 1]].map((range) => {{
+        ranges[given.place] = range;
+        return shares(explorer.at(ranges));
+      }});"""
+    found = answer_of(SCRIPTS, program, explored | {"place": place})
+    captured = model.refits[0].outcome_names.index("captured")
+    laws = model.refits[0].runs.inputs.values()
+    shares = []
+    for (low, high), (rest, known) in zip([(0.0, 1.0), (0.0, 0.3), (0.9, 1.0)], found, strict=True):
+        assert known == len(model.refits) * 500
+        u = np.random.default_rng(4).random((4000, len(model.inputs)))
+        u[:, place] = low + (high - low) * u[:, place]
+        x = np.column_stack([law.ppf(column) for law, column in zip(laws, u.T, strict=True)])
+        # Attitudes are uniform over rotations.
+        x[:, -3:] = np.column_stack(list(model.attitude_of(Rotation.random(4000, rng=5)).values()))
+        shares.append(float(np.mean([one.outcome_probability(x)[:, captured].mean() for one in model.refits])))
+        # All refits share the 500 points of the inputs, and the 4000 are a plain sample.
+        error = np.sqrt(shares[-1] * (1.0 - shares[-1]) * (1.0 / 500 + 1.0 / 4000))
+        assert abs(rest / known - shares[-1]) < 3.0 * error
+    assert shares[1] > shares[0] > shares[2]
+
+
+def test_the_page_says_of_how_many_it_is_one(page: Path, explored: dict[str, Any], journeys: StudyResults) -> None:
+    lines = visible_text(page.read_text(encoding="utf-8")).splitlines()
+    words = next(line for line in lines if line.startswith("Any touchdown of a journey"))
+    fitted = int(np.sum(journeys.touchdowns["outcome"] != "failed"))
+    assert fitted < journeys.touchdowns.row_count
+    assert f"fitted to {fitted} touchdowns on 12 beds" in words
+    slope = journeys.touchdowns["surface.slope_deg"]
+    assert f"slope from {slope.min():.2g} to {slope.max():.2g} deg" in words
+    assert explored["flown"] is None
+    assert {one["words"] for one in explored["facts"]["inputs"]} >= {"impact speed", "incidence at impact", "gravity"}
+    assert [one["unit"] for one in explored["facts"]["inputs"][-7:]] == ["m/s", "deg", "m/s²", "deg", "", "", ""]
+
+
+@needs_browser
+def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmulator, tmp_path: Path) -> None:
+    number = 2 * model.inputs.index(OF_TOUCHDOWN[0]) + 1
+    with browser_page(tmp_path) as browser:
+        browser.open(page, PHONE)
+        assert browser.value("document.documentElement.scrollWidth") == PHONE
+        assert browser.value("document.querySelectorAll('#explorer figure').length") == 3
+        before = browser.value(SHARE)
+        browser.value(
+            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = 0.3;"
+            "end.dispatchEvent(new Event('input')); })()"
+        )
+        after = browser.value(
+            "new Promise((done) => { const look = () => "
+            f"{SHARE} !== {before!r} ? done({SHARE}) : setTimeout(look, 50); look(); }})"
+        )
+        assert browser.complaints == []
+    for said in (before, after):
+        assert " % come to rest at this touchdown (90 % interval of the emulator: " in said
+    assert float(after.split(" ")[0]) > float(before.split(" ")[0])

@@ -1,4 +1,4 @@
-"""Journeys of landings: their flights, frames, draws and ends, on ground that is known."""
+"""Journeys of landings on known ground, smooth and rough: their flights, frames, draws and ends."""
 
 import math
 from pathlib import Path
@@ -10,29 +10,29 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.campaign import read_records
-from lithobrake.geometry.frames import attitude_of, from_frame, quaternion
+from lithobrake.geometry.frames import about_z, attitude_of, from_frame, quaternion
+from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
+from lithobrake.pipeline.first_bounces.bounces_to_rest import hard_surface, on_rough
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.smallbody import HardSurface, Impacts, Launch, hop
+from lithobrake.smallbody import HardSurface, Impacts, Launch, RoughGround, fly, hop
+from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
+from lithobrake.study.touchdown_model import acceleration
+from lithobrake.vocabulary.quantities import ORIENTATION
 
-from ...small_ground import SMALL_GROUND
-from .without_emulator import run_without_emulator
+from ...paper_tables import SMALL_GROUND, with_keys
+from .bouncing_lander import bounce, journey_tables, run_without_emulator
 
 JOURNEYS = 24
 TABLES: dict[str, Any] = {
-    "seed": 3,
-    **SMALL_GROUND,
-    "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
-    "delivery": {
-        "latitude_deg": 30.0, "longitude_deg": 200.0,
-        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
-        "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
-        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
-    },
-    "journey": {"count": JOURNEYS, "duration": 40000.0, "emulated_count": 0},
-    "site": {"body": "dimorphos"},
+    "seed": 3, **SMALL_GROUND, "lander": {"shape": "box", "edges": [0.1, 0.1, 0.227], "mass": 2.0},
+    "delivery": {"latitude_deg": 30.0, "longitude_deg": 200.0,
+                 "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.07},
+                 "incidence_deg": {"distribution": "uniform", "lower": 10.0, "upper": 40.0},
+                 "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}},
+    "journey": {"count": JOURNEYS, "duration": 40000.0, "emulated_count": 0}, "site": {"body": "dimorphos"},
 }  # fmt: skip
 HARD = HardSurface(0.5, 0.7, math.inf, 0.05)
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
@@ -52,22 +52,16 @@ def hard_ground(values: dict[str, float], seed: int) -> dict[str, Any]:
     x, y, z = left.velocity[0].tolist()
     speed = math.sqrt(x * x + y * y + z * z)
     names = ("speed_out", "elevation_out", "spin_out", "velocity_out_x", "velocity_out_y", "velocity_out_z")
-    return {
-        "outcome": "clear",
-        "outputs": dict(zip(names, (speed, math.asin(z / speed), 0.1, x, y, z), strict=True)),
-    }
+    return {"outcome": "clear", "outputs": dict(zip(names, (speed, math.asin(z / speed), 0.1, x, y, z), strict=True))}
 
 
 def run(folder: Path, **changes: dict[str, Any]) -> Any:
-    tables = TABLES | {name: TABLES.get(name, {}) | keys for name, keys in changes.items()}
-    return run_without_emulator(tables, folder, hard_ground)
+    return run_without_emulator(with_keys(TABLES, changes), folder, hard_ground)
 
 
 def rows(folder: Path, name: str) -> dict[str, np.ndarray]:
     table = np.genfromtxt(folder / name, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    return {
-        title.split("_m")[0] if title.startswith("position") else title: table[title] for title in table.dtype.names
-    }
+    return {name.split("_m")[0] if name.startswith("position") else name: table[name] for name in table.dtype.names}
 
 
 @pytest.fixture(scope="module")
@@ -109,8 +103,7 @@ def test_the_summary_has_ends_that_add_up_and_numbers_of_rest(made: Path) -> Non
     assert sum(one["share"] for one in ends.values()) == pytest.approx(1.0, abs=1e-12)
     assert all(one["lower"] <= one["share"] <= one["upper"] for one in ends.values())
     assert results["journeys"] == JOURNEYS
-    records = read_records(made / "runs.sqlite")
-    assert results["touchdowns"] == len(records)
+    assert results["touchdowns"] == len(read_records(made / "runs.sqlite"))
     found = rows(made, "journeys.csv")
     rests = found["end"] == "at_rest"
     time = results["rest"]["time_s"]["median"]
@@ -130,8 +123,7 @@ def test_each_touchdown_keeps_soil_and_bed_and_takes_a_fresh_place_and_direction
     for name in ("impact.place.x", "impact.azimuth_deg", "impact.orientation.w", "journey.time_left"):
         assert len({row[name] for row in longest}) == len(longest)
     left = [row["journey.time_left"] for row in longest]
-    assert left == sorted(left, reverse=True)
-    assert left[0] == 40000.0
+    assert (left, left[0]) == (sorted(left, reverse=True), 40000.0)
 
 
 def test_more_journeys_change_none_of_the_earlier_ones(made: Path, tmp_path: Path) -> None:
@@ -178,8 +170,103 @@ def test_attitudes_are_turned_from_frame_to_frame_and_back() -> None:
     ("turn", "side"), [((0.0, 0.0, 0.0), "-z"), ((180.0, 0.0, 0.0), "+z"), ((90.0, 0.0, 0.0), "-y")]
 )
 def test_the_side_that_is_down_is_the_one_along_the_plumb_line(turn: tuple[float, ...], side: str) -> None:
-    tilt = Rotation.from_euler("y", 10.0, degrees=True)
-    attitude = tilt * Rotation.from_euler("xyz", turn, degrees=True)
+    attitude = Rotation.from_euler("y", 10.0, degrees=True) * Rotation.from_euler("xyz", turn, degrees=True)
     found, angle = side_down(attitude, np.array([0.0, 0.0, -3e-5]))
     assert found == side
     assert math.degrees(angle) == pytest.approx(10.0)
+
+
+POINTED = {"orientation": [0.6, 0.0, 0.8, 0.0], "spin_x": 0.02, "spin_z": -0.01}
+
+
+def rough_tables(roughness_deg: float, **delivery: Any) -> dict[str, Any]:
+    return TABLES | {
+        "site": TABLES["site"] | {"roughness_deg": roughness_deg},
+        "delivery": TABLES["delivery"] | delivery,
+    }
+
+
+def rough_study(roughness_deg: float, **delivery: Any) -> Study:
+    return with_site_gravity(StudySource.of_tables(rough_tables(roughness_deg, **delivery)).study)
+
+
+def as_seen_from_the_body(row: dict[str, float], axes: np.ndarray) -> list[np.ndarray]:
+    """Velocity, acceleration, spin and attitude of a touchdown, all body-fixed."""
+    incidence, turn = math.radians(row["impact.incidence_deg"]), about_z(-math.radians(row["impact.azimuth_deg"]))
+    incoming = row["impact.speed"] * np.array([math.sin(incidence), 0.0, -math.cos(incidence)])
+    felt = turn.apply(acceleration(row, row["surface.gravity"]))
+    spin = turn.apply([row[name] for name in SPIN])
+    attitude = from_frame(axes) * turn * attitude_of(row, ORIENTATION)
+    return [*(vector @ axes for vector in (incoming, felt, spin)), attitude.as_matrix()]
+
+
+def test_a_lander_arrives_as_on_smooth_ground() -> None:
+    """Way, gravity, spin and attitude stay; the ground has turned under them, by the angles that were asked for."""
+    smooth, rough = rough_study(0.0, **POINTED), rough_study(8.0, **POINTED)
+    rows, tilted = DrawnDesign(smooth).rows, DrawnDesign(rough).rows
+    site = Site(smooth)
+    _, axes = site.frames(site.sampled(JOURNEYS))
+    met = first_axes(rough, axes, tilted)
+    for before, after, plain, turned in zip(rows, tilted, axes, met, strict=True):
+        for one, other in zip(as_seen_from_the_body(before, plain), as_seen_from_the_body(after, turned), strict=True):
+            assert other == pytest.approx(one, abs=1e-9 * np.abs(one).max())
+        assert after[MEAN_INCIDENCE] == before["impact.incidence_deg"]
+    slopes = np.arccos((axes[:, 2] * met[:, 2]).sum(axis=1))
+    assert np.sqrt(np.mean(np.tan(slopes) ** 2)) == pytest.approx(math.tan(math.radians(8.0)), rel=0.4)
+    assert first_axes(rough, axes, rows) == pytest.approx(met, abs=1e-12)
+    assert first_axes(smooth, axes, rows) is axes
+
+
+@pytest.fixture(scope="module")
+def rough_made(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    folder = tmp_path_factory.mktemp("rough") / "out"
+    return run_without_emulator(rough_tables(25.0), folder, hard_ground)
+
+
+def test_each_touchdown_has_the_velocity_with_which_its_flight_ends(rough_made: Any) -> None:
+    """Flown again from how the lander left its ground, it arrives as the next touchdown was given it."""
+    touchdowns, flights, body = rough_made.touchdowns, rough_made.arcs, Site(rough_study(25.0)).body
+    where = {(one, other): row for row, (one, other) in enumerate(zip(*pairs(touchdowns, "touchdown"), strict=True))}
+    steepest = 0.0
+    for row, (journey, number) in enumerate(zip(*pairs(flights, "arc", "sample"), strict=True)):
+        after = where.get((journey, number + 1))
+        if after is None:
+            continue
+        state = [np.array([flights[f"{what}_{axis}"][row] for axis in "xyz"]) for what in ("position", "velocity")]
+        flown = fly(body, *state, 40000.0, gravity="table", start_time=float(flights["clock_s"][row]))
+        arrived = np.array([touchdowns[f"velocity_{axis}"][after] for axis in "xyz"])
+        assert np.linalg.norm(flown.velocity[0] - arrived) < 1e-3 * np.linalg.norm(arrived)
+        assert touchdowns[MEAN_INCIDENCE][after] == pytest.approx(math.degrees(flown.incidence[0]), abs=0.1)
+        steepest = max(steepest, abs(touchdowns["impact.incidence_deg"][after] - touchdowns[MEAN_INCIDENCE][after]))
+    assert steepest > 15.0
+
+
+def pairs(table: Any, number: str, journey: str = "journey") -> tuple[list[int], list[int]]:
+    return [int(one) for one in table[journey]], [int(one) for one in table[number]]
+
+
+def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path: Path) -> None:
+    tables = journey_tables(site={"roughness_deg": 20.0})
+    results = lithobrake.run(tables, tmp_path / "out", workers=1, model=bounce, report=False)
+    assert results.results.emulated.agrees
+    assert results.results.ends["at_rest"].share.value > 0.5
+
+
+def test_hard_ground_of_a_study_is_as_rough_as_its_site() -> None:
+    drawn = {key: table for key, table in rough_tables(12.0).items() if key not in ("journey", "delivery")}
+    drawn |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}}
+    read = StudySource.of_tables(drawn).study
+    hard = hard_surface(read)
+    assert on_rough(read, hard) == RoughGround(hard, math.radians(12.0))
+    drawn["site"] = {"body": "dimorphos"}
+    assert on_rough(StudySource.of_tables(drawn).study, hard) is hard
+
+
+def test_what_no_impact_reads_is_refused() -> None:
+    lonely = {key: table for key, table in rough_tables(12.0).items() if key not in ("journey", "delivery")}
+    lonely |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}, "rest": {"count": 0}}
+    with pytest.raises(StudyError, match=r"site.roughness_deg is 12, and no impact of the study reads it"):
+        StudySource.of_tables(lonely)
+    aimed = rough_tables(12.0) | {"aim": {"grid": {"delivery.incidence_deg": [10.0, 20.0]}}}
+    with pytest.raises(StudyError, match=r'aim.grid has "delivery.incidence_deg", and site.roughness_deg'):
+        StudySource.of_tables(aimed)

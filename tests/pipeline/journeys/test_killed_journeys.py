@@ -15,6 +15,7 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import Ledger, RunStatus, read_records
+from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_run import run_study
@@ -29,7 +30,7 @@ from .soil_journeys import STUDY
 # Touchdowns that the ledger has when something is killed; there are 30 in all.
 MOMENTS = (3, 9, 16)
 WORKERS = 2
-ROLLING = STUDY.replace("[site]\n", "[site.rotation]\nyaw_deg = 30.0\nroll_deg = 60.0\n[site]\n")
+ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ")
 TABLES = (*JOURNEY_FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
@@ -59,7 +60,6 @@ def ended(out: Path) -> dict[str, str | None]:
 
 
 def wait_for_touchdowns(process: BaseProcess, out: Path, count: int) -> None:
-    """Wait until the ledger has so many."""
     while len(ended(out)) < count:
         assert process.exitcode is None, (out.parent / "said.txt").read_text()
         time.sleep(0.005)
@@ -91,23 +91,16 @@ def test_journeys_that_are_killed_end_with_the_same_bits(calm: Path, begun: Path
     assert_same(begun, calm)
 
 
-class Loses:
+class Loses(Silent):
     """Shows nothing, and kills a worker of the cluster once the ledger has some touchdowns."""
 
     def __init__(self, cluster: Cluster, out: Path) -> None:
         self.worker, self.out = cluster.processes["first"], out
 
-    def begin(self, title: str, number: int, count: int) -> None:
-        """Show nothing."""
-
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        """Kill the worker, if it is time."""
         if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= MOMENTS[1]:
             self.worker.kill()
             self.worker.wait()
-
-    def say(self, sentence: str) -> None:
-        """Tell nothing."""
 
 
 def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: Path, begun: Path) -> None:

@@ -59,7 +59,6 @@ def rows(table: Any) -> list[Row]:
 
 
 def steps(study: StudyResults) -> Iterator[Step]:
-    """Every flight between two touchdowns."""
     touchdowns = {(row["journey"], row["touchdown"]): row for row in rows(study.touchdowns)}
     for arc in arcs(study):
         journey, number = arc["sample"], arc["arc"]
@@ -72,7 +71,6 @@ def vector(row: Row, name: str) -> np.ndarray:
 
 
 def flown(study: StudyResults, body: Body, arc: Row) -> Flights:
-    """A flight made again from its start."""
     gravity = read_study(study.folder / "study.toml").flight.gravity
     start = vector(arc, "position"), vector(arc, "velocity")
     return fly(body, *start, 1e5, gravity=gravity, start_time=arc["clock_s"], threads=1)
@@ -80,8 +78,7 @@ def flown(study: StudyResults, body: Body, arc: Row) -> Flights:
 
 def place(body: Body, row: Row) -> np.ndarray:
     """The place on the ground of a touchdown [m]."""
-    found: np.ndarray = body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
-    return found
+    return body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
 
 
 def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) -> None:

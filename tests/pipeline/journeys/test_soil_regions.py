@@ -29,7 +29,7 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
-from ...small_ground import SMALL_GROUND
+from ...paper_tables import SMALL_GROUND, with_keys
 from ...smallbody.meshes import sphere_mesh
 
 RADIUS, DENSITY, FREQUENCY = 80.0, 2000.0, 8
@@ -43,17 +43,12 @@ STRIP = {
     "grain": {"friction": {"distribution": "uniform", "lower": 0.2, "upper": 0.3}},
 }
 TABLES: dict[str, Any] = {
-    "seed": 3,
-    **SMALL_GROUND,
-    "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
-    "delivery": {
-        "latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
-        "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
-        "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
-        "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0},
-    },
-    "journey": {"count": COUNT, "duration": 20000.0},
-    "flight": {"gravity": "exact"},
+    "seed": 3, **SMALL_GROUND, "lander": {"shape": "sphere", "diameter": 0.1, "mass": 2.0},
+    "delivery": {"latitude_deg": 0.0, "longitude_deg": 0.0, "incidence_deg": 40.0,
+                 "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
+                 "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
+                 "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0}},
+    "journey": {"count": COUNT, "duration": 20000.0}, "flight": {"gravity": "exact"},
 }  # fmt: skip
 
 
@@ -61,7 +56,6 @@ class Here(Executor):
     """Makes touchdowns at once, in this process: another would take longer to start than all of them."""
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
-        """Call a function."""
         future: Future[Any] = Future()
         future.set_result(function(*args, **kwargs))
         return future
@@ -77,7 +71,6 @@ def in_this_process() -> Iterator[None]:
 
 @pytest.fixture(scope="module")
 def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A ball as a mesh."""
     vertices, faces = sphere_mesh(FREQUENCY)
     path = tmp_path_factory.mktemp("body") / "ball.obj"
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in (RADIUS * vertices).tolist()]
@@ -87,12 +80,9 @@ def body_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def tables(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study on that ball, which turns slowly."""
-    found = deepcopy(TABLES)
     mass = DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3
-    found["site"] = {"body": str(body), "mass": mass, "spin_period": 1e7}
-    for name, table in changes.items():
-        found.setdefault(name, {}).update(table)
-    return found | ({"soil": soil} if soil else {})
+    found = deepcopy(TABLES) | {"site": {"body": str(body), "mass": mass, "spin_period": 1e7}}
+    return with_keys(found, changes) | ({"soil": soil} if soil else {})
 
 
 def read(body: Path, soil: dict[str, Any], **changes: dict[str, Any]) -> Study:
@@ -146,8 +136,7 @@ def test_bounds_have_the_areas_of_a_sphere(body_file: Path) -> None:
 
 def test_places_lie_where_their_latitudes_and_longitudes_say(body_file: Path) -> None:
     found = soils(body_file, {"far": {"longitude_deg": [170.0, -170.0], "grain": {"friction": 0.3}}})
-    longitude = np.array([169.0, 171.0, 180.0, -171.0, -169.0, 0.0])
-    points = found.site.body.shape.surface_point(np.zeros(6), longitude)
+    points = found.site.body.shape.surface_point(np.zeros(6), np.array([169.0, 171.0, 180.0, -171.0, -169.0, 0.0]))
     assert found.at(points) == [ELSEWHERE, "far", "far", "far", ELSEWHERE, ELSEWHERE]
 
 
@@ -159,9 +148,7 @@ def test_slopes_are_those_of_gravity_and_rotation(body_file: Path) -> None:
     def slope(latitude: np.ndarray) -> np.ndarray:
         return np.arctan2(w * np.sin(latitude) * np.cos(latitude), 1.0 - w * np.cos(latitude) ** 2)
 
-    heights = np.linspace(-1.0, 1.0, 100_001)
-    steep = math.radians(20.0)
-    expected = float((slope(np.abs(np.arcsin(heights))) > steep).mean())
+    expected = float((slope(np.abs(np.arcsin(np.linspace(-1.0, 1.0, 100_001)))) > math.radians(20.0)).mean())
     region = {"slope_deg": [20.0, 180.0], "grain": {"friction": 0.3}}
     found = soils(body_file, {"steep": region}, site={"spin_period": period}).area_shares()["steep"]
     assert 0.2 < expected < 0.6
@@ -174,15 +161,13 @@ def test_facets_are_those_of_the_file(body_file: Path, tmp_path: Path) -> None:
     shape = found.site.body.shape
     area = shape.facet_sizes**2
     assert found.area_shares()["ponds"] == pytest.approx(area[[7, 12, 13]].sum() / area.sum())
-    centres = shape.corners.mean(axis=1)[[7, 8, 13]]
-    assert found.at(centres) == ["ponds", ELSEWHERE, "ponds"]
+    assert found.at(shape.corners.mean(axis=1)[[7, 8, 13]]) == ["ponds", ELSEWHERE, "ponds"]
 
 
 def test_a_further_region_changes_no_draw(body_file: Path) -> None:
     alone = soils(body_file, {"strip": STRIP}).drawn(range(6))["soil.strip.grain.friction"]
     grain = {**STRIP["grain"], "cohesion_force": {"distribution": "log_uniform", "lower": 1e-6, "upper": 1e-5}}
-    both = soils(body_file, {"sink": SINK, "strip": {**STRIP, "grain": grain}})
-    drawn = both.drawn([5, 2])
+    drawn = soils(body_file, {"sink": SINK, "strip": {**STRIP, "grain": grain}}).drawn([5, 2])
     assert drawn["soil.strip.grain.friction"].tolist() == alone[[5, 2]].tolist()
     assert drawn["soil.sink.grain.restitution"].tolist() == [0.1, 0.1]
     assert len(set(alone.tolist())) == 6
@@ -203,8 +188,7 @@ def test_every_touchdown_is_on_the_soil_of_its_place(made: StudyResults, body_fi
     own = np.array([design.own_soil(number)["grain.friction"] for number in range(COUNT)])
     # One draw of a journey for the strip, wherever it was before, and one for all other ground.
     assert table["grain.friction"].tolist() == np.where(strip, in_strip[journey], own[journey]).tolist()
-    back = [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
-    assert back
+    assert [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
 
 
 def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_file: Path) -> None:
@@ -215,8 +199,7 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
         # Straight down to a place beside the pole, 170 degrees east.
         down = {"position": [-10.0, 1.7, pole * (RADIUS + 2.0)], "velocity": [0.0, 0.0, -0.03 * pole]}
         flown = given | {"delivery": given["delivery"] | {"release": down}}
-        study = with_site_gravity(StudySource.of_tables(flown).study)
-        design = DrawnDesign(study)
+        design = DrawnDesign(with_site_gravity(StudySource.of_tables(flown).study))
         assert [row["grain.restitution"] for row in design.rows] == [restitution] * 2
         assert [row["grain.friction"] for row in design.rows] == [design.own_soil(n)["grain.friction"] for n in (0, 1)]
 
@@ -224,22 +207,18 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
 def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
     results = made.results
     assert isinstance(results, DrawnResults)
-    assert results.ends is not None
     found, table = results.soils, made.touchdowns
     assert list(found) == ["sink", "strip", ELSEWHERE]
     assert sum(one.touchdowns for one in found.values()) == table.row_count
     assert sum(one.at_rest.share.value for one in found.values()) == pytest.approx(results.ends["at_rest"].share.value)
     sink, rest = found["sink"], found[ELSEWHERE]
-    assert sink.rests is not None
-    assert rest.rests is not None
     assert sink.rests.share.value == 1.0
     assert sink.rests.count == sink.touchdowns == (table["soil"] == "sink").sum()
     assert sink.area_share == pytest.approx(0.5, abs=2e-3)
     # Elsewhere a lander bounces at its first touchdown at least.
     assert rest.rests.share.value <= 0.5
     assert any(line.startswith("By soil: sink (50 % of the surface)") for line in results.answer)
-    south = np.array([point for line in sink.outlines for point in line])
-    assert np.abs(south[:, 0]).max() < 1.0
+    assert np.abs(np.array([point for line in sink.outlines for point in line])[:, 0]).max() < 1.0
 
 
 def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
@@ -255,7 +234,6 @@ def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
 
 def test_the_plan_states_the_regions(body_file: Path, tmp_path: Path) -> None:
     found = planned_soils(Site(read(body_file, {"sink": SINK})))
-    assert found is not None
     assert found.aim == "sink"
     assert found.line().startswith("Soils: sink 50.0 %, elsewhere 50.0 % of the surface; the aim point is in sink.")
     assert planned_soils(Site(read(body_file, {}))) is None
@@ -265,23 +243,17 @@ FRICTION = {"friction": 0.3}
 WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "no bounds": ({"a": {"grain": FRICTION}}, r"soil\.a has no bounds; allowed: one at least of latitude_deg"),
     "no soil": ({"a": {"latitude_deg": [0.0, 1.0], "grain": {}}}, r"soil\.a\.grain is empty"),
-    "reversed": (
-        {"a": {"latitude_deg": [1.0, 0.0], "grain": FRICTION}},
-        r"latitude_deg is .*write the smaller one first",
-    ),
+    "reversed": ({"a": {"latitude_deg": [1.0, 0.0], "grain": FRICTION}},
+                 r"latitude_deg is .*write the smaller one first"),
     "no width": ({"a": {"longitude_deg": [10.0, 370.0], "grain": FRICTION}}, r"longitude_deg is \[10, 370\]; allowed"),
-    "a size": (
-        {"a": {"slope_deg": [0, 1], "grain": {"diameter": 0.1}}},
-        r"soil\.a gives sizes of grains; allowed: materials",
-    ),
+    "a size": ({"a": {"slope_deg": [0, 1], "grain": {"diameter": 0.1}}},
+               r"soil\.a gives sizes of grains; allowed: materials"),
     "a name": ({"elsewhere": {"slope_deg": [0, 1], "grain": FRICTION}}, r"soil\.elsewhere is no name"),
-    "a range": (
-        {"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
-        r"soil\.a\.grain\.restitution is 1\.5; allowed",
-    ),
+    "a range": ({"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
+                r"soil\.a\.grain\.restitution is 1\.5; allowed"),
     "soft": ({"a": {"slope_deg": [0, 1], "grain": {"young_modulus": 1e-3}}}, r"soil\.a: impact\.speed reaches"),
     "no file": ({"a": {"facets": "/nowhere.csv", "grain": FRICTION}}, r"soil\.a\.facets: /nowhere\.csv: No such file"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", WRONG)
@@ -334,17 +306,12 @@ def test_status_counts_touchdowns_on_every_soil(made: StudyResults, tmp_path: Pa
     for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
         (folder / name).unlink()
     found = study_status(folder).runs
-    assert found is not None
-    assert found.others == 0
-    assert found.journeys is not None
-    assert found.journeys.touchdowns == made.touchdowns.row_count
+    assert (found.others, found.journeys.touchdowns) == (0, made.touchdowns.row_count)
 
 
 def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:
     results = made.results
     assert isinstance(results, DrawnResults)
-    assert results.emulated is not None
-    assert results.emulated.why is not None
     assert "[soil] gives regions their own" in results.emulated.why
 
 
@@ -358,7 +325,6 @@ def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) ->
     friction, more = Soils(job.site).drawn(range(64))["soil.strip.grain.friction"], np.sin(7.0 * np.arange(64))
     decided = 10.0 * friction + 0.05 * more
     found = parts_of_variance(job, runs, decided, "all runs")
-    assert found is not None
     assert set(found.soil_by_input) == {"grain.friction", "soil.strip.grain.friction"}
     assert found.soil_by_input["soil.strip.grain.friction"].value > 0.8
     assert found.soil_by_input["grain.friction"].value < 0.2

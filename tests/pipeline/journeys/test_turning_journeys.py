@@ -1,6 +1,7 @@
-"""Journeys on a body that librates or tumbles: when they begin, where they go, and what goes with it."""
+"""Journeys on a body that librates or tumbles, and the acceleration of a touchdown where it is."""
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,20 +13,33 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.export import Push, export_study, write_push
-from lithobrake.pipeline.design.arrivals import turned_in_flight
+from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, ground_inputs, turned_in_flight
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import journey_dependencies
-from lithobrake.smallbody import Flights, Launch, fly, hop, rotation_history, tumble
+from lithobrake.smallbody import (
+    Body,
+    Flights,
+    Launch,
+    Partner,
+    Shape,
+    didymos,
+    dimorphos,
+    fly,
+    hop,
+    rotation_history,
+    tumble,
+)
 from lithobrake.study import StudyError
 from lithobrake.study.source import StudySource
+from lithobrake.study.touchdown_model import acceleration
 
-from .bouncing_lander import journey_tables
+from ...paper_tables import with_keys
+from ...smallbody.meshes import sphere_mesh
+from .bouncing_lander import journey_tables, run_without_emulator
 from .test_journeys import HARD, TABLES, hard_ground, hard_velocity, rows
-from .test_local_ground import two_balls
-from .without_emulator import run_without_emulator
 
 COUNT = 24
 ROTATION = {"yaw_deg": 30.0, "roll_deg": 60.0, "days": 2.0}
@@ -35,7 +49,7 @@ def turning(**changes: dict[str, Any]) -> dict[str, Any]:
     """The tables of a study on hard ground whose body tumbles."""
     given = TABLES | {"site": {"body": "dimorphos", "rotation": ROTATION}}
     given["journey"] = TABLES["journey"] | {"emulated_count": 30}
-    return given | {name: given.get(name, {}) | keys for name, keys in changes.items()}
+    return with_keys(given, changes)
 
 
 def turning_cubesat(**changes: dict[str, Any]) -> dict[str, Any]:
@@ -56,7 +70,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_landers_arrive_evenly_over_the_days_and_go_where_bounces_go(made: Path) -> None:
     study = with_site_gravity(StudySource.of_tables(turning()).study)
     site, design = Site(study), DrawnDesign(study)
-    assert site.body.rotation is not None
     assert site.body.rotation.duration >= 2.0 * 86400.0 + 86400.0
     columns = site.sampled(COUNT)
     clock = site.clock(columns)
@@ -98,13 +111,11 @@ def test_the_same_seed_gives_the_same_journeys(made: Path, tmp_path: Path) -> No
 def test_another_start_makes_the_journeys_of_before_outdated() -> None:
     others = ROTATION | {"yaw_deg": -30.0}, ROTATION | {"days": 3.0}, ROTATION | {"spin": [0.0, 1e-4, 0.0]}
     studies = [StudySource.of_tables(turning(site={"rotation": one})).study for one in (ROTATION, *others)]
-    kept = [json.dumps(journey_dependencies(study), default=str) for study in studies]
-    assert len(set(kept)) == 4
+    assert len({json.dumps(journey_dependencies(study), default=str) for study in studies}) == 4
 
 
 def test_a_time_of_arrival_may_be_given() -> None:
-    given = turning(site={"rotation_time": 5000.0})
-    site = Site(StudySource.of_tables(given).study)
+    site = Site(StudySource.of_tables(turning(site={"rotation_time": 5000.0})).study)
     assert (site.clock(site.sampled(5)) == 5000.0).all()
 
 
@@ -114,8 +125,7 @@ def released(**delivery: Any) -> Flights:
     given = turning_cubesat(journey={"count": 6}, site={"pole_right_ascension_deg": 60.0})
     given["site"] |= {"pole_declination_deg": -71.0, "meridian_deg": 25.0}
     given["delivery"] = {"latitude_deg": 0.0, "longitude_deg": 90.0, "release": release, **delivery}
-    study = with_site_gravity(StudySource.of_tables(given).study)
-    return Descents.flown(Site(study), 0, np.full((6, 6), 0.5)).flights
+    return Descents.flown(Site(with_site_gravity(StudySource.of_tables(given).study)), 0, np.full((6, 6), 0.5)).flights
 
 
 def test_released_landers_start_along_the_axes_that_keep_pace_with_the_orbit() -> None:
@@ -189,22 +199,16 @@ def test_a_lander_turns_among_the_stars_while_the_ground_turns_under_it() -> Non
     assert against == pytest.approx(end.inv().apply(spins[0]) - own, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("site", "words"),
-    [
-        ({"body": "didymos"}, 'allowed with [site.rotation]: "dimorphos" with its partner'),
-        ({"partner": False}, "site.partner is false"),
-        ({"spin_period": 40000.0}, "site.spin_period is given; with [site.rotation]"),
-        ({"rotation_time": 2e5}, "site.rotation_time reaches 200000 s; allowed: at most 172800 s"),
-        (
-            {"rotation": None, "rotation_time": 5.0},
-            "site.rotation_time is a time in [site.rotation], and there is none",
-        ),
-        ({"rotation": {"pitch_deg": 91.0}}, "allowed: at least -90 and at most 90"),
-        ({"rotation": {"spin": [0.1, 0.0, 0.0]}}, "allowed: 3 numbers, each at least -0.002"),
-        ({"rotation": {"yaw": 3.0}}, "yaw"),
-    ],
-)
+@pytest.mark.parametrize(("site", "words"), [
+    ({"body": "didymos"}, 'allowed with [site.rotation]: "dimorphos" with its partner'),
+    ({"partner": False}, "site.partner is false"),
+    ({"spin_period": 40000.0}, "site.spin_period is given; with [site.rotation]"),
+    ({"rotation_time": 2e5}, "site.rotation_time reaches 200000 s; allowed: at most 172800 s"),
+    ({"rotation": None, "rotation_time": 5.0}, "site.rotation_time is a time in [site.rotation], and there is none"),
+    ({"rotation": {"pitch_deg": 91.0}}, "allowed: at least -90 and at most 90"),
+    ({"rotation": {"spin": [0.1, 0.0, 0.0]}}, "allowed: 3 numbers, each at least -0.002"),
+    ({"rotation": {"yaw": 3.0}}, "yaw"),
+])  # fmt: skip
 def test_what_does_not_go_with_a_rotation_is_refused(site: dict[str, Any], words: str) -> None:
     given = turning(site=site)
     given["site"] = {key: value for key, value in given["site"].items() if value is not None}
@@ -217,3 +221,54 @@ def test_what_does_not_go_with_a_rotation_is_refused(site: dict[str, Any], words
 def test_the_sky_of_a_day_is_refused() -> None:
     with pytest.raises(StudyError, match="no day is like another"):
         StudySource.of_tables(turning(sky={"sun_latitude_deg": 0.0}))
+
+
+@pytest.mark.parametrize("azimuth_deg", [0.0, 73.0, 291.0])
+@pytest.mark.parametrize("local", [(2e-6, -5e-6, -4e-5), (-3e-6, 1e-6, 2e-5), (0.0, 0.0, -1e-4)])
+def test_the_bed_has_the_acceleration_turned_by_the_azimuth(local: tuple[float, ...], azimuth_deg: float) -> None:
+    row = ground_inputs(local, azimuth_deg, friction=0.6)
+    of_bed = acceleration(row, row["surface.gravity"])
+    c, s = math.cos(math.radians(azimuth_deg)), math.sin(math.radians(azimuth_deg))
+    turned = (c * local[0] - s * local[1], s * local[0] + c * local[1], local[2])
+    assert of_bed == pytest.approx(turned, rel=1e-12, abs=1e-20)
+
+
+def test_no_bed_is_steeper_than_soil_lies() -> None:
+    steep = ground_inputs((1e-4, 0.0, -1e-4), 0.0, friction=0.6)
+    assert steep["surface.slope_deg"] == pytest.approx(STEEPEST_DEG)
+    assert steep["surface.gravity"] == pytest.approx(math.sqrt(2.0) * 1e-4)
+    assert ground_inputs((1e-4, 0.0, -1e-4), 0.0, friction=0.2)["surface.slope_deg"] == pytest.approx(
+        math.degrees(math.atan(0.5))
+    )
+
+
+def two_balls() -> Body:
+    """A binary of two balls, of the sizes and masses of Dimorphos and Didymos: no oblateness pulls at either centre."""
+    vertices, faces = sphere_mesh(12)
+    inner, outer = dimorphos(), didymos()
+    partner = Body(Shape(390.0 * vertices, faces), mass=outer.mass, spin_period=outer.spin_period)
+    shape, period = Shape(75.0 * vertices, faces), inner.spin_period
+    return Body(shape, mass=inner.mass, spin_period=period, partner=Partner(partner, period))
+
+
+def test_what_is_felt_at_rest_is_how_a_slow_flight_begins() -> None:
+    """A lander thrown up slowly goes back to the ground under the acceleration that one at rest feels, tide and all."""
+    body = two_balls()
+    point = body.shape.surface_point(20.0, -40.0)[None]
+    up = body.shape.normals[body.shape.locate(20.0, -40.0)[1]]
+    speed, time = 2e-4, np.array([1000.0])
+    here = felt(body, point, time, np.array([body.mass]), np.array([body.spin_period]))[0]
+    alone = body.effective_acceleration(point)[0]
+    tide = np.linalg.norm(here - alone)
+    assert 0.01 < tide / np.linalg.norm(alone) < 0.2
+    flight = fly(body, point, speed * up[None], 100.0, start_time=time)
+    change = (flight.velocity[0] - speed * up) / flight.time[0]
+    # Until it is down again only Coriolis' acceleration comes in, and what the facets of the partner are no ball.
+    assert np.linalg.norm(change - here) < 2.0 * speed * body.spin_rate + 0.01 * tide
+
+
+def test_a_body_alone_has_no_tide() -> None:
+    body = dimorphos(partner=False)
+    point = body.shape.surface_point(20.0, -40.0)[None]
+    here = felt(body, point, np.zeros(1), np.array([body.mass]), np.array([body.spin_period]))
+    assert (here == body.effective_acceleration(point)).all()

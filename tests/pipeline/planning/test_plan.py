@@ -43,6 +43,7 @@ from lithobrake.results import open_study
 from lithobrake.study import Study, StudyError, StudySource, check_tables, load_tables, read_study
 from lithobrake.vocabulary.quantities import OUTPUTS
 
+from ...paper_tables import with_keys
 from ..ball_studies import BALL, FEW_RUNS, write_ball
 
 HERE = Path(__file__).parents[3]
@@ -62,16 +63,12 @@ def idle_cores(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def soft(**changes: dict[str, Any]) -> Study:
     """The study of one place with these keys of its sections changed."""
-    tables = load_tables(SCENARIOS / "one_place.toml")
-    for section, keys in changes.items():
-        tables[section] = tables.get(section, {}) | keys
-    return check_tables(tables, SCENARIOS)
+    return check_tables(with_keys(load_tables(SCENARIOS / "one_place.toml"), changes), SCENARIOS)
 
 
 def journeys(roughness_deg: float) -> Study:
-    """The quick study on ground of this roughness."""
-    tables = load_tables(SCENARIOS / "quick.toml")
-    return check_tables(tables | {"site": tables["site"] | {"roughness_deg": roughness_deg}}, SCENARIOS)
+    tables = with_keys(load_tables(SCENARIOS / "quick.toml"), {"site": {"roughness_deg": roughness_deg}})
+    return check_tables(tables, SCENARIOS)
 
 
 def plan_for(study: Study, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False) -> Plan:
@@ -111,9 +108,7 @@ def test_the_plan_says_how_many_and_how_large_the_grains_of_a_size_law_are() -> 
     for key, exponent in (("exponent", 3.0), ("cumulative_exponent", 2.0)):
         sizes = {"distribution": "power_law", key: exponent, "lower": 0.05, "upper": 0.1}
         found.append(planned_grains(soft(bed={"diameter": sizes, "grain_count": 200, "width": [0.8, 1.0]})))
-    assert found[0] == found[1]
-    assert found[0] is not None
-    assert found[0].mean == pytest.approx(2.0 / 30.0, rel=1e-6)
+    assert (found[0], found[0].mean) == (found[1], pytest.approx(2.0 / 30.0, rel=1e-6))
     assert (found[0].smallest, found[0].largest, found[0].count_per_m2) == (0.05, 0.1, 250.0)
     # N(>D) = (D^-2 - 100) / (400 - 100) is 0.1 at D^-2 = 130.
     assert found[0].large == pytest.approx(130.0**-0.5, rel=1e-12)
@@ -127,7 +122,6 @@ def test_the_plan_says_how_many_boulders_a_bed_has() -> None:
     """Discs of 0.2 m on a tenth of 1 m2 are 3.18."""
     rocks = {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1}
     found = planned_boulders(soft(bed={"boulders": rocks, "width": [1.0, 1.0]}))
-    assert found is not None
     assert found.line() == (
         "Boulders: 3.18 in a bed in the mean, 0.2 m in diameter, on 10 % of the ground; the largest of all beds is "
         "likely 0.2 m."
@@ -140,7 +134,6 @@ def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
     sizes = {"distribution": "power_law", "cumulative_exponent": 2.0, "lower": 0.2, "upper": 2.0}
     study = soft(bed={"boulders": {"diameter": sizes, "coverage": 0.1}, "width": [10.0, 10.0], "bed_count": 7})
     found = planned_boulders(study)
-    assert found is not None
     beyond = 1.0 - 0.5 ** (1.0 / (7.0 * found.count))
     square = 1.0 / (beyond * (0.2**-2 - 2.0**-2) + 2.0**-2)
     assert found.likely_largest == pytest.approx(square**0.5, rel=1e-9)
@@ -150,14 +143,11 @@ def test_the_plan_says_how_large_the_largest_boulder_likely_is() -> None:
 def test_the_plan_says_how_the_ground_of_the_first_touchdowns_lies() -> None:
     """Smooth ground slopes as the partner pulls; rough ground by what was asked for, as far as soil holds it."""
     smooth, rough = (planned_ground(DrawnDesign(with_site_gravity(journeys(angle)))) for angle in (0.0, 30.0))
-    assert smooth is not None
-    assert rough is not None
     assert max(smooth.slope_deg) < 12.0
     assert smooth.steeper == 0.0
     # The median of a Rayleigh law whose rms is tan(30 deg).
     median = math.degrees(math.atan(math.tan(math.radians(30.0)) * math.sqrt(math.log(2.0))))
-    assert rough.slope_deg[0] == pytest.approx(median, abs=4.0)
-    assert rough.slope_deg[1] == pytest.approx(35.0)
+    assert (rough.slope_deg[0], rough.slope_deg[1]) == (pytest.approx(median, abs=4.0), pytest.approx(35.0))
     assert 0.1 < rough.steeper < 0.5
     assert "with a roughness of 30 deg rms; " in rough.line()
     assert smooth.line().startswith("First touchdowns: ")
@@ -192,8 +182,7 @@ def test_the_command_says_what_is_planned(tmp_path: Path) -> None:
     assert said.exit_code == 0, said.output
     assert "To make: 17 to 47 touchdowns, 10 000 samples, up to 50 flights, 200 journeys" in said.stdout
     assert "on 1 process, and the touchdowns, whose time is not known before some have been made" in said.stdout
-    shown = CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--json"])
-    content = json.loads(shown.stdout)
+    content = json.loads(CliRunner().invoke(app, ["plan", str(study), "--out", str(out), "--json"]).stdout)
     assert [one["total"] for one in content["runs"]] == [17, 47]
     assert content["seconds"]["touchdowns"] is None
     assert content["warnings"] == list(plan_study(study, out).warnings)
@@ -206,8 +195,6 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
         """The first stage."""
 
     class Shown(Silent):
-        """Keeps what is said."""
-
         def begin(self, title: str, number: int, count: int) -> None:
             raise Begun
 
@@ -225,17 +212,12 @@ def test_a_run_begins_with_its_plan_in_three_lines(tmp_path: Path) -> None:
     assert plan[2].endswith(f"lithobrake plan {study} --out {tmp_path / 'out'}")
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
-        ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
-        ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
-    ],
-)
-def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
-    changes: dict[str, str], said: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"speed = 0.15": "speed = 0"}, "impact.speed is 0; allowed: above 0 and at most 1000 [m/s]"),
+    ({"mass = 1.0": "mas = 1.0"}, "lander.mas is not a known key; did you mean mass?"),
+    ({"[flight]": '[site]\nbody = "open.obj"\nmass = 1e11\nspin_period = 8e3\n[flight]'}, "open.obj"),
+])  # fmt: skip
+def test_what_a_run_refuses_a_plan_refuses_in_its_words(changes: dict[str, str], said: str, tmp_path: Path) -> None:
     (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n")
     study = str(write_ball(tmp_path / "study.toml", FEW | changes))
     plan, run = (
@@ -247,29 +229,22 @@ def test_what_a_run_refuses_the_plan_refuses_with_the_same_words(
     assert not (tmp_path / "plan").exists()
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"site": {"latitude_deg": 0.0}}, "push outward"),
-        ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation"),
-        ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
-        ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
-        ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
-        ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
-        (
-            {"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
-            "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07",
-        ),
-        ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
-        ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
-        ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
-        ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"site": {"latitude_deg": 0.0}}, "push outward"),
+    ({"site": {"latitude_deg": 80.0}}, "surface.gravity is 5e-05 m/s2 inward, but gravity and rotation"),
+    ({"bed": {"width": [0.55, 0.55], "grain_count": 30}}, "to avoid boundary reflections during the first impact"),
+    ({"impact": {"place": {"x": -0.25}}}, "keep impact.place.x within 0.22 m"),
+    ({"landing": {"time_limit": 1.0}}, "100 % of the touchdowns may last longer than landing.time_limit, 1 s"),
+    ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
+    ({"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
+     "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07"),
+    ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
+    ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
+    ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
+    ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
+])  # fmt: skip
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
-    kept = {
-        section: {key: value for key, value in keys.items() if value is not None} for section, keys in changes.items()
-    }
+    kept = {name: {key: value for key, value in keys.items() if value is not None} for name, keys in changes.items()}
     study = soft(**kept)
     found = " ".join(study_warnings(DrawnDesign(study), soil_of(study)))
     assert said in found if said else "The screening fits" not in found
@@ -283,25 +258,21 @@ def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) ->
     tables = load_tables(SCENARIOS / "first_bounce.toml")
     tables["design"] = SEQUENCE | (design or {})
     tables["impact"] = {key: value for key, value in tables["impact"].items() if key != "place"}
-    for section, keys in ({"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}} | changes).items():
-        tables[section] = tables.get(section, {}) | keys
-    return check_tables(tables, SCENARIOS)
+    region = {"impact": {"region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}}
+    return check_tables(with_keys(tables, region | changes), SCENARIOS)
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({}, None),
-        ({"bed": {"bed_count": 1}}, "All runs land on one bed, and another bed would change the result"),
-        # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
-        ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
-        ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
-        (
-            {"impact": {"place": {"x": 0.0, "y": 0.1}}},
-            "All runs land at the same point of their beds: give impact.region",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("changes", "said"), [
+    ({}, None),
+    ({"bed": {"bed_count": 1}}, "All runs land on one bed, and another bed would change the result"),
+    # Student's t of 4, 7 and 11 degrees of freedom at 0.95: 2.132, 1.895 and 1.796.
+    ({"bed": {"bed_count": 5}}, "on 5 beds, and the bed is the unit of an interval: so few make it 19 % wider"),
+    ({"design": {"run_count": 8}}, "on 8 beds, and the bed is the unit of an interval: so few make it 5 % wider"),
+    (
+        {"impact": {"place": {"x": 0.0, "y": 0.1}}},
+        "All runs land at the same point of their beds: give impact.region",
+    ),
+])  # fmt: skip
 def test_a_sequence_on_few_beds_or_at_one_place_is_warned_of(changes: dict[str, Any], said: str | None) -> None:
     study = drawn(**changes)
     found = " ".join(study_warnings(DrawnDesign(study), soil_of(study)))
@@ -327,7 +298,6 @@ def test_the_smallest_tile_of_ground_that_repeats_is_said(tmp_path: Path) -> Non
     # The diagonal of the lander, 0.267 m, and 3.2 grains of 0.09 m; no study is accepted on a narrower tile.
     least = math.sqrt(0.1**2 + 0.1**2 + 0.227**2) + 3.2 * 0.09
     plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
-    assert plan.tile is not None
     assert (plan.tile.width, plan.tile.smallest) == ((0.56, 0.56), pytest.approx(least))
     assert "the smallest tile for this lander and these grains is 0.556 m." in " ".join(plan_lines(plan))
     drawn(bed={"width": [least + 1e-9, least + 1e-9], "grain_count": 95})
@@ -346,9 +316,7 @@ def test_ground_that_repeats_loses_no_landing_and_is_warned_of_its_images() -> N
     assert "to avoid reflections and waves of the lander's own images" in said[1]
 
 
-def test_the_beds_of_the_folder_and_of_the_library_are_not_to_be_poured(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_beds_of_folder_and_library_are_not_to_be_poured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study, kept = drawn(), set[int]()
 
     def is_stored(recipe: Any) -> bool:
@@ -381,7 +349,6 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     folder = StudyFolder.only_read(tmp_path / "out")
     plan = plan_for(drawn(bed={"bed_count": 12}), folder, 2)
     found = plan.half_width
-    assert found is not None
     # t(11) at 0.95 is 1.796; sd sqrt(rho / 12 + (1 - rho) / 144) with rho 0 and sd 0.04, rho 0.2 and sd 0.21.
     least, most = 1.796 * 0.04 * (1 / 144) ** 0.5, 1.796 * 0.21 * (0.2 / 12 + 0.8 / 144) ** 0.5
     assert least < found.lower < found.median < found.upper < most
@@ -390,17 +357,13 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
     assert "By the resulting fraction: 8.7 at 100 %." in said
     assert "standard deviation 0.04 to 0.21 of the return fraction from landing to landing; mean correlation" in said
     assert plan.to_json()["half_width"]["own_run_count"] == 0
-    one_bed = drawn(bed={"bed_count": 1})
-    assert plan_for(one_bed, folder, 2).half_width is None
+    assert plan_for(drawn(bed={"bed_count": 1}), folder, 2).half_width is None
     assert plan_for(soft(), folder, 2).half_width is None
 
 
 def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: Path) -> None:
-    study = with_site_gravity(read_study(SCENARIOS / "quick.toml"))
-    plan = plan_for(study, StudyFolder.only_read(tmp_path / "out"), 2)
+    plan = plan_for(with_site_gravity(read_study(SCENARIOS / "quick.toml")), StudyFolder.only_read(tmp_path / "out"), 2)
     found, beds = plan.half_width, plan.runs_a_bed
-    assert found is not None
-    assert beds is not None
     assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
     # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at 0.95 is 1.714.
     assert found.by_fraction["100 %"] == pytest.approx(0.5 * (1.0 - 0.1 ** (1 / 24)))
@@ -417,8 +380,6 @@ def test_landings_that_leave_the_bed_widen_what_is_promised(tmp_path: Path) -> N
         plan_for(drawn(bed={"width": [0.7, 0.7], "sides": sides}, impact={"incidence_deg": flat}), folder, 2).half_width
         for sides in ("walls", "periodic")
     )
-    assert walls is not None
-    assert tile is not None
     # Nobody knows what became of them: half of them is added on either side.
     assert walls.missing == pytest.approx(0.22, abs=0.04)
     assert walls.lower > tile.lower + 0.3 * walls.missing
@@ -427,11 +388,8 @@ def test_landings_that_leave_the_bed_widen_what_is_promised(tmp_path: Path) -> N
 
 def test_a_plan_says_how_many_runs_a_bed_are_best(tmp_path: Path) -> None:
     folder = StudyFolder.only_read(tmp_path / "out")
-    default, many = (
-        plan_for(drawn(design={"run_count": 600}, bed=bed), folder, 2).runs_a_bed for bed in ({}, {"bed_count": 300})
-    )
-    assert default is not None
-    assert many is not None
+    plans = (plan_for(drawn(design={"run_count": 600}, bed=bed), folder, 2) for bed in ({}, {"bed_count": 300}))
+    default, many = (plan.runs_a_bed for plan in plans)
     assert (default.count, many.count) == (20.0, 2.0)
     best = math.sqrt(many.bed_cost * 0.98 / 0.02)
     assert default.best == many.best == pytest.approx(best)
@@ -477,6 +435,11 @@ def test_a_disk_that_is_too_small_is_the_first_warning(tmp_path: Path, monkeypat
 
 # A ball near 50 degrees north of Didymos, over all impacts to come: from bounce to bounce by the emulator.
 EVERY_IMPACT = """
+lander = { shape = "sphere", diameter = 0.14, mass = 0.3, restitution = 0.9 }
+surface = { gravity = 1e-4 }
+contact = { pair_rule = "mean" }
+design = { run_count = 144 }
+site = { latitude_deg = 50.0, heading_deg = 90.0 }
 [bed]
 grain_count = 110
 width = [0.7, 0.7]
@@ -489,31 +452,15 @@ young_modulus = 1e6
 poisson_ratio = 0.25
 restitution = { distribution = "uniform", lower = 0.3, upper = 0.8 }
 friction = 0.6
-[lander]
-shape = "sphere"
-diameter = 0.14
-mass = 0.3
-restitution = 0.9
 [impact]
 speed = { distribution = "uniform", lower = 0.005, upper = 0.4 }
 incidence_deg = { distribution = "uniform", lower = 0.0, upper = 88.0 }
-[surface]
-gravity = 1e-4
-[contact]
-pair_rule = "mean"
-[design]
-run_count = 144
-[site]
-latitude_deg = 50.0
-heading_deg = 90.0
 """
 
 
 def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone() -> None:
     tables = tomllib.loads(EVERY_IMPACT)
-    repeating, walled = (
-        check_tables(tables | {"bed": tables["bed"] | sides}, HERE) for sides in ({}, {"sides": "walls"})
-    )
+    repeating, walled = (check_tables(with_keys(tables, {"bed": bed}), HERE) for bed in ({}, {"sides": "walls"}))
     (here,) = study_warnings(DrawnDesign(repeating), soil_of(repeating))
     assert here.startswith("Many journeys on the soil will have an unknown outcome")
     lost, unknown = study_warnings(DrawnDesign(walled), soil_of(walled))
@@ -522,8 +469,7 @@ def test_a_study_that_has_all_it_needs_is_warned_of_the_edge_of_its_beds_alone()
 
 
 def test_a_touchdown_is_expected_to_take_the_steps_of_its_contacts() -> None:
-    study = soft(grain={"young_modulus": 1e6})
-    soil = soil_of(study)
+    soil = soil_of(soft(grain={"young_modulus": 1e6}))
     lander, landing = soil.landings[0]
     stiff = replace(landing, grain=replace(landing.grain, young_modulus=1e8))
     stiff_lander = replace(lander, material=replace(lander.material, young_modulus=1e8))
@@ -549,15 +495,12 @@ def record(wall_s: float) -> Record:
     return Record("", RunStatus.DONE, "clear", empty, empty, {}, 0, 0, 1, None, wall_s, wall_s, None, "", None, None)
 
 
-def test_other_work_on_the_cores_raises_the_upper_ends_by_its_factor(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_work_on_the_cores_raises_upper_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder, cores = StudyFolder.only_read(tmp_path / "out"), available_cores()
     idle = plan_for(soft(), folder, 1)
     monkeypatch.setattr(expected_time, "_load", lambda: 3.0 * cores)
     busy = plan_for(soft(), folder, 1)
     for what, span in idle.seconds.items():
-        assert span is not None
         assert busy.seconds[what] == pytest.approx((span[0], 4.0 * span[1]))
     assert "everything takes up to 4.0 times as long" in busy.basis
     assert "Other work" not in idle.basis
@@ -609,7 +552,6 @@ def test_the_samples_take_the_room_that_is_expected(tmp_path: Path) -> None:
     ("down", "words"), [([True, False, False], ["Only 1 of 3 landers"]), ([True, True, False], [])]
 )
 def test_a_delivery_that_mostly_misses_the_ground_is_a_warning(down: list[bool], words: list[str]) -> None:
-    design = SimpleNamespace(descents=SimpleNamespace(touches_down=np.array(down)))
-    found = list(_missed(design))
+    found = list(_missed(SimpleNamespace(descents=SimpleNamespace(touches_down=np.array(down)))))
     assert len(found) == len(words)
     assert all(word in one for one, word in zip(found, words, strict=True))

@@ -1,4 +1,4 @@
-"""Aims of a study, from its file to its page."""
+"""Aims of a study, from its file to its page; and hard ground with the restitution that a soft surface implies."""
 
 import dataclasses
 from dataclasses import replace
@@ -11,11 +11,12 @@ import pytest
 import lithobrake
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.first_bounces.aiming import _distances
+from lithobrake.pipeline.first_bounces.bounce_laws import implied
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
 from lithobrake.results.result_files import json_values
 from lithobrake.results.summary import DrawnResults
-from lithobrake.smallbody import didymos
+from lithobrake.smallbody import HardSurface, Impacts, didymos
 from lithobrake.statements.limits import options
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
@@ -47,8 +48,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 
 @pytest.fixture(scope="module")
 def found(results: StudyResults) -> dict[str, Any]:
-    table: dict[str, Any] = results.summary["results"]["aim"]
-    return table
+    return results.summary["results"]["aim"]
 
 
 def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyResults, found: dict[str, Any]) -> None:
@@ -62,8 +62,7 @@ def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyR
             assert share["share"] == pytest.approx(ends.count("settled") / len(ends))
             assert 0.0 <= share["lower"] <= share["share"] <= share["upper"] <= 1.0
             assert 0.0 <= share["share"] + aim[ground]["missing"] <= 1.0
-    late = found["aims"][3]["soil"]["time_p95"]
-    assert 0.0 < late["value"] < 86_400.0
+    assert 0.0 < found["aims"][3]["soil"]["time_p95"]["value"] < 86_400.0
     assert found["aims"][3]["hard"]["distance_p95"]["lower"] < found["aims"][3]["hard"]["distance_p95"]["value"]
 
 
@@ -87,15 +86,11 @@ def test_the_best_keeps_the_limits_and_says_how_sure_it_is(found: dict[str, Any]
 def test_the_statement_has_the_share_without_selection_and_names_what_is_alike(results: StudyResults) -> None:
     assert isinstance(results.results, DrawnResults)
     found = results.results.aim
-    assert found is not None
     best, allowed = found.best_on_soil, sum(aim.soil.allowed for aim in found.aims)
-    assert best is not None
-    assert best.own is not None
     assert f": {100 * best.own.value:.0f} % (90 % interval " in found.statement
     assert "of the refits" not in found.statement
     told = options(replace(found, best_on_soil=replace(best, not_worse=(1,))))
-    first = f"2 of {allowed} delivery options within "
-    assert told.startswith(first)
+    assert told.startswith(f"2 of {allowed} delivery options within ")
     assert " cannot be distinguished from the best, with 90 % confidence: impact.speed = 0.1, " in told
     told = options(replace(found, best_on_soil=replace(best, not_worse=())))
     assert told.startswith(f"One of {allowed} delivery options within ")
@@ -106,37 +101,28 @@ def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResult
     assert json_values(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
     assert "ost landers come to rest with impact.speed = " in found["statement"]
-    page = (results.folder / "report" / "index.html").read_text(encoding="utf-8")
-    assert "Where to aim" in page
+    assert "Where to aim" in (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     assert [path.name for path in (results.folder / "report").glob("*_aim.png")]
 
 
 def test_ways_over_the_ground_are_arcs_and_none_where_the_end_is_not_on_it() -> None:
     body, site = didymos(), {"latitude_deg": np.zeros(3), "longitude_deg": np.zeros(3)}
     ends: list[list[Any]] = [
-        ["", 0, "settled", 0.0, 0.0, 90.0],
-        ["", 1, "escaped", 0.0, "", ""],
-        ["", 2, "", 0.0, 0.0, 0],
-    ]
+        ["", 0, "settled", 0.0, 0.0, 90.0], ["", 1, "escaped", 0.0, "", ""], ["", 2, "", 0.0, 0.0, 0],
+    ]  # fmt: skip
     radius = float(np.linalg.norm(body.shape.surface_point(0.0, 0.0)))
     assert _distances(body, site, ends) == pytest.approx([0.5 * np.pi * radius, np.nan, 0.0], nan_ok=True)
 
 
-@pytest.mark.parametrize(
-    ("aim", "words"),
-    [
-        ({"grid": {"impact.sped": [0.1]}}, r'aim\.grid\."impact\.sped" is no aim; .* did you mean impact\.speed'),
-        ({"grid": {"impact.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
-        ({"grid": {"impact.speed": [0.2, 0.1]}}, "ascending values"),
-        (
-            {"within": ["incidence_deg"]},
-            r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled',
-        ),
-        ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
-        ({"grid": {}}, r"aim\.within is given without aim\.grid"),
-        ({"grid": {"impact.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
-    ],
-)
+@pytest.mark.parametrize(("aim", "words"), [
+    ({"grid": {"impact.sped": [0.1]}}, r'aim\.grid\."impact\.sped" is no aim; .* did you mean impact\.speed'),
+    ({"grid": {"impact.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
+    ({"grid": {"impact.speed": [0.2, 0.1]}}, "ascending values"),
+    ({"within": ["incidence_deg"]}, r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled'),
+    ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
+    ({"grid": {}}, r"aim\.within is given without aim\.grid"),
+    ({"grid": {"impact.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
+])  # fmt: skip
 def test_aims_that_cannot_be_are_refused(aim: dict[str, Any], words: str) -> None:
     with pytest.raises(StudyError, match=words):
         check_tables(tables(**aim), Path())
@@ -146,3 +132,25 @@ def test_aims_need_the_impacts_after_the_first_among_the_inputs() -> None:
     given = synthetic_tables(aim={"grid": {"site.latitude_deg": [0.0, 50.0]}})
     with pytest.raises(StudyError, match=r"impact\.speed and impact\.incidence_deg are no uncertain input"):
         check_tables(given, Path())
+
+
+def test_hard_ground_implies_itself() -> None:
+    """The rebounds of a hard surface give back the numbers that it was made of."""
+    random = np.random.default_rng(1)
+    speed, incidence = random.uniform(0.01, 0.4, 200), random.uniform(0.1, 1.2, 200)
+    nothing, lander = np.zeros((200, 3)), np.arange(200)
+    for friction in (np.inf, 0.1):
+        impacts = Impacts(speed, incidence, nothing, np.full(200, -1e-4), lander)
+        found = implied(speed, incidence, HardSurface(0.6, 0.8, friction)(impacts, random).velocity)
+        assert found["normal_restitution"] == pytest.approx(0.6)
+        slides = found["tangential_restitution"] > 0.8 + 1e-9
+        assert found["tangential_restitution"][~slides] == pytest.approx(0.8)
+        assert found["friction"][slides] == pytest.approx(friction)
+        assert slides.any() == np.isfinite(friction)
+
+
+def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
+    tables = synthetic_tables(design={"run_count": 30}, monte_carlo={"sample_count": 100}, rest={"count": 20})
+    out = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
+    assert not (out.folder / "restitution.csv").exists()
+    assert out.summary["results"]["rest"]["equivalent"] is None

@@ -9,6 +9,7 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline.answer.run_estimates import PARTS
+from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
 from lithobrake.results.result_files import json_values
 from lithobrake.smallbody import RestitutionTable
@@ -50,8 +51,7 @@ def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: Stud
     assert hard["settled"]["lower"] <= hard["settled"]["share"] <= hard["settled"]["upper"]
     assert (hard["level"], hard["why"]) == (0.9, None)
     assert "without soil, bed or emulator" in hard["of"]
-    several = journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"]
-    assert several.max() > 2
+    assert journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"].max() > 2
 
 
 def test_the_speed_of_samples_follows_that_of_the_arrival_and_never_passes_it(journeys: StudyResults) -> None:
@@ -71,11 +71,9 @@ def test_a_captured_lander_stays_where_the_ground_holds_it(journeys: StudyResult
 def test_the_table_of_restitution_has_what_runs_and_samples_say(journeys: StudyResults) -> None:
     table = RestitutionTable.read(journeys.folder / "restitution.csv")
     samples = journeys.samples
-    ended = np.isin(samples["outcome"], ["clear", "captured"])
-    assert table.samples.sum() == ended.sum()
+    assert table.samples.sum() == np.isin(samples["outcome"], ["clear", "captured"]).sum()
     assert table.runs.sum() == np.isin(journeys.runs["outcome"], ["clear", "captured"]).sum() > 40
-    stay = (table.captured * table.samples).sum()
-    assert stay == pytest.approx((samples["outcome"] == "captured").sum())
+    assert (table.captured * table.samples).sum() == pytest.approx((samples["outcome"] == "captured").sum())
     left = samples.where(samples["outcome"] == "clear")
     normal = left["velocity_out_z"] / (left["impact.speed"] * np.cos(np.radians(left["impact.incidence_deg"])))
     lowest, highest = (table.quantiles["normal_restitution"][:, :, place] for place in (0, -1))
@@ -91,17 +89,11 @@ def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journey
     assert json_values(journeys.results) == journeys.summary["results"]
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"bed": {"bed_count": 1}}, "All runs landed on one bed."),
-        ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs landed at one impact point."),
-    ],
-    ids=["one bed", "one place"],
-)
-def test_one_bed_or_one_place_gives_no_interval_anywhere(
-    changes: dict[str, dict[str, Any]], words: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"bed": {"bed_count": 1}}, "All runs landed on one bed."),
+    ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs landed at one impact point."),
+], ids=["one bed", "one place"])  # fmt: skip
+def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any]], words: str, tmp_path: Path) -> None:
     results = made(tmp_path / "out", SyntheticLander(), **changes)
     found = results.summary["results"]
     returns = found["returns"]
@@ -110,9 +102,7 @@ def test_one_bed_or_one_place_gives_no_interval_anywhere(
     assert "would change the result; this study cannot show by how much" in results.headline[1]
     assert "interval" not in results.headline[0]
     tables = found["shares"], found["shares"]["emulator"]
-    assert {one["lower"] for table in tables for one in table.values() if isinstance(one, dict) and "lower" in one} == {
-        None
-    }
+    assert {a["lower"] for table in tables for a in table.values() if isinstance(a, dict) and "lower" in a} == {None}
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
 
@@ -131,8 +121,7 @@ def test_a_journey_has_a_flight_for_each_rebound(journeys: StudyResults) -> None
 
 def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: Path) -> None:
     limits = {"away": "escaped", "back": "returns", "caught": "captured"}
-    lander = SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat"))
-    results = made(tmp_path / "out", lander, limit_states=limits)
+    results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")), limit_states=limits)
     found = results.summary["results"]
     runs, returns, shares = found["runs"], found["returns"], found["shares"]
     lost = runs["outcomes"]["left_sideways"]
@@ -151,9 +140,8 @@ def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: 
     assert sum(shares[name]["share"] for name in PARTS) == pytest.approx(1.0)
     counted = [*PARTS, "missing"]
     assert sum(shares[name]["count"] for name in counted) == shares["sample_count"] == 64 * 48
-    assert shares["returns"] == {key: returns[key] for key in ("share", "lower", "upper")} | {
-        "count": shares["impact"]["count"]
-    }
+    share = {key: returns[key] for key in ("share", "lower", "upper")}
+    assert shares["returns"] == share | {"count": shares["impact"]["count"]}
     states = found["limit_states"]
     for name, word in (("away", "escaped"), ("back", "returns"), ("caught", "captured")):
         assert states[name]["source"] == "runs"
@@ -165,9 +153,7 @@ def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: 
 def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound(tmp_path: Path) -> None:
     said: list[str] = []
 
-    class Shown:
-        def begin(self, title: str, number: int, count: int) -> None: ...
-        def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None: ...
+    class Shown(Silent):
         def say(self, sentence: str) -> None:
             said.append(sentence)
 
@@ -176,5 +162,4 @@ def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound
         tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False, progress=Shown()
     )
     assert any("with more speed and spin than the impact energy allows" in sentence for sentence in said)
-    samples = results.samples.where(results.samples["outcome"] == "clear")
-    assert samples["speed_out"].max() > 0.05
+    assert results.samples.where(results.samples["outcome"] == "clear")["speed_out"].max() > 0.05

@@ -49,8 +49,6 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 @dataclass
 class Told(Silent):
-    """Keeps what a job tells."""
-
     said: list[str] = field(default_factory=list)
     works: list[tuple[float, float, str]] = field(default_factory=list)
 
@@ -121,14 +119,10 @@ def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence
     poured: tuple[Path, str, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = pour(tmp_path, (NAMES[0], NAMES[2]))
-    assert told.said == ["bed: 2 of 2 were in the library of beds"]
-    assert told.works == []
+    assert (told.said, told.works) == (["bed: 2 of 2 were in the library of beds"], [])
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
     Broken(monkeypatch, 1, 2)
-    with (
-        LocalExecutor(1) as executor,
-        pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"),
-    ):
+    with LocalExecutor(1) as executor, pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"):
         pour(tmp_path, NAMES[1:], executor)
     with pytest.raises(ValueError, match=r"^bed 2 of 3 cannot be poured"):
         pour(tmp_path, NAMES[1:2])
@@ -150,24 +144,11 @@ def test_beds_of_a_dask_cluster_have_the_same_bits(poured: tuple[Path, str, int]
 
 
 def start(folder: Path) -> "subprocess.Popen[str]":
-    words = [
-        sys.executable,
-        "-m",
-        "lithobrake",
-        "bed",
-        folder / "study.toml",
-        "--out",
-        folder / "out",
-        "--workers",
-        "2",
-    ]
+    words = [sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers",
+        "2"]  # fmt: skip
     # What runs in the background of a shell ignores the signal, and so would what it starts.
-    return subprocess.Popen(
-        list(map(str, words)),
-        stderr=subprocess.PIPE,
-        text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+    return subprocess.Popen(list(map(str, words)), stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # fmt: skip
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")

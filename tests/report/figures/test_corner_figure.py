@@ -14,18 +14,13 @@ from lithobrake.report.figures.style import figure_style
 GRID = (np.arange(200) + 0.5) / 200
 INPUTS = {
     "grain.friction": {
-        "unit": "-",
-        "prior": (0.9 * GRID).tolist(),
-        "points": (0.9 * GRID**2).tolist(),
-        "sd_ratio": 0.7,
+        "unit": "-", "prior": (0.9 * GRID).tolist(), "points": (0.9 * GRID**2).tolist(), "sd_ratio": 0.7,
     },
     "grain.young_modulus": {
-        "unit": "Pa",
-        "prior": (10 ** (5 + 2 * GRID)).tolist(),
-        "points": (10 ** (6 + GRID)).tolist(),
+        "unit": "Pa", "prior": (10 ** (5 + 2 * GRID)).tolist(), "points": (10 ** (6 + GRID)).tolist(),
         "sd_ratio": 0.5,
     },
-}
+}  # fmt: skip
 
 
 def test_a_law_over_decades_is_drawn_by_its_logarithm_and_one_from_nothing_is_not() -> None:

@@ -67,15 +67,11 @@ def test_three_moments_of_a_bed_with_one_frame() -> None:
     assert three_moments(np.zeros((1, 4, 3))) == (0, 0, 0)
 
 
-@pytest.mark.parametrize(
-    ("height", "expected"),
-    [
-        (np.abs(np.arange(11.0) - 4.0), [0, 2, 4, 6, 8, 10]),
-        (np.arange(3.0), [0, 1, 2]),
-        (np.arange(11.0, 0.0, -1.0), [0, 2, 4, 6, 8, 10]),
-    ],
-    ids=["bounces", "few frames", "never comes up"],
-)
+@pytest.mark.parametrize(("height", "expected"), [
+    (np.abs(np.arange(11.0) - 4.0), [0, 2, 4, 6, 8, 10]),
+    (np.arange(3.0), [0, 1, 2]),
+    (np.arange(11.0, 0.0, -1.0), [0, 2, 4, 6, 8, 10]),
+], ids=["bounces", "few frames", "never comes up"])  # fmt: skip
 def test_instants_hold_start_deepest_and_end(height: np.ndarray, expected: list[int]) -> None:
     assert instants(height) == expected
 

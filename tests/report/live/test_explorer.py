@@ -137,16 +137,13 @@ def test_quantiles_of_inputs_are_those_of_their_laws(model: Emulator) -> None:
 
 
 @needs_node
-@pytest.mark.parametrize(
-    ("changes", "fixed"),
-    [
-        ({}, {}),
-        ({"lander": {"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}}, {"lander.mass": 3.0}),
-        ({"lander": {"shape": "sphere", "diameter": 0.2, "mass": 2.0}}, {"lander.diameter": 0.15}),
-        ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}}, {"impact.speed": 0.2, "impact.spin_y": 3.0}),
-        ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}, "bed": {"sides": "walls"}}, {"impact.speed": 0.2}),
-    ],
-)
+@pytest.mark.parametrize(("changes", "fixed"), [
+    ({}, {}),
+    ({"lander": {"inertia": [1e-3, 2e-3, 2e-3], "mass": 2.0}}, {"lander.mass": 3.0}),
+    ({"lander": {"shape": "sphere", "diameter": 0.2, "mass": 2.0}}, {"lander.diameter": 0.15}),
+    ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}}, {"impact.speed": 0.2, "impact.spin_y": 3.0}),
+    ({"surface": {"slope_deg": 30.0, "gravity": 1e-2}, "bed": {"sides": "walls"}}, {"impact.speed": 0.2}),
+])  # fmt: skip
 def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, Any], fixed: dict[str, float]) -> None:
     study = check_tables(synthetic_tables(**changes), Path()).with_function("of a test")
     bound = energy_bound(DrawnDesign(study), 0.3, {name: np.array([value]) for name, value in fixed.items()}, 1)

@@ -66,7 +66,6 @@ def test_every_figure_is_there_with_its_file(drawn_page: str, sequence_folder: P
 
 def test_the_sections_stand_in_the_order_of_their_questions(drawn_page: str) -> None:
     contents = re.search(r"<nav.*?</nav>", drawn_page)
-    assert contents is not None
     order = ["Answer", "Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
     assert re.findall(r">([^<]+)</a>", contents[0]) == order
     assert re.findall(r"<h2>([^<]+)</h2>", drawn_page) == order[1:]
@@ -112,7 +111,6 @@ def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) 
     gravity = drawn.results.site.gravity_warning
     lost, last = page_warnings(changed(drawn, emulator={"warning": None}))
     assert lost[:-1] == drawn.results.runs.warning
-    assert gravity is not None
     assert last[1:-1] in gravity
     few = page_warnings(changed(drawn, emulator={"warning": "the emulator is off"}, runs={"beds": 6}))
     assert [words[:20] for words in few[1:3]] == ["The study has only 6", "The emulator is off."]
@@ -122,7 +120,6 @@ def test_warnings_name_few_beds_and_what_the_summary_warns_of(drawn: DrawnPage) 
 
 def test_the_first_warning_of_the_page_is_that_of_missing_landings(drawn: DrawnPage, drawn_page: str) -> None:
     first = re.search(r'<p class="warning">(.*?)</p>', drawn_page)
-    assert first is not None
     assert first[1][:-1].replace("&nbsp;", " ") == drawn.results.runs.warning
 
 
@@ -188,7 +185,6 @@ def test_rare_limit_states_have_their_levels_a_figure_and_a_warning(sequence_fol
     assert "fast: Few beds led to it: raise bed.bed_count." in content.warnings
     plot = next(plot for plot in content.plots if plot.name == "rare")
     figure = plot.draw()
-    assert figure is not None
     assert len(figure.axes[0].lines) >= 2
     probabilities, levels = rare_tables(found.rare)
     assert probabilities.rows[0][2:4] == ["0.0015", "4 × 10⁻⁴ to 0.005"]
@@ -255,7 +251,6 @@ def test_touchdowns_without_a_bed_have_a_page_without_one(drawn: DrawnPage) -> N
 
 def test_side_runs_have_their_numbers(drawn: DrawnPage) -> None:
     table, side = table_of(drawn, "Side runs"), drawn.results.runs.side_runs
-    assert side is not None
     assert re.findall(r"\d+", table.note)[:2] == [str(side.soil_pairs), str(side.twins)]
     assert float(table.rows[0][2].split()[0]) == pytest.approx(side.chaos_deviation["speed_out"].value, rel=5e-3)
     without = changed(drawn, runs={"side_runs": None})

@@ -113,17 +113,14 @@ def test_cells_that_are_links_lead_to_files_and_all_others_are_words() -> None:
     assert '<td><a href="../a.csv">a.csv</a></td><td>1 kB</td>' in folds([table])[0]
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (0.0123456, "0.0123"),
-        (1234.5, "1234"),
-        (5e-5, "5 × 10⁻⁵"),
-        (-5.32e11, "-5.32 × 10¹¹"),
-        (2.0, "2"),
-    ],
-)
+@pytest.mark.parametrize(("value", "text"), [
+    (0.0, "0"),
+    (0.0123456, "0.0123"),
+    (1234.5, "1234"),
+    (5e-5, "5 × 10⁻⁵"),
+    (-5.32e11, "-5.32 × 10¹¹"),
+    (2.0, "2"),
+])  # fmt: skip
 def test_numbers_in_words(value: float, text: str) -> None:
     assert number(value) == text
 

@@ -8,18 +8,15 @@ from ..page_scripts import answer_of, needs_node
 
 
 @needs_node
-@pytest.mark.parametrize(
-    ("cell", "value"),
-    [
-        ("71 % (68 to 73)", 71.0),
-        ("0.0754", 0.0754),
-        ("-3.2", -3.2),
-        ("5.3 × 10¹¹", 5.3e11),
-        ("2.5 × 10⁻⁵ m/s2", 2.5e-5),
-        ("100 000", 1e5),
-        ("Uniform", math.nan),
-    ],
-)
+@pytest.mark.parametrize(("cell", "value"), [
+    ("71 % (68 to 73)", 71.0),
+    ("0.0754", 0.0754),
+    ("-3.2", -3.2),
+    ("5.3 × 10¹¹", 5.3e11),
+    ("2.5 × 10⁻⁵ m/s2", 2.5e-5),
+    ("100 000", 1e5),
+    ("Uniform", math.nan),
+])  # fmt: skip
 def test_a_cell_is_sorted_by_the_number_that_it_begins_with(cell: str, value: float) -> None:
     # The part that listens to a window is for browsers.
     program = "return cellNumber(given.cell);"
