@@ -169,8 +169,8 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
     assert [int(line[0]) for line in lines] == list(range(len(found.landings)))
     for line, made in zip(lines, found.landings, strict=True):
         assert float(line[2]) == pytest.approx(made.values["impact.speed"], rel=5e-3)
-    # Each flight of a lander that came down again has the way that it went over the ground: it is highest in between, so
-    # it is nowhere faster than at the faster of its ends.
+    # Each flight of a lander that came down again has its way over the ground. It is highest in between, so that it is
+    # nowhere faster than at the faster of its ends.
     for (line, after), (one, another) in zip(pairwise(lines), pairwise(found.journey.touchdowns), strict=True):
         fastest = max(float(line[4]), float(after[2]))
         assert 0.0 < float(line[6]) < fastest * (another["begin_s"] - one["end_s"])
