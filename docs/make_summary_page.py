@@ -13,8 +13,7 @@ from textwrap import dedent, wrap
 from typing import Any, get_args
 
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance, Summary
-from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.inline_fields import Form, is_inline, key_of
+from lithobrake.vocabulary.estimate import Estimate, Form, is_inline, key_of
 
 LINE = 100  # characters, as on every page of the documentation
 HEAD = """# The keys of summary.json, scores.json and the expansions

@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeEla
 from rich.text import Text
 
 from lithobrake.campaign import duration, per_time
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.plain_text import plain
 
 # A stage is soon seen to be at work, and a night of it does not fill the file: first line, then the others [s].

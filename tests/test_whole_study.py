@@ -14,7 +14,7 @@ import h5py
 import pytest
 
 from lithobrake.results import open_study
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import Summary
 
 from .command_line import lithobrake

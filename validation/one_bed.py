@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import lithobrake
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, command_line, origin, read_document, write_document

@@ -19,7 +19,7 @@ from lithobrake.report.figures.style import figure_style
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.page_data import JourneyPage, page_results
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.vocabulary.estimate import Estimate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))

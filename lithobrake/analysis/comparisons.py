@@ -12,7 +12,7 @@ from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.vocabulary.arrays import Array, Labels
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_CORRELATION
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 

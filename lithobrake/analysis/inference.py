@@ -28,7 +28,7 @@ from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
-from lithobrake.vocabulary.percentages import at_level
+from lithobrake.vocabulary.number_words import at_level
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
-from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
+from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

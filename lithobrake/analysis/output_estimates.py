@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from lithobrake.analysis.confidence import LEVEL, Bounds, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.arrays import Array, Labels
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_TAIL
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_TAIL
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.percentages import QUANTILES
+from lithobrake.vocabulary.number_words import QUANTILES
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
 # handful of runs beyond the quantile lie on one or two of them (measured: docs/estimates.md).

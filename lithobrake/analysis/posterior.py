@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.number_words import percent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any, TextIO
 
 from lithobrake.campaign.record import COLUMNS, KEY_LENGTH, OBJECTS, Record, common_reasons
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import Training, checked_training, one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
-from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
+from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 
 # With more terms for each point than this the residuals say too little about the error.
 TERMS_PER_POINT = 0.7

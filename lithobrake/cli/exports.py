@@ -152,7 +152,7 @@ def sites(
         from lithobrake.files.atomic import refuse_existing
         from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
         from lithobrake.progress import study_progress
-        from lithobrake.results.result_files import json_values
+        from lithobrake.results.study_files import json_values
 
         place = folder / "sites"
         written = () if force else (*site_map_files(place), site_cells_file(place))

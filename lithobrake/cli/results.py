@@ -216,7 +216,7 @@ def compare(
     place = given_folder(out)
     with one_sentence():
         from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
-        from lithobrake.results.result_files import json_values
+        from lithobrake.results.study_files import json_values
 
         for path in comparison_files(place):
             refuse_written(path, force)

@@ -19,7 +19,7 @@ from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
-from lithobrake.vocabulary.percentages import LEVEL, percent
+from lithobrake.vocabulary.number_words import LEVEL, percent
 from lithobrake.vocabulary.plain_text import html_table
 
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.

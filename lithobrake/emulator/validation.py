@@ -11,7 +11,7 @@ from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, kernels
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.percentages import HIGH, LOW
+from lithobrake.vocabulary.number_words import HIGH, LOW
 
 # Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.
 MOST_FOLDS = 12

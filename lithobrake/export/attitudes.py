@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake.export.flown import Flown, has_journeys
 from lithobrake.export.oem import RESOLUTION, Frame, comment_lines, epoch_texts, header_lines, number_texts
 from lithobrake.files.atomic import write_whole
-from lithobrake.geometry.frames import arriving, attitude_of, from_frame, quaternion, spin_of
+from lithobrake.geometry.attitude import arriving, attitude_of, from_frame, quaternion, spin_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.motions import landing_study
 from lithobrake.smallbody import tumble

@@ -11,7 +11,7 @@ import numpy as np
 
 from lithobrake.export.flown import Flown, body_name, has_journeys, study_body
 from lithobrake.files.atomic import write_whole
-from lithobrake.geometry.frames import axes_in_icrf
+from lithobrake.geometry.attitude import axes_in_icrf
 from lithobrake.results import StudyResults, Table
 from lithobrake.vocabulary.arrays import Array
 

@@ -16,8 +16,8 @@ from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.units import input_units
+from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import ARC, FIXED, FLIGHT, Quantity, quantity
 from lithobrake.vocabulary.study_files import (
     ARCS_FILE,

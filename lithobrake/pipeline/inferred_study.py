@@ -29,8 +29,8 @@ from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.units import conversion, input_units, run_units
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import PURE
 from lithobrake.vocabulary.study_files import STUDY_FILE
 

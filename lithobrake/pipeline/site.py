@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.reading import hashed_seed
-from lithobrake.geometry.frames import angles, directions
+from lithobrake.geometry.attitude import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
 from lithobrake.study.delivery_checks import drawn_together

@@ -8,12 +8,12 @@ import numpy as np
 
 from lithobrake.analysis import EqualAreaCells, best_choice, share_difference
 from lithobrake.files.reading import hashed_seed, read_rows
-from lithobrake.geometry.frames import directions
+from lithobrake.geometry.attitude import directions
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quantile_of_some
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.soils import felt
-from lithobrake.pipeline.first_bounces.aiming import ways_from_aims
+from lithobrake.pipeline.first_bounces.bounces_to_rest import ways_from_aims
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN
@@ -22,11 +22,11 @@ from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arri
 from lithobrake.pipeline.sky import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
-from lithobrake.study.question_sections import SkyBody
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_REGION
+from lithobrake.study.design_sections import SkyBody
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
 from lithobrake.vocabulary.study_files import TOUCHDOWNS_FILE
 

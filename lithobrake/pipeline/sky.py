@@ -14,10 +14,10 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.study import Study
 from lithobrake.study.delivered_states import orbiter_states
+from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.lander_section import OUTWARD
 from lithobrake.study.quantity import Scalar, Uncertain
 from lithobrake.study.question_checks import utc
-from lithobrake.study.question_sections import SkyBody
 from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import SIDES, SKY

@@ -10,8 +10,14 @@ from lithobrake.pipeline.answer.study_summary import summary_dependencies, write
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.design import SIDE_DESIGNS, beds_of_runs
-from lithobrake.pipeline.first_bounces.aiming import aim_dependencies, aim_files, follow_aims
-from lithobrake.pipeline.first_bounces.bounces_to_rest import follow_samples, rest_dependencies, rest_files
+from lithobrake.pipeline.first_bounces.bounces_to_rest import (
+    aim_dependencies,
+    aim_files,
+    follow_aims,
+    follow_samples,
+    rest_dependencies,
+    rest_files,
+)
 from lithobrake.pipeline.first_bounces.emulator import (
     EMULATOR_FILE,
     EXPLORER_FILE,
@@ -104,7 +110,7 @@ REST_PARTS = ("pipeline/first_bounces", *FLIGHT_PARTS)
 REST = Stage("rest", "bounces until rest", rest_files, follow_samples, ("fly",), rest_dependencies, REST_PARTS)
 AIM = Stage("aim", "aims", aim_files, follow_aims, ("fly",), aim_dependencies, REST_PARTS)
 JOURNEY_PARTS = (
-    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/frames.py", *RUN_PARTS, *FLIGHT_PARTS,
+    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/attitude.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
 EMULATED = Stage(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.campaign.model_server import PREFIX
+from lithobrake.campaign.external_model import PREFIX
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training import one_thread
 from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER

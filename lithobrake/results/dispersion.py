@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
-from lithobrake.vocabulary.inline_fields import INLINE, Inlined
+from lithobrake.vocabulary.estimate import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.geometry.frames import angles, directions
+from lithobrake.geometry.attitude import angles, directions
 from lithobrake.vocabulary.number_words import counted, duration
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import in_lines, short_repr

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lithobrake.vocabulary.inline_fields import INLINE, Inlined
+from lithobrake.vocabulary.estimate import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
 Ends = tuple[float | None, float | None]

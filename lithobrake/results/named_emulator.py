@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
-from lithobrake.vocabulary.percentages import QUANTILES
+from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.plain_text import html_table, in_lines
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
 

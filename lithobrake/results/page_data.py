@@ -13,12 +13,12 @@ from lithobrake.results import ExplorerTables, MovingBodies, StudyResults, Table
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.results.model_results import EmulatorResults, OutputErrors
 from lithobrake.results.questions import RareLimitState
-from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import CountedShare
+from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import EXPANSION_LEVEL
 from lithobrake.vocabulary.study_files import (
     BODY_FILE,
     EXPLORER_FILE,

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from lithobrake.study.question_sections import SIDE
-from lithobrake.vocabulary.estimate import Estimate, Keyed, Number, Share
-from lithobrake.vocabulary.inline_fields import INLINE, Inlined
+from lithobrake.study.design_sections import SIDE
+from lithobrake.vocabulary.estimate import INLINE, Estimate, Inlined, Keyed, Number, Share
 from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.plain_text import short_repr
 

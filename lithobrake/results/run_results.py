@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any
 
-from lithobrake.vocabulary.estimate import Estimate, Keyed, Number, Share
-from lithobrake.vocabulary.inline_fields import INLINE, Inlined
+from lithobrake.vocabulary.estimate import INLINE, Estimate, Inlined, Keyed, Number, Share
 from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.plain_text import short_repr
 

@@ -1,12 +1,13 @@
 """The folder of a study as it is read: its files as they were made, its summary, its tables of rows."""
 
+import json
 import math
 import os
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import DamagedFileError, content_hash, read_json, read_rows, reading
@@ -40,6 +41,7 @@ SUMMARY_FORMAT = 4
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
 # Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
 OF_SAMPLES = (SAMPLES_FILE, SAMPLE_FLIGHTS_FILE, REST_FILE, EMULATOR_FILE, EXPLORER_FILE)
+T = TypeVar("T")
 
 
 def intact_file(folder: Path, name: str, remedy: str) -> Path:
@@ -166,3 +168,45 @@ class StudyFiles:
         from lithobrake.study.units import input_units
 
         return input_units()
+
+
+def json_values(value: Any) -> Any:
+    """Results as objects, lists, numbers, words and None. Raises ValueError for a value that is none of its field."""
+    from pydantic import TypeAdapter
+
+    form = TypeAdapter[Any](type(value))
+    return form.dump_python(value, mode="json", by_alias=True, exclude_defaults=True, warnings="error")
+
+
+def results_in(kind: type[T], content: Any, place: str = "") -> T:
+    """Results of a dataclass in JSON values, of the kind alone that its fields have.
+
+    place: of the value in its file, "results". Raises KeyError for a key that is not there, with its place, and
+    ValueError for a value that is none of its field.
+    """
+    from pydantic import TypeAdapter, ValidationError
+
+    try:
+        # Of a text a list may become a tuple, and nothing else another thing than it is.
+        result: T = TypeAdapter(kind).validate_json(json.dumps(content), strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        lacking = first["loc"][-1:] if first["type"] == "missing" else ()
+        keys = _keys_to(content, first["loc"][: len(first["loc"]) - len(lacking)]) or []
+        where = ".".join(map(str, [*([place] if place else []), *keys, *lacking]))
+        if lacking:
+            raise KeyError(where) from None
+        raise ValueError(f"{where} is {first['input']!r}, and {first['msg'].replace('Input should', 'must')}") from None
+    return result
+
+
+def _keys_to(content: Any, location: Sequence[int | str]) -> list[int | str] | None:
+    """The keys that lead to a place in JSON values, which pydantic names by fields besides; None where none do."""
+    if not location:
+        return []
+    first, rest = location[0], location[1:]
+    if isinstance(first, int) if isinstance(content, list) else isinstance(content, dict) and first in content:
+        found = _keys_to(content[first], rest)
+        if found is not None:
+            return [first, *found]
+    return _keys_to(content, rest) if rest else None

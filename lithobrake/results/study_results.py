@@ -102,7 +102,7 @@ class StudyResults(StudyTables):
     def rare(self) -> "dict[str, RareLimitState]":
         """What `lithobrake rare` found of each limit state it was asked for, by name (docs/reliability.md)."""
         from lithobrake.results.questions import RareLimitState
-        from lithobrake.results.result_files import results_in
+        from lithobrake.results.study_files import results_in
 
         remedy, found = "make it again with: lithobrake rare", {}
         for path in sorted(self.folder.glob("rare_*.json")):

@@ -34,7 +34,6 @@ from lithobrake.results.model_results import (
     OutputErrors,
 )
 from lithobrake.results.questions import AimResults, LimitStateResult
-from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.run_results import (
     CountedShare,
     LandingShares,
@@ -48,6 +47,7 @@ from lithobrake.results.run_results import (
     VarianceParts,
 )
 from lithobrake.results.site_results import BedNumbers, SiteResults
+from lithobrake.results.study_files import json_values, results_in
 from lithobrake.vocabulary.plain_text import short_repr
 
 

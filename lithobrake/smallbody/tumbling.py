@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.attitude import quaternion_products
-from lithobrake.geometry.frames import about_z, quaternion
+from lithobrake.geometry.attitude import about_z, quaternion, quaternion_products
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.vocabulary.arrays import Floats
 from lithobrake.vocabulary.given_numbers import numbers

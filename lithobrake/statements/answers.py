@@ -18,11 +18,20 @@ from lithobrake.statements.ends import (
     sample_ends,
     unknown_outcome,
 )
-from lithobrake.statements.estimates import area, bare_share, bracket, extent, quantile, share_interval
 from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
 from lithobrake.statements.expansion import error_words, noise, telling_sentences
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
-from lithobrake.statements.labels import END_WORDS, GROUND_WORDS, input_words
+from lithobrake.statements.labels import (
+    END_WORDS,
+    GROUND_WORDS,
+    area,
+    bare_share,
+    bracket,
+    extent,
+    input_words,
+    quantile,
+    share_interval,
+)
 from lithobrake.statements.limits import rare_warnings
 from lithobrake.statements.touchdowns import (
     BAND,
@@ -32,9 +41,8 @@ from lithobrake.statements.touchdowns import (
     output_variance,
     touchdown_outcomes,
 )
-from lithobrake.vocabulary.number_words import fixed, number, time_limit
+from lithobrake.vocabulary.number_words import LEVEL, fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus, SampleOutcome
-from lithobrake.vocabulary.percentages import LEVEL, part, percent, with_interval
 
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
@@ -42,7 +50,7 @@ if TYPE_CHECKING:
     from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage, RunsPage
     from lithobrake.results.run_results import CountedShare
     from lithobrake.results.summary import DrawnResults, PaperResults
-    from lithobrake.results.telling_numbers import TellingNumbers
+    from lithobrake.statements.expansion import TellingNumbers
 
 FIRST = "Of the first touchdown alone"
 

@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.statements.ends import at_rest, unknown_outcome
-from lithobrake.statements.estimates import region
-from lithobrake.statements.labels import BODIES
-from lithobrake.vocabulary.number_words import HOUR, counted, number, thousands
+from lithobrake.statements.labels import BODIES, region
+from lithobrake.vocabulary.number_words import HOUR, counted, intervals, number, percent, thousands, with_interval
 from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import intervals, percent, with_interval
 
 if TYPE_CHECKING:
     from lithobrake.results.page_data import PageData, SampledPage

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
-from lithobrake.statements.estimates import bracket, two_digits
+from lithobrake.statements.labels import bracket, two_digits
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import as_sentence, counted, fixed, number, out_of
-from lithobrake.vocabulary.percentages import intervals
+from lithobrake.vocabulary.number_words import as_sentence, counted, fixed, intervals, number, out_of
 
 PERCENT = 100.0
 

@@ -6,9 +6,18 @@ from typing import TYPE_CHECKING
 
 from lithobrake.statements.labels import END_WORDS, FAILED, RUN_WORDS
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import as_sentence, counted, out_of, time_limit
+from lithobrake.vocabulary.number_words import (
+    LEVEL,
+    as_sentence,
+    counted,
+    interval_digits,
+    out_of,
+    percent,
+    span,
+    time_limit,
+    with_interval,
+)
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import LEVEL, interval_digits, percent, span, with_interval
 
 if TYPE_CHECKING:
     from lithobrake.results.run_results import CountedShare, ReturnFraction, RunResults

@@ -3,12 +3,20 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from lithobrake.statements.estimates import area, extent, half_width, quantile, smallest_region, two_digits
+from lithobrake.statements.labels import area, extent, half_width, quantile, smallest_region, two_digits
 from lithobrake.statements.touchdowns import detected_parts, floor_words, variance, variance_parts
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import HOUR, MINUTE, as_sentence, out_of
+from lithobrake.vocabulary.number_words import (
+    HOUR,
+    LEVEL,
+    MINUTE,
+    as_sentence,
+    intervals,
+    out_of,
+    percent,
+    with_interval,
+)
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL, intervals, percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
 
 if TYPE_CHECKING:

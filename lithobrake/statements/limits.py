@@ -4,9 +4,18 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements.ends import unknown_outcome
-from lithobrake.statements.estimates import bracket, two_digits
-from lithobrake.vocabulary.number_words import counted, duration, number, thousands
-from lithobrake.vocabulary.percentages import at_level, intervals, percent, rare_percent, with_interval
+from lithobrake.statements.labels import bracket, two_digits
+from lithobrake.vocabulary.number_words import (
+    at_level,
+    counted,
+    duration,
+    intervals,
+    number,
+    percent,
+    rare_percent,
+    thousands,
+    with_interval,
+)
 
 if TYPE_CHECKING:
     from lithobrake.results.questions import AimResults, LimitStateResult, RareLimitState

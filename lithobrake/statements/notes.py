@@ -4,14 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements.captions import has_interval
-from lithobrake.statements.estimates import region, two_digits
 from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
 from lithobrake.statements.journeys import emulator, sides_down
-from lithobrake.statements.labels import GROUND_WORDS
+from lithobrake.statements.labels import GROUND_WORDS, region, two_digits
 from lithobrake.statements.touchdowns import left_out
-from lithobrake.vocabulary.number_words import as_sentence, number, out_of, thousands
+from lithobrake.vocabulary.number_words import LEVEL, as_sentence, intervals, number, out_of, percent, thousands
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL, intervals, percent
 
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import FlightResults, GroundResults

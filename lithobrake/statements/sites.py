@@ -5,8 +5,7 @@ from dataclasses import replace
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteMap
 from lithobrake.statements.ends import at_rest
 from lithobrake.statements.journeys import agreement
-from lithobrake.vocabulary.number_words import counted, out_of, time_limit
-from lithobrake.vocabulary.percentages import intervals, percent, span, with_interval
+from lithobrake.vocabulary.number_words import counted, intervals, out_of, percent, span, time_limit, with_interval
 
 NOT_COMPARED = "The emulator was not compared with landings: journey.emulated_count is 0."
 

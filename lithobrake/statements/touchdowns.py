@@ -5,12 +5,30 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements.ends import missing_landings
-from lithobrake.statements.estimates import bracket, spread
-from lithobrake.statements.labels import FAILED, RUN_WORDS, input_words, output, output_words, part_words
+from lithobrake.statements.labels import (
+    FAILED,
+    RUN_WORDS,
+    bracket,
+    input_words,
+    output,
+    output_words,
+    part_words,
+    spread,
+)
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import counted, listing, number, out_of, thousands
+from lithobrake.vocabulary.number_words import (
+    counted,
+    intervals,
+    listing,
+    number,
+    out_of,
+    part,
+    percent,
+    span,
+    thousands,
+    with_interval,
+)
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import intervals, part, percent, span, with_interval
 
 if TYPE_CHECKING:
     from lithobrake.results.page_data import DrawnPage, RunsPage

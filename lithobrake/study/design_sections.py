@@ -1,10 +1,15 @@
-"""The tables of the study file that say which runs are made and by what, what is fitted to them, how it is sampled."""
+"""The tables of the study file that say which runs are made, what is fitted to them, and what is asked."""
 
+import re
+from dataclasses import dataclass
+from itertools import product
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, StrictBool, StrictStr
+from pydantic import BeforeValidator, ConfigDict, Field, StrictBool, StrictStr
 
-from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole, refuse
+from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
+from lithobrake.vocabulary.outcomes import SETTLED, JourneyEnd
 from lithobrake.vocabulary.quantities import OUTPUTS, OutputName
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
@@ -15,6 +20,15 @@ Method = Literal["drawn", "paper"]
 DEFAULT_METHOD: Method = "drawn"
 # Another name of the drawn method: it is accepted where a study is read, and found nowhere behind that.
 ALIASES = {"sequence": "drawn"}
+# What comes of an aim, and may be limited as the aim itself is.
+AT_REST = JourneyEnd.AT_REST.value
+# The side that faces the ground, among the names of what is chosen.
+SIDE = "aim.sides"
+AIM_RESULTS = ("missing", "distance_p95", "time_p95")
+_LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
+Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
+Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
+SkyBody = Literal["sun", "earth", "orbiter"]
 
 
 def method_name(given: Any) -> Any:
@@ -139,3 +153,170 @@ class SolverSection(Section):
     """Name of the file that the program writes, with the ending .json, .csv, .yaml, .yml, .h5 or .hdf5."""
     inputs: dict[str, Annotated[Scalar, MaybeUncertain("")]] = Field(default={})
     """Numbers that only your program uses, by names of your own."""
+
+
+def aim_results(*, is_journey: bool) -> tuple[str, ...]:
+    return (AT_REST if is_journey else SETTLED, *AIM_RESULTS)
+
+
+def condition_text(given: object) -> str:
+    if not isinstance(given, str):
+        raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
+    try:
+        return LimitState.of(given).text
+    except NoLimitStateError as error:
+        raise refuse(given, ALLOWED, str(error)) from error
+
+
+class LimitStatesSection(Section):
+    """Conditions whose probability the study estimates, by names of your own: fast = "speed_out > 0.1 and not returns".
+
+    Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
+    true or false (docs/reliability.md). With design.method = "drawn" only."""
+
+    # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[str, Annotated[str, BeforeValidator(condition_text)]] = Field(init=False)
+
+    def conditions(self) -> dict[str, str]:
+        given: dict[str, Any] = self.__pydantic_extra__ or {}
+        return dict(given)
+
+
+class AimSection(Section):
+    """Delivery options to compare: speeds, angles and sites, each with landers that are followed to rest.
+
+    See docs/aiming.md. With design.method = "drawn" only; without [journey], impact.speed and impact.incidence_deg must
+    be uncertain."""
+
+    grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
+    """Keys of the options, and their values in ascending order: one to three uncertain numbers of [impact], or
+    latitude_deg, longitude_deg, heading_deg of [site]; with [journey], keys of [delivery]. All combinations are
+    options. Everything else is sampled."""
+    sides: list[str] = Field(default=[])
+    """Sides of the lander that face the ground at the first touchdown, as further options; the lander is turned about
+    the vertical at random, without a pointing error. For a box its axes, such as "z", or "x or y" where edges are
+    equal; for a mesh "+x" to "-z". With [journey] only."""
+    within: list[str] = Field(default=[])
+    """Conditions that the best option must satisfy, such as "incidence_deg < 45": a name of the grid without its table,
+    or settled (with [journey] at_rest), missing (fractions), distance_p95 [m], time_p95 [s]; compared with a number by
+    <, <=, > or >=."""
+    lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
+    """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
+
+    def aims(self) -> list[dict[str, float]]:
+        """All aims, the last of the names running fastest; a side by its place among `sides`."""
+        columns = [*self.grid.values(), *([list(map(float, range(len(self.sides))))] if self.sides else [])]
+        return [dict(zip(self.names, values, strict=True)) for values in product(*columns)] if columns else []
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is chosen, by dotted key."""
+        return (*self.grid, *([SIDE] if self.sides else []))
+
+
+@dataclass(frozen=True)
+class AimLimit:
+    """A limit that the best aim must keep, as `incidence_deg < 45`."""
+
+    name: str
+    sign: str
+    number: float
+
+    @classmethod
+    def of(cls, text: str) -> "AimLimit | None":
+        """Read one; None for a text that is none."""
+        match = _LIMIT.fullmatch(text)
+        try:
+            return cls(match[1], match[2], float(match[3])) if match else None
+        except ValueError:
+            return None
+
+    def keeps(self, value: float | None) -> bool:
+        """Whether a value keeps it; what is not known does not."""
+        return value is not None and bool(COMPARED[self.sign](value, self.number))
+
+
+class OrbitSection(Section):
+    """Heliocentric orbit of the body, or of the binary that it is in, by osculating elements (ecliptic and equinox of
+    J2000), as a catalogue of small bodies has them. The examples are those of Didymos [SBDB-Didymos]."""
+
+    semi_major_axis_au: Annotated[float, Number("", above=0)] = Field(examples=["1.64271"])
+    """Semi-major axis in astronomical units."""
+    eccentricity: Annotated[float, Number("", at_least=0, below=1)] = Field(examples=["0.383123"])
+    """Eccentricity."""
+    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] = Field(examples=["3.41388"])
+    """Inclination."""
+    node_deg: Turn = Field(examples=["72.9858"])
+    """Longitude of the ascending node."""
+    perihelion_deg: Turn = Field(examples=["319.5807"])
+    """Argument of perihelion."""
+    mean_anomaly_deg: Turn = Field(examples=["260.861"])
+    """Mean anomaly at `epoch`."""
+    epoch: str = Field(examples=['"2026-06-09T00:00:00"'])
+    """Date and time at which these elements hold (UTC)."""
+
+
+class OrbiterSection(Section):
+    """An orbiter that landers communicate with, given in one of three ways: a circle (`altitude`, `inclination_deg`),
+    with all phases of the orbit and of the body's rotation; a table of body-fixed states (`states`); or SPICE
+    (`kernel_name`) from sky.date to sky.until."""
+
+    altitude: Annotated[float, Number("m", above=0)] | None = Field(default=None, examples=["2000.0"])
+    """Height of the circle above the sphere around the body that touches its highest point."""
+    inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] | None = Field(
+        default=None, examples=["90.0"]
+    )
+    """Inclination of the circle to the body's equator; absent: 90, over the poles."""
+    states: str | None = Field(default=None, examples=['"orbiter.csv"'])
+    """File of body-fixed states, relative to the study file, in the format of delivery.states; each state represents
+    half the time to each of its neighbours."""
+    kernel_name: str | None = Field(default=None, examples=['"HERA"'])
+    """Name or number, as text, of the orbiter in site.kernels."""
+
+    @property
+    def ways(self) -> list[str]:
+        return [key for key in ("altitude", "states", "kernel_name") if getattr(self, key) is not None]
+
+
+class SkySection(Section):
+    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them; with [journey]
+    only. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
+    season. Either give the latitudes (a distribution represents a year: each lander samples its own), or give `date`,
+    from which they follow by site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by
+    site.kernels. The shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
+    """
+
+    sun_latitude_deg: Latitude | None = None
+    """Latitude at which the Sun is overhead. Absent: no sunlight is computed, unless `date` is given."""
+    earth_latitude_deg: Latitude | None = None
+    """Latitude at which Earth is overhead. Absent: its visibility is not computed, unless `date` is given."""
+    date: str | None = None
+    """UTC date and time, for example "2027-04-20T00:00:00", for the positions of Sun and Earth."""
+    until: str | None = None
+    """End of a time span that begins at `date`, for example a year: fractions are means over 24 days of it, and
+    `sky.csv` also has the fraction of the worst day."""
+    orbit: OrbitSection | None = None
+    orbiter: OrbiterSection | None = None
+    mask_deg: Annotated[float, Number("deg", at_least=0, below=90)] = 0.0
+    """Elevation above the plane of the ground below which Earth and the orbiter are not visible."""
+    beam_deg: Annotated[float, Number("deg", above=0, at_most=90)] = 90.0
+    """Half the opening angle of an antenna's beam about the normal of its side, for Earth and the orbiter."""
+
+    @property
+    def latitudes(self) -> dict[SkyBody, Scalar]:
+        given: dict[SkyBody, Scalar | None] = {"sun": self.sun_latitude_deg, "earth": self.earth_latitude_deg}
+        return {name: latitude for name, latitude in given.items() if latitude is not None}
+
+    @property
+    def bodies(self) -> tuple[SkyBody, ...]:
+        far: tuple[SkyBody, ...] = tuple(self.latitudes) if self.date is None else ("sun", "earth")
+        return far if self.orbiter is None else (*far, "orbiter")
+
+    def mask_of(self, body: SkyBody) -> float:
+        """Least height above the ground [deg]; the Sun is seen down to the ground."""
+        return 0.0 if body == "sun" else self.mask_deg
+
+    def beam_of(self, body: SkyBody) -> float:
+        """Largest angle from the normal of a side that faces the body [deg]; a panel has light from all of its sky."""
+        return 90.0 if body == "sun" else self.beam_deg

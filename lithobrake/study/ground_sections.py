@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from lithobrake.geometry.limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES, MaterialProperty
 from lithobrake.vocabulary.plain_text import show
 

@@ -7,9 +7,9 @@ from datetime import UTC, datetime
 from itertools import pairwise
 
 from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.design_sections import AimLimit, aim_results
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.study.quantity import Uncertain, reach, uncertain
-from lithobrake.study.question_sections import AimLimit, aim_results
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import ARRIVAL

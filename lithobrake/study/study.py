@@ -11,9 +11,12 @@ from pydantic import BaseModel, Field, PrivateAttr, model_validator
 from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.design_sections import (
     DEFAULT_METHOD,
+    AimSection,
     CampaignSection,
     DesignSection,
+    LimitStatesSection,
     MonteCarloSection,
+    SkySection,
     SolverSection,
     method_name,
 )
@@ -38,7 +41,6 @@ from lithobrake.study.impact_sections import (
 )
 from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
-from lithobrake.study.question_sections import AimSection, LimitStatesSection, SkySection
 
 
 class Study(Section):

@@ -1,8 +1,14 @@
 """Moving bodies to look at outside the report: a file for ParaView, a window, a film, a contact sheet."""
 
-from lithobrake.view.film import film, journey_film
 from lithobrake.view.motion import show, write_vtkhdf
-from lithobrake.view.motion_files import contact_sheet, refuse_other_kinds, write_journey, write_motion
+from lithobrake.view.motion_files import (
+    contact_sheet,
+    film,
+    journey_film,
+    refuse_other_kinds,
+    write_journey,
+    write_motion,
+)
 
 __all__ = [
     "contact_sheet",

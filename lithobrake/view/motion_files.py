@@ -1,23 +1,126 @@
-"""A motion or a whole journey as a file of the kind that its name ends with."""
+"""A motion or a whole journey as a film, a page, or another file of the kind that its name ends with."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from lithobrake.files.atomic import atomic_path, write_whole
-from lithobrake.view.film import KINDS, film, journey_film
-from lithobrake.view.motion import write_vtkhdf
+from lithobrake.view.motion import DrawnMotion, write_vtkhdf
+from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from lithobrake.results import JourneyMotion
+    from lithobrake.results import JourneyMotion, JourneyTrack
     from lithobrake.results.motions import MovingBodies
 
+SIZE = (960, 640)
+KINDS = (".mp4", ".webp")
+# Of each touchdown of a journey.
+FILM_PICTURES = 120
+# How long a map is seen before the touchdown that it leads to [s]; pixels per inch of what is said over it.
+MAP_SECONDS, DPI = 2.0, 100.0
 ALL_KINDS = (".vtkhdf", *KINDS, ".png")
 # Of a contact sheet.
 PICTURES = 12
 JOURNEY_KINDS = (".html", *KINDS, ".png", ".vtkhdf")
 # Of these kinds each touchdown has a file of its own.
 FILE_EACH = (".vtkhdf", ".h5")
+
+
+def film(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
+    """Write a film of all frames, evenly in simulated time, that lasts so many seconds; the path's end says which kind.
+
+    Raises ValueError for another kind or duration, ImportError where PyVista, or imageio-ffmpeg for MP4, is absent.
+    """
+    _refuse(path, seconds)
+    count = len(bodies.time)
+    pictures = (picture for picture, _ in zip(_pictures(bodies, count), _counted(count, progress), strict=False))
+    _write(path, pictures, count / seconds)
+
+
+def journey_film(motion: "JourneyMotion", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
+    """Write a film of a journey: before each touchdown the map with the way to it, and at the end the whole way.
+
+    seconds: that each touchdown lasts. Raises as film does.
+    """
+    _refuse(path, seconds)
+    rate, parts = FILM_PICTURES / seconds, len(motion.bodies)
+    total = parts * FILM_PICTURES + (parts + 1) * round(MAP_SECONDS * rate)
+    pictures = _journey_pictures(motion, round(MAP_SECONDS * rate))
+    _write(path, (picture for picture, _ in zip(pictures, _counted(total, progress), strict=False)), rate)
+
+
+def _refuse(path: Path, seconds: float) -> None:
+    """Raise ValueError for another kind or duration."""
+    if path.suffix not in KINDS:
+        raise ValueError(f"the film is {path.name!r}; allowed: a name that ends in {' or '.join(KINDS)}")
+    if not 0.0 < seconds < np.inf:
+        raise ValueError(f"the film lasts {seconds!r} s; allowed: a finite time above 0 s")
+
+
+def _counted(count: int, progress: Progress) -> Iterator[int]:
+    """So many numbers, each told as a part of all."""
+    for number in range(count):
+        progress((number + 1) / count, "drawing")
+        yield number
+
+
+def _pictures(bodies: "MovingBodies", count: int, words: str = "") -> Iterator[np.ndarray]:
+    """So many pictures at even instants, one after the other."""
+    drawn = DrawnMotion(bodies, size=SIZE, off_screen=True, words=words)
+    for instant in np.linspace(bodies.time[0], bodies.time[-1], count):
+        drawn.go_to(int(np.argmin(np.abs(bodies.time - instant))))
+        yield drawn.picture()
+
+
+def _journey_pictures(motion: "JourneyMotion", map_count: int) -> Iterator[np.ndarray]:
+    """The pictures of a journey: maps, each so many times, and touchdowns."""
+    track = motion.track
+    for facts, bodies in zip(track.touchdowns, motion.bodies, strict=False):
+        yield from [map_picture(track, facts.number)] * map_count
+        yield from _pictures(bodies, FILM_PICTURES, f"journey {track.number}, {facts.words}")
+    yield from [map_picture(track)] * map_count
+
+
+def map_picture(track: "JourneyTrack", shown: int | None = None) -> np.ndarray:
+    """The map up to a touchdown, or the whole of it, with what is said of it, as large as a picture of the film."""
+    from PIL import Image
+
+    from lithobrake.report.figures.landing_figure import caption, picture
+    from lithobrake.report.figures.map_frames import track_map
+    from lithobrake.report.figures.style import figure_style
+
+    words = track.end_words if shown is None else track.touchdowns[shown].words
+    with figure_style():
+        drawn = picture(track_map(track, shown))
+        height = round(drawn.shape[0] * SIZE[0] / drawn.shape[1])
+        small = Image.fromarray(drawn).resize((SIZE[0], height), Image.Resampling.LANCZOS)
+        strip = picture(caption(f"Journey {track.number}: {words}", (SIZE[0] / DPI, (SIZE[1] - height) / DPI)), DPI)
+    return np.concatenate([strip, np.asarray(small)])
+
+
+def _write(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
+    """Write pictures to a film of the kind that the name says, so many a second."""
+    with atomic_path(path) as draft:
+        (_write_mp4 if path.suffix == ".mp4" else _write_webp)(draft, pictures, rate)
+
+
+def _write_mp4(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
+    library = extra_library("imageio_ffmpeg", "imageio-ffmpeg", "view", ", or write .webp")
+    writer = library.write_frames(str(path), SIZE, fps=rate, output_params=["-f", "mp4"], macro_block_size=2)
+    writer.send(None)
+    for picture in pictures:
+        writer.send(np.ascontiguousarray(picture[: SIZE[1], : SIZE[0], :3]))
+    writer.close()
+
+
+def _write_webp(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
+    from PIL import Image
+
+    first, *others = (Image.fromarray(picture[..., :3]) for picture in pictures)
+    first.save(path, "WEBP", save_all=True, append_images=others, duration=round(1000.0 / rate), loop=0, quality=80)
 
 
 def refuse_other_kinds(path: Path, kinds: tuple[str, ...] = ALL_KINDS) -> None:

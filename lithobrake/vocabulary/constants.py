@@ -1,7 +1,17 @@
-"""Numbers that do not depend on any study: a constant of nature, and sizes of units."""
+"""Numbers that do not depend on any study: constants of nature, sizes of units, and fewest beds of a statement."""
 
 GRAVITATIONAL_CONSTANT = 6.67430e-11  # m3/(kg s2), CODATA 2018
 MINUTE, HOUR, DAY = 60.0, 3600.0, 86_400.0  # s
 CENTIMETRES = 100.0  # in a metre
 # Probability as near to 0, or to 1, as a sample comes.
 LEAST_PROBABILITY = 2.0**-53
+
+
+# Of a study whose file does not say how many it has: on fewer an interval is far wider.
+FEWEST_BEDS_OF_INTERVAL = 12
+# Of a quantile far out: on fewer a handful of runs beyond it lie on one or two beds.
+FEWEST_BEDS_OF_TAIL = 10
+# Of the correlation of pairs by the sums over beds: fewer say less of it than the pairs do.
+FEWEST_BEDS_OF_CORRELATION = 8
+# Of landings and emulator compared in a region.
+FEWEST_BEDS_OF_REGION = 4

@@ -3,8 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
-from lithobrake.vocabulary.estimate import Estimate, Keyed
-from lithobrake.vocabulary.inline_fields import INLINE, Inlined, without_underscore
+from lithobrake.vocabulary.estimate import INLINE, Estimate, Inlined, Keyed, without_underscore
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Command, Ledger, Limits, LocalExecutor, Runs, absolute_words, run
-from lithobrake.campaign.command import fill_template, read_answer
+from lithobrake.campaign.external_model import fill_template, read_answer
 from lithobrake.campaign.single_run import KEPT, CappedLog, last_words, run_model
 
 X = np.array([[1.0], [2.0]])

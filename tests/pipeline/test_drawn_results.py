@@ -16,7 +16,7 @@ from lithobrake.pipeline.run_flights import run_sites
 from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.study import check_tables
 
 from ..report.page_scripts import answer_of, explorer_data, needs_node

@@ -25,7 +25,7 @@ from lithobrake.results.page_data import PaperPage
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import captions, expansion
 from lithobrake.statements.answers import sample_answer, sample_details
-from lithobrake.statements.estimates import area
+from lithobrake.statements.labels import area
 from lithobrake.study import read_study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import number, thousands

@@ -11,8 +11,8 @@ import pytest
 from lithobrake.analysis import direction_estimate, failure_probability, share_estimate, variance_shares
 from lithobrake.chaos import Uniform
 from lithobrake.results.questions import LimitStateResult
-from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.run_results import CountedShare, OutputDirection, ReturnFraction, VarianceParts
+from lithobrake.results.study_files import json_values, results_in
 from lithobrake.vocabulary.estimate import Estimate, Number, Share
 
 RANDOM = np.random.default_rng(4)

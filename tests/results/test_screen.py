@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.results import Column, Table
-from lithobrake.results.result_files import results_in
+from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import DrawnResults, PaperResults
 from lithobrake.vocabulary.plain_text import LINES, names_in_lines, short_repr
 

@@ -11,8 +11,8 @@ import result_models as models
 
 import lithobrake
 from lithobrake.results.model_results import OutputErrors
-from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.run_results import LandingShares
+from lithobrake.results.study_files import json_values, results_in
 from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance
 
 DOCS, SHOWCASE = (Path(__file__).parents[2] / name for name in ("docs", "showcase"))

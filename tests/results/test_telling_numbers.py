@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
-from lithobrake.results.telling_numbers import TellingNumbers
+from lithobrake.statements.expansion import TellingNumbers
 
 
 def results(friction: tuple[float, float] = (0.2, 0.4)) -> Any:

@@ -9,7 +9,7 @@ import pytest
 
 from lithobrake.smallbody import HeliocentricOrbit, latitudes_over, read_partner, read_spin
 from lithobrake.smallbody.sky import earth_place
-from lithobrake.study.question_sections import OrbitSection
+from lithobrake.study.design_sections import OrbitSection
 
 from .kernels import PERIOD, write_kernels
 

@@ -75,7 +75,7 @@ def test_shares_are_made_per_cent_in_one_place() -> None:
             is_share = isinstance(after, ast.Constant) and str(after.value).startswith(" %")
             if is_share and isinstance(part, ast.FormattedValue) and "100" in ast.unparse(part.value):
                 by_hand.append((name, text))
-    assert {name for name, _ in by_hand} <= {"vocabulary/percentages.py"}
+    assert {name for name, _ in by_hand} <= {"vocabulary/number_words.py"}
 
 
 def test_durations_are_put_in_words_in_one_place() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import flights
-from lithobrake.pipeline.first_bounces import aiming
+from lithobrake.pipeline.first_bounces import bounces_to_rest
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import Study, StudyError, StudySource, check_tables, read_study
@@ -285,7 +285,11 @@ def test_every_output_has_its_unit() -> None:
 
 def test_every_column_of_the_tables_has_words() -> None:
     assert set(PLAIN_COLUMNS) <= set(RUN)
-    own = {name for name in (*flights.COLUMNS, *rest.COLUMNS, *aiming.COLUMNS) if not name.startswith("site_")}
+    own = {
+        name
+        for name in (*flights.COLUMNS, *rest.COLUMNS, *bounces_to_rest.COLUMNS_OF_AIMS)
+        if not name.startswith("site_")
+    }
     assert own == set(FLIGHT)
     assert all(one.long_name for one in (FLIGHT | RUN | BEDS).values())
     # A name that ends with its unit has that unit.

@@ -11,7 +11,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables
 from lithobrake.study.template import template

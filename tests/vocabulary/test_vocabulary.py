@@ -22,8 +22,8 @@ from lithobrake.vocabulary.given_numbers import (
     random_numbers,
     whole_number,
 )
+from lithobrake.vocabulary.number_words import LEVEL, part, percent, rare_percent, span, with_interval
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import LEVEL, part, percent, rare_percent, span, with_interval
 
 
 @pytest.mark.parametrize("value", [1.5, "3", None, True, float("nan"), float("inf"), -1, 8, [3]])

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.dem import Box, Material
-from lithobrake.geometry.frames import about_z, attitude_of, quaternion, spin_of
+from lithobrake.geometry.attitude import about_z, attitude_of, quaternion, spin_of
 from lithobrake.pipeline.design.arrivals import turned_in_flight
 from lithobrake.touchdown import ContactModel, Lander, Landing, Outcome, land
 

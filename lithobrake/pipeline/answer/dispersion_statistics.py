@@ -26,15 +26,15 @@ from lithobrake.results.dispersion import (
     RestResults,
 )
 from lithobrake.results.journey_results import DeliveryResults
-from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
 from lithobrake.results.site_results import KernelNumbers, SiteResults
+from lithobrake.results.study_files import results_in
 from lithobrake.statements.touchdowns import followed
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
-from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 from lithobrake.vocabulary.study_files import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 

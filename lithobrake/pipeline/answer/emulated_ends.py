@@ -25,8 +25,8 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.percentages import LEVEL
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
 Shares = Mapping[str, CountedShare]

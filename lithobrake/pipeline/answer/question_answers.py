@@ -30,8 +30,8 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import limits
 from lithobrake.statements.limits import FAR, options
 from lithobrake.study import Study
+from lithobrake.study.design_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.lander_section import side_words
-from lithobrake.study.question_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.limit_state import LimitState

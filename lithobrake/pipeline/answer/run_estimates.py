@@ -34,7 +34,6 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers
-from lithobrake.results.result_files import json_values
 from lithobrake.results.run_results import (
     CountedShare,
     OutputDirection,
@@ -45,12 +44,14 @@ from lithobrake.results.run_results import (
     SideRuns,
     VarianceParts,
 )
+from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import Estimates
 from lithobrake.statements.ends import journeys_at_rest
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.material import SURFACE_PROPERTIES
+from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import (
     CAPTURED,
     LOFTED,
@@ -59,7 +60,6 @@ from lithobrake.vocabulary.outcomes import (
     FlightStatus,
     TouchdownOutcome,
 )
-from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import ARRIVAL, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 from lithobrake.vocabulary.study_files import ESTIMATES_FILE
 

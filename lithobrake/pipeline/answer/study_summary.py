@@ -43,10 +43,9 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.results.dispersion import FlightResults, RestResults
 from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, MonteCarlo, OutputScore
-from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import EmulatorShares, LandingShares, Level, OutputRange, ReturnFraction
 from lithobrake.results.site_results import BedNumbers
-from lithobrake.results.study_files import SUMMARY_FORMAT
+from lithobrake.results.study_files import SUMMARY_FORMAT, results_in
 from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes, Summary
 from lithobrake.statements.answers import landing_answer, landing_headline
 from lithobrake.statements.touchdowns import disagreement

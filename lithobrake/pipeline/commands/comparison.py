@@ -21,13 +21,12 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
-from lithobrake.results.result_files import json_values
-from lithobrake.results.study_files import intact_file
+from lithobrake.results.study_files import intact_file, json_values
 from lithobrake.statements.comparison import other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
+from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.percentages import HIGH, LEVEL, MEDIAN
 from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
 from lithobrake.vocabulary.study_files import STUDY_FILE
 

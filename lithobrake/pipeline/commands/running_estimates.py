@@ -58,8 +58,8 @@ class RunningEstimates:
     def to_json(self) -> dict[str, Any]:
         """All of it as JSON values."""
         # Who only looks at lines does not wait for these.
-        from lithobrake.results.result_files import json_values
         from lithobrake.results.run_results import ReturnFraction
+        from lithobrake.results.study_files import json_values
 
         captured, returns = (
             None if one is None else json_values(ReturnFraction.of(one)) for one in (self.captured, self.returns)

@@ -28,11 +28,11 @@ from lithobrake.pipeline.site_grid import (
 )
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
-from lithobrake.results.result_files import json_values
 from lithobrake.results.site_results import SiteMap
+from lithobrake.results.study_files import json_values
 from lithobrake.statements.sites import with_words
 from lithobrake.study import Study, StudySource
-from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 
 # The stage whose emulator is asked.

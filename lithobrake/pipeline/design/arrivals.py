@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.files.reading import hashed_seed
-from lithobrake.geometry.frames import about_z, arriving, axes_in_icrf, from_frame, quaternion
+from lithobrake.geometry.attitude import about_z, arriving, axes_in_icrf, from_frame, quaternion
 from lithobrake.pipeline.design.soils import Soils, felt
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study

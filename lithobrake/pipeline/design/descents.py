@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.frames import directions
+from lithobrake.geometry.attitude import directions
 from lithobrake.pipeline.design.arrivals import (
     MEAN_INCIDENCE,
     against_ground,
@@ -29,9 +29,8 @@ from lithobrake.study.delivered_states import DeliveredStates, states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.number_words import duration, out_of, span_of
+from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from lithobrake.study.delivery_sections import PLACE_KEYS
 from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION
 
 if TYPE_CHECKING:

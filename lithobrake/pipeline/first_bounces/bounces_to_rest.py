@@ -1,11 +1,14 @@
-"""From bounce to bounce until the landers rest: on the soil, and on hard ground of two kinds."""
+"""From bounce to bounce until the landers rest, at the study's aim and at others, on soil and on hard ground."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.analysis import sample_inputs
+from lithobrake.files.reading import hashed_seed
+from lithobrake.geometry.attitude import angles, directions
 from lithobrake.pipeline.design.arrivals import roughness
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounce_laws
@@ -17,6 +20,7 @@ from lithobrake.pipeline.first_bounces.bounce_laws import (
     slow_arrivals,
     why_no_soil,
 )
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, drawn_samples
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -24,8 +28,8 @@ from lithobrake.pipeline.samples import CAPTURED, VELOCITY, Samples, sampling_se
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.vocabulary.outcomes import JourneyStatus
-from lithobrake.vocabulary.quantities import ARC, SPIN_OUT
-from lithobrake.vocabulary.study_files import ARCS_FILE, REST_FILE, REST_NOTES_FILE
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, ARC, SPIN_OUT
+from lithobrake.vocabulary.study_files import AIM_FILE, ARCS_FILE, REST_FILE, REST_NOTES_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Arcs, Body, Bounce, HardSurface, Impacts, Journeys, Rebounds
@@ -44,6 +48,7 @@ DOWN = (
     *(JourneyStatus.SETTLED, JourneyStatus.LOFTED, JourneyStatus.OUTSIDE, JourneyStatus.SLIDING),
     JourneyStatus.BOUNCING,
 )
+SITE = "site."
 
 
 def arc_rows(arcs: "Arcs", samples: np.ndarray) -> list[list[Any]]:
@@ -259,3 +264,71 @@ def _end(ends: "Journeys", row: int, *, bounced: bool) -> list[Any]:
     ways = [float(one[row]) for one in (ends.path_length, ends.slid_length, ends.slid_time)]
     # The journey began with the first rebound, which is counted here.
     return [end, float(ends.time[row]), *place, int(ends.bounce_count[row]) + bounced, *ways, *last]
+
+
+def aim_files(study: Study) -> list[str]:
+    """What the stage writes: nothing where the study has no aims to choose from."""
+    return [AIM_FILE] if study.aim.names else []
+
+
+def aim_dependencies(study: Study) -> dict[str, Any]:
+    # Which aims are allowed is asked of what is already there.
+    return {"rest": journey_dependencies(study), "grid": study.aim.grid, "lander_count": study.aim.lander_count}
+
+
+def follow_aims(job: Job) -> None:
+    """Follow the landers of every aim on both grounds and write aim.csv, one aim after the other.
+
+    All aims have the same landers: soil, site and refit of each are drawn once, and only what is aimed at differs.
+    """
+    study, aims = job.study, job.study.aim.aims()
+    count = study.aim.lander_count * REFIT_COUNT
+    inputs, site = _aimed(job, aims, count)
+    samples = drawn_samples(job, inputs, "aims")
+    sites = Sites.of(job.site, samples, site)
+    rows: list[list[Any]] = []
+    for ground, bounce in (("soil", on_soil(job, samples)), ("hard", on_hard_ground(study, sites))):
+        ends = sites.follow(job, ground, *bounce)
+        distance = _distances(sites.body, site, ends)
+        for number, (end, way) in enumerate(zip(ends, distance.tolist(), strict=True)):
+            _, _, status, time, *_ = end
+            settled = status == JourneyStatus.SETTLED
+            rows.append([ground, number // count, number % REFIT_COUNT, status, time, way if settled else ""])
+    write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
+
+
+def _aimed(job: Job, aims: list[dict[str, float]], count: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Inputs [aim_count * count, input_count] and sites of all landers, one aim after the other."""
+    names = list(job.design.inputs)
+    x = np.tile(sample_inputs(job.design.inputs, count, hashed_seed(job.study.seed, "aims")), (len(aims), 1))
+    site = {key: np.tile(values, len(aims)) for key, values in job.site.sampled(count).items()}
+    for number, aim in enumerate(aims):
+        own = slice(number * count, (number + 1) * count)
+        for name, value in aim.items():
+            if name.startswith(SITE):
+                site[name.removeprefix(SITE)][own] = value
+            else:
+                x[own, names.index(name)] = value
+    return x, site
+
+
+def _distances(body: "Body", site: dict[str, np.ndarray], ends: list[list[Any]]) -> np.ndarray:
+    """Ways over the ground [m] from the aims to where the journeys end, [count], NaN where that is not on the ground.
+
+    As if the body were a ball of the radius at the aim; what the delivery misses the aim by counts.
+    """
+    place = np.array([[np.nan, np.nan] if end[4] == "" else end[4:6] for end in ends], dtype=float)
+    return ways_from_aims(body, site, directions(*place.T))
+
+
+def ways_from_aims(body: "Body", site: Mapping[str, np.ndarray], there: np.ndarray) -> np.ndarray:
+    """Ways over the ground [m] from the aims of landers to directions [count, 3], [count], as if the body were a ball.
+
+    Of the radius at the aim. site: columns of SITE_KEYS, [count] each.
+    """
+    latitude, longitude = site["latitude_deg"], site["longitude_deg"]
+    # All landers of an aim share its radius, which takes a search among the facets.
+    aims, inverse = np.unique(np.column_stack([latitude, longitude]), axis=0, return_inverse=True)
+    radius = np.linalg.norm(body.shape.surface_point(*aims.T), axis=1)
+    ways: np.ndarray = radius[inverse.ravel()] * angles(directions(latitude, longitude), there)
+    return ways

@@ -8,11 +8,10 @@ import numpy as np
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
-from lithobrake.geometry.attitude import AttitudeTerms
-from lithobrake.geometry.frames import directions
+from lithobrake.geometry.attitude import AttitudeTerms, directions
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, with_side_down
-from lithobrake.pipeline.first_bounces.aiming import ways_from_aims
+from lithobrake.pipeline.first_bounces.bounces_to_rest import ways_from_aims
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, save_explorer, tables_of_refits
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
@@ -29,8 +28,8 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides, side_words
-from lithobrake.study.question_sections import SIDE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import (
     AIM_COLUMNS,

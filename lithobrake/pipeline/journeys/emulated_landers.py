@@ -9,8 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import hashed_seed
-from lithobrake.geometry.attitude import uniform_attitude
-from lithobrake.geometry.frames import about_z
+from lithobrake.geometry.attitude import about_z, uniform_attitude
 from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, MEAN_INCIDENCE, friction_of, ground_inputs, met_ground
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.soils import felt

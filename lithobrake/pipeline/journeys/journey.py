@@ -10,7 +10,7 @@ import numpy as np
 
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import hashed_seed
-from lithobrake.geometry.frames import attitude_of, from_frame, spin_of
+from lithobrake.geometry.attitude import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.design.arrivals import (
     MEAN_INCIDENCE,
     attitude_inputs,

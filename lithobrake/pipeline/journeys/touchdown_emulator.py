@@ -300,7 +300,7 @@ class Arrivals:
     @property
     def spin(self) -> np.ndarray:
         """Angular velocity against the ground [rad/s], [count, 3], in the frames of the touchdowns."""
-        from lithobrake.geometry.frames import about_z
+        from lithobrake.geometry.attitude import about_z
 
         of_bed = np.column_stack([self.column(name) for name in SPIN])
         turns = [about_z(-angle) for angle in np.radians(self.column(IMPACT_AZIMUTH)).tolist()]

@@ -35,14 +35,14 @@ from lithobrake.results.model_results import (
     OutputFit,
     SampledOutput,
 )
-from lithobrake.results.result_files import results_in
 from lithobrake.results.run_results import ReturnFraction, SampleShares
+from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import PaperResults
 from lithobrake.statements.answers import sample_answer, sample_headline
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILES
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
 from lithobrake.vocabulary.study_files import REFINED_FILE, SAMPLE_FLIGHTS_FILE, SCORES_FILE, SCREENING_FILE
 

@@ -19,8 +19,8 @@ from lithobrake.pipeline.sequential_sampling import flown_shares
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.statements.ends import assumed_at_rest
 from lithobrake.study import Study
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.percentages import at_level, percent
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.number_words import at_level, percent
 
 if TYPE_CHECKING:
     from lithobrake.analysis.half_width import RunLaw

@@ -18,7 +18,7 @@ from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_the_study
-from lithobrake.vocabulary.percentages import HIGH, LOW, MEDIAN, percent
+from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN, percent
 from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
 # Of grains that are larger than the diameter that is told.

@@ -13,9 +13,9 @@ from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
-from lithobrake.vocabulary.bed_counts import FEWEST_BEDS_OF_INTERVAL
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material import SHARED_PROPERTIES
-from lithobrake.vocabulary.percentages import percent, span
+from lithobrake.vocabulary.number_words import percent, span
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing

@@ -20,7 +20,7 @@ from lithobrake.campaign import (
     run_seed,
 )
 from lithobrake.campaign import run as run_campaign
-from lithobrake.campaign.model_server import PREFIX
+from lithobrake.campaign.external_model import PREFIX
 from lithobrake.pipeline.design.dependencies import (
     bed_files,
     solver_command,

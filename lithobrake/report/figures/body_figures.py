@@ -24,8 +24,8 @@ from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, S
 from lithobrake.vocabulary.arrays import Array, Integers
 from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import at_level
 from lithobrake.vocabulary.outcomes import FATE_COLOURS, FlightStatus
-from lithobrake.vocabulary.percentages import at_level
 
 # Impacts are counted within this share of the body's radius, or on a facet alone where facets are larger.
 REACH = 0.1

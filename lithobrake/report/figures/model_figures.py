@@ -18,8 +18,7 @@ from lithobrake.statements.expansion import q2
 from lithobrake.statements.labels import PAPER_OUTPUTS, Output, input_label, output
 from lithobrake.statements.touchdowns import BAND, band_luck, luck, unlucky
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.number_words import number
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.number_words import number, percent
 
 LUCK = "#e3e7eb"
 BINS = 20

@@ -35,7 +35,7 @@ from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
 from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.percentages import percent
+from lithobrake.vocabulary.number_words import percent
 
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
 WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17

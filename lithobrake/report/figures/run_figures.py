@@ -16,8 +16,8 @@ from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAI
 from lithobrake.results.run_results import VarianceParts
 from lithobrake.statements.labels import input_label, long_part_words, output, part_words
 from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.number_words import QUANTILE_WORDS, intervals, part
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.percentages import QUANTILE_WORDS, intervals, part
 
 # In inches: a bed's row, and what stands above and below the rows.
 BED_HEIGHT, MARGINS = 0.115, 1.07

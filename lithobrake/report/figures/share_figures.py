@@ -14,8 +14,8 @@ from lithobrake.report.figures.style import INK, QUIET, TRAINING
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import at_level, percent, with_interval
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
-from lithobrake.vocabulary.percentages import at_level, percent, with_interval
 
 # Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
 LONGEST = 56

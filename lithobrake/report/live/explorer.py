@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.report.cells import in_html, raised_units
-from lithobrake.report.content import LiveSection
+from lithobrake.report.content import LiveSection, in_html, raised_units
 from lithobrake.results import ExplorerTables, Table
 from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage
 from lithobrake.statements.answers import action
 from lithobrake.statements.captions import has_interval
 from lithobrake.statements.labels import input_words, output
-from lithobrake.vocabulary.number_words import listing, number, thousands
+from lithobrake.vocabulary.number_words import listing, number, percent, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.percentages import percent
 from lithobrake.vocabulary.quantities import GROUND, IMPACT_INCIDENCE, IMPACT_SPEED
 
 TYPES = ("float64", "float32", "int32", "int16", "uint8")

@@ -8,8 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from urllib.parse import quote
 
-from lithobrake.report.cells import in_html
-from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel
+from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, in_html
 from lithobrake.statements.answers import Tile
 from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS
 from lithobrake.vocabulary.study_files import CONTENTS

@@ -16,9 +16,8 @@ from lithobrake.report.figures.place_map import PlaceMap, Regions, local_figure,
 from lithobrake.report.figures.run_figures import variance_figure
 from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.live.body_view import end_views
 from lithobrake.report.live.explorer import deflated, script_data, touchdown_sections
-from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_views, landing_words
+from lithobrake.report.live.views import AWAY, SCRIPTS, end_views, landing_arrays, landing_views, landing_words
 from lithobrake.report.pages.drawn_page import landing_plots
 from lithobrake.report.pages.html import own_file, page_head
 from lithobrake.report.pages.shared_plots import draw_bed
@@ -32,8 +31,8 @@ from lithobrake.statements import journeys as words
 from lithobrake.statements.answers import journey_details, journey_page_answer, journey_tiles, journey_warnings
 from lithobrake.statements.labels import END_WORDS
 from lithobrake.statements.limits import options_caption
+from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

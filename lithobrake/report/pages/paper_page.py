@@ -13,9 +13,9 @@ from lithobrake.report.pages import shared_plots as any_study
 from lithobrake.report.tables import paper_tables as tables
 from lithobrake.report.tables.dispersion_tables import time_tables
 from lithobrake.results.page_data import PaperPage
-from lithobrake.results.telling_numbers import TellingNumbers
 from lithobrake.statements import captions, expansion
 from lithobrake.statements.answers import sample_details, sample_tiles
+from lithobrake.statements.expansion import TellingNumbers
 from lithobrake.statements.labels import PAPER_OUTPUTS
 
 if TYPE_CHECKING:

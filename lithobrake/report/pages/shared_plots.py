@@ -19,7 +19,7 @@ from lithobrake.report.figures.place_map import (
     rest_figure,
 )
 from lithobrake.report.figures.share_figures import ShareBar
-from lithobrake.report.live.body_view import body_views
+from lithobrake.report.live.views import body_views
 from lithobrake.report.tables.dispersion_tables import followed, parts, place_tables, site_tables
 from lithobrake.results.page_data import DrawnPage, PageData, PaperPage, SampledPage
 from lithobrake.results.run_results import CountedShare

@@ -4,30 +4,30 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lithobrake.report.cells import table_cell
-from lithobrake.report.content import PageTable
-from lithobrake.report.tables.limit_tables import limit_state_tables, rare_tables
+from lithobrake.report.content import PageTable, table_cell
+from lithobrake.report.tables.dispersion_tables import limit_state_tables, rare_tables
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
 from lithobrake.results.page_data import DrawnPage, RunsPage
 from lithobrake.results.run_results import SideRuns, VarianceParts
 from lithobrake.statements import notes
 from lithobrake.statements.answers import action
 from lithobrake.statements.captions import has_interval
-from lithobrake.statements.estimates import bracket, quantile
 from lithobrake.statements.labels import (
     PART_WORDS,
     RETURNS,
     RUN_WORDS,
+    bracket,
     input_words,
     long_part_words,
     output,
     output_words,
+    quantile,
 )
 from lithobrake.statements.touchdowns import BAND, drawn_things, left_out, run_outcomes
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import as_sentence
-from lithobrake.vocabulary.percentages import (
+from lithobrake.vocabulary.number_words import (
     QUANTILE_WORDS,
+    as_sentence,
     at_level,
     interval_digits,
     part,

@@ -7,12 +7,10 @@ from lithobrake.report.content import PageTable
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.results.page_data import JourneyPage
 from lithobrake.statements import notes
-from lithobrake.statements.estimates import area, quantile, two_digits
 from lithobrake.statements.journeys import time_unit
-from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.labels import END_WORDS, area, quantile, two_digits
 from lithobrake.vocabulary.constants import MINUTE
-from lithobrake.vocabulary.number_words import number
-from lithobrake.vocabulary.percentages import LEVEL, at_level, percent, with_interval
+from lithobrake.vocabulary.number_words import LEVEL, at_level, number, percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
 
 # Tables of any drawn study that are of more than the first touchdown, and one that has another name here.

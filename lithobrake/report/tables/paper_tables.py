@@ -3,14 +3,12 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lithobrake.report.cells import flat, show, table_cell, unit_scales
-from lithobrake.report.content import PageTable
+from lithobrake.report.content import PageTable, flat, show, table_cell, unit_scales
 from lithobrake.results.model_results import Ends
 from lithobrake.results.page_data import PageData, PaperPage
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.statements import notes
-from lithobrake.statements.estimates import bracket, two_digits
-from lithobrake.statements.labels import PAPER_OUTPUTS, input_words, output
+from lithobrake.statements.labels import PAPER_OUTPUTS, bracket, input_words, output, two_digits
 from lithobrake.vocabulary.number_words import fixed
 
 STAGE_WORDS = {

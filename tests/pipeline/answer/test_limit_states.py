@@ -8,7 +8,7 @@ import pytest
 
 import lithobrake
 from lithobrake.results import StudyResults
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
 from ..synthetic_lander import SyntheticLander, synthetic_tables

@@ -16,7 +16,7 @@ from lithobrake.pipeline import StudyFolder, compare_studies, study_status
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
 from lithobrake.pipeline.commands.running_estimates import running_estimates
 from lithobrake.results.questions import StudyComparison
-from lithobrake.results.result_files import results_in
+from lithobrake.results.study_files import results_in
 from lithobrake.results.table import Table
 from lithobrake.vocabulary.quantities import BEDS
 

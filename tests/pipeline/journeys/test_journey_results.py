@@ -31,7 +31,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.figures.ground_map import GroundMap, round_length
-from lithobrake.report.live.body_view import end_views
+from lithobrake.report.live.views import end_views
 from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import ExplorerTables, StudyResults
 from lithobrake.results.page_data import JourneyPage, page_results
@@ -39,8 +39,8 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import journeys as words
 from lithobrake.study import StudySource, check_tables, read_study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import LEVEL, with_interval
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
-from lithobrake.vocabulary.percentages import LEVEL, with_interval
 
 from ...command_line import lithobrake
 from ...report.browser import browser_page, needs_browser

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import lithobrake
 from lithobrake.campaign import read_records
-from lithobrake.geometry.frames import about_z, attitude_of, from_frame, quaternion
+from lithobrake.geometry.attitude import about_z, attitude_of, from_frame, quaternion
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down

@@ -34,10 +34,10 @@ from lithobrake.pipeline.site_grid import (
     site_cells,
 )
 from lithobrake.results import StudyResults
-from lithobrake.results.result_files import json_values, results_in
 from lithobrake.results.site_results import SiteMap
+from lithobrake.results.study_files import json_values, results_in
 from lithobrake.study.source import StudySource
-from lithobrake.vocabulary.percentages import LEVEL
+from lithobrake.vocabulary.number_words import LEVEL
 
 from ...smallbody.meshes import sphere_mesh
 from .bouncing_lander import bounce, journey_tables

@@ -10,11 +10,11 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.first_bounces.aiming import _distances
 from lithobrake.pipeline.first_bounces.bounce_laws import implied
+from lithobrake.pipeline.first_bounces.bounces_to_rest import _distances
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import DrawnResults
 from lithobrake.smallbody import HardSurface, Impacts, didymos
 from lithobrake.statements.limits import options

@@ -11,7 +11,7 @@ import lithobrake
 from lithobrake.pipeline.answer.run_estimates import PARTS
 from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
-from lithobrake.results.result_files import json_values
+from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import RestitutionTable
 from lithobrake.vocabulary.outcomes import JourneyStatus
 

@@ -15,8 +15,7 @@ import pytest
 from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.pages.drawn_page import drawn_content
-from lithobrake.report.tables.dispersion_tables import parts
-from lithobrake.report.tables.limit_tables import rare_tables
+from lithobrake.report.tables.dispersion_tables import parts, rare_tables
 from lithobrake.results import open_study
 from lithobrake.results.model_results import EmulatorScores, JointScore, OutputScore
 from lithobrake.results.page_data import DrawnPage, page_results
@@ -24,7 +23,7 @@ from lithobrake.results.run_results import OutputDirection, VarianceParts
 from lithobrake.statements import captions, touchdowns
 from lithobrake.statements.answers import landing_details, landing_tiles, page_answer, page_warnings
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.percentages import with_interval
+from lithobrake.vocabulary.number_words import with_interval
 
 ONE_BED: dict[str, Any] = {"next_bed": None, "why": "One bed was poured."}
 

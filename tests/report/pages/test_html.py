@@ -5,10 +5,21 @@ from html.parser import HTMLParser
 
 import pytest
 
-from lithobrake.report.cells import flat, in_html, raised_units, show, unit_scales
-from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot, Tile
+from lithobrake.report.content import (
+    Content,
+    PageSection,
+    PageTable,
+    Panel,
+    Plot,
+    Tile,
+    flat,
+    in_html,
+    raised_units,
+    show,
+    unit_scales,
+)
 from lithobrake.report.pages.html import LONG, page
-from lithobrake.statements.estimates import area
+from lithobrake.statements.labels import area
 from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
