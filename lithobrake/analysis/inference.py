@@ -9,17 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import logsumexp, ndtr, ndtri
 
+from lithobrake.analysis import posterior
 from lithobrake.analysis.confidence import LEVEL
-from lithobrake.analysis.posterior import (
-    ENDLESS,
-    INSTALL,
-    WALKER_COUNT,
-    Observation,
-    Proposal,
-    by_bed,
-    can_walk,
-    walk,
-)
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.training import one_thread
@@ -144,7 +135,7 @@ def _germ_deviation(law: "Distribution") -> float:
 
 def infer(
     model: "Emulator",
-    observations: Sequence[Observation],
+    observations: Sequence[posterior.Observation],
     *,
     own: Collection[str] = (),
     bounds: Bounds | None = None,
@@ -180,7 +171,7 @@ def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_coun
 
     Raises ValueError where none does.
     """
-    proposal, found = Proposal(None), list[Posterior]()
+    proposal, found = posterior.Proposal(None), list[Posterior]()
     for number in range(1 + MOST_ROUNDS):
         scores, excess = proposal.draw(len(laws), point_count, seed + number)
         logarithms = excess + logarithm(scores, seed)
@@ -192,19 +183,19 @@ def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_coun
         found.append(posterior_of(laws, _physical(laws, scores), logarithms))
         if found[-1].is_reliable:
             break
-        proposal = Proposal.near(scores, found[-1].weights)
+        proposal = posterior.Proposal.near(scores, found[-1].weights)
     return max(found, key=lambda one: one.effective_count)
 
 
 def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
     """The posterior by walkers that begin at the points of another; that one, with what may help, where none arrive."""
-    if not can_walk():
-        return replace(found, remedy=INSTALL)
+    if not posterior.can_walk():
+        return replace(found, remedy=posterior.INSTALL)
     shares = [law.cdf(values) for law, values in zip(found.inputs.values(), found.points.T, strict=True)]
     scores = ndtri(np.clip(np.column_stack(shares), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
     random, middle = random_numbers(seed), found.weights @ scores
     spread = np.sqrt(found.weights @ (scores - middle) ** 2) + NARROWEST
-    start = scores[random.choice(len(scores), WALKER_COUNT, p=found.weights)]
+    start = scores[random.choice(len(scores), posterior.WALKER_COUNT, p=found.weights)]
     # Walkers that all begin at one point would never leave it.
     start = start + BESIDE * spread * random.standard_normal(start.shape)
     # What each bounce draws anew is drawn at every call: so the walk is right in the mean over it.
@@ -214,9 +205,9 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
         value = logarithm(at, next(calls)) - 0.5 * np.sum(at**2, axis=1)
         return np.where(np.isnan(value), -np.inf, value)
 
-    walked = walk(density, start, seed)
+    walked = posterior.walk(density, start, seed)
     if walked is None:
-        return replace(found, remedy=ENDLESS)
+        return replace(found, remedy=posterior.ENDLESS)
     points, effective = _physical(found.inputs, walked[0]), walked[1]
     return replace(found, points=points, weights=np.full(len(points), 1.0 / len(points)), effective_count=effective)
 
@@ -237,7 +228,7 @@ def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: 
 @one_thread()
 def _likelihood(
     models: "Sequence[Emulator]",
-    observations: Sequence[Observation],
+    observations: Sequence[posterior.Observation],
     shared: Mapping[str, "Distribution"],
     points: Array,
     bounds: Bounds | None,
@@ -252,7 +243,7 @@ def _likelihood(
         given = dict(zip(shared, points.T, strict=True)) | {n: np.full(len(points), v) for n, v in one.known.items()}
         x = checked_points(inputs, np.column_stack([(given | anew)[name] for name in inputs]))
         at.append((models[0].terms.matrix(x), bounds(x) if bounds else (None, None)))
-    for bed in by_bed(observations):
+    for bed in posterior.by_bed(observations):
         for place, refit in enumerate(models):
             effect = refit.bed_effect if len(bed) > 1 else BedEffect.none(len(refit.runs.modelled))
             for one, (terms, ends) in ((observations[number], at[number]) for number in bed):
@@ -263,7 +254,7 @@ def _likelihood(
     return averaged
 
 
-def _checked(model: "Emulator", observations: Sequence[Observation], own: Collection[str]) -> list[str]:
+def _checked(model: "Emulator", observations: Sequence[posterior.Observation], own: Collection[str]) -> list[str]:
     """Names of the inputs that all bounces share. Raises ValueError for names and observations that cannot be."""
     inputs = model.runs.inputs
     if not observations or not all(one.outputs or one.outcome for one in observations):

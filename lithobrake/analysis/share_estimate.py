@@ -6,17 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.analysis.confidence import (
-    LEVEL,
-    BedComponents,
-    Bounds,
-    bed_components,
-    numbered_beds,
-    partial_quantile,
-    share_interval,
-    share_spread,
-    t_quantile,
-)
+from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.chaos.training import one_thread
@@ -89,7 +79,7 @@ def share_estimate(
     h, w, like = _checked(shares, weights, like_missing)
     if terms is not None and len(terms[0]) != len(h):
         raise ValueError(f"terms are of {len(terms[0])} runs and shares of {len(h)}; give those of the same runs")
-    beds, answered = numbered_beds(bed, len(h)), np.isfinite(h)
+    beds, answered = confidence.numbered_beds(bed, len(h)), np.isfinite(h)
     left = _less_inputs(h, terms, w, beds) if explained is None else h - numbers("explained", explained)
     known = _mean_of(left[answered], w[answered], beds[answered])
     ends = known, known
@@ -108,10 +98,10 @@ def share_estimate(
     return LandingFraction(Estimate(share, lower, upper, why_missing=why), source, next_bed, if_missing, missing)
 
 
-def plain_interval(shares: ArrayLike, bed: ArrayLike) -> Bounds | None:
+def plain_interval(shares: ArrayLike, bed: ArrayLike) -> confidence.Bounds | None:
     """The interval of `share_estimate` of shares alone, quickly; None on one bed, or without an outcome."""
     h = numbers_or_nan("shares", shares)
-    beds, answered, w = numbered_beds(bed, len(h)), np.isfinite(h), np.ones_like(h)
+    beds, answered, w = confidence.numbered_beds(bed, len(h)), np.isfinite(h), np.ones_like(h)
     if len(np.unique(beds[answered])) < 2:
         return None
     known = _mean_of(h[answered], w[answered], beds[answered])
@@ -167,7 +157,7 @@ def _mean(values: Array, weights: Array) -> float:
 def _mean_of(values: Array, weights: Array, beds: Labels) -> _Mean:
     """The weighted mean as a plain one, with its error. Source: [Saerndal-1992], section 5.5."""
     mean = _mean(values, weights)
-    return _Mean(mean, mean + weights / weights.mean() * (values - mean), numbered_beds(beds, len(values)))
+    return _Mean(mean, mean + weights / weights.mean() * (values - mean), confidence.numbered_beds(beds, len(values)))
 
 
 def _point(left: Array, weights: Array, answered: NDArray[np.bool_], like: NDArray[np.bool_]) -> float:
@@ -177,26 +167,26 @@ def _point(left: Array, weights: Array, answered: NDArray[np.bool_], like: NDArr
     return min(max(share, 0.0), 1.0)
 
 
-def _interval(least: _Mean, most: _Mean) -> Bounds:
+def _interval(least: _Mean, most: _Mean) -> confidence.Bounds:
     """Interval that holds each number between two means at the level; that of Student where both are one."""
     lower, upper = (min(max(one.value, 0.0), 1.0) for one in (least, most))
     errors = least.error, most.error
     freedom, width, error = least.bed_count - 1, max(upper - lower, 0.0), max(errors)
-    quantile = partial_quantile(width, error, freedom) if error > 0.0 else t_quantile(freedom)
-    low = _certain(lower, least) or share_interval(lower, quantile * errors[0])
-    high = _certain(upper, most) or share_interval(upper, quantile * errors[1])
+    quantile = confidence.partial_quantile(width, error, freedom) if error > 0.0 else confidence.t_quantile(freedom)
+    low = _certain(lower, least) or confidence.share_interval(lower, quantile * errors[0])
+    high = _certain(upper, most) or confidence.share_interval(upper, quantile * errors[1])
     return low[0], high[1]
 
 
-def _certain(share: float, of: _Mean) -> Bounds | None:
+def _certain(share: float, of: _Mean) -> confidence.Bounds | None:
     """Bounds where no run, or every run, has met the event; None elsewhere."""
     if share not in (0.0, 1.0):
         return None
-    limit = upper_limit(of.bed_count, LEVEL)
+    limit = upper_limit(of.bed_count, confidence.LEVEL)
     return (0.0, limit) if share == 0.0 else (1.0 - limit, 1.0)
 
 
-def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: Bounds) -> Bounds | None:
+def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: confidence.Bounds) -> confidence.Bounds | None:
     """Prediction interval of the mean on a new bed; it holds the interval of the mean over all beds."""
     if known.value in (0.0, 1.0) or len(known.values) == known.bed_count:
         return None
@@ -204,12 +194,14 @@ def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: Bounds) -> Bounds
     return _outer(bounds, _spread(known), (_spread(ends[0])[0], _spread(ends[1])[1]))
 
 
-def _spread(one: _Mean) -> Bounds:
+def _spread(one: _Mean) -> confidence.Bounds:
     share = min(max(one.value, 0.0), 1.0)
-    return share_spread(share, _next_bed_deviation(bed_components(one.values, one.beds), one.error))
+    return confidence.share_spread(
+        share, _next_bed_deviation(confidence.bed_components(one.values, one.beds), one.error)
+    )
 
 
-def _outer(*bounds: Bounds) -> Bounds:
+def _outer(*bounds: confidence.Bounds) -> confidence.Bounds:
     return min(one[0] for one in bounds), max(one[1] for one in bounds)
 
 
@@ -220,7 +212,7 @@ def _source(answered: NDArray[np.bool_], bed_count: int) -> str:
     return f"{total} {on_beds}" if known == total else f"{known} of {total} {on_beds}"
 
 
-def _next_bed_deviation(components: BedComponents, standard_error: float) -> float:
+def _next_bed_deviation(components: confidence.BedComponents, standard_error: float) -> float:
     """Standard deviation of the next bed's mean about an estimate [unit of the runs].
 
     Error of the estimate and difference of the bed together, the variance of beds at an upper limit: measured to

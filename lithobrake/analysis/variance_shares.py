@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import (
-    LEVEL,
-    BedComponents,
-    Bounds,
-    answers,
-    bed_components,
-    numbered_beds,
-    t_quantile,
-)
+from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms
 from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array, Labels
@@ -80,7 +72,7 @@ class _Part(NamedTuple):
     value: float
     lower: float
     upper: float
-    printed: Bounds
+    printed: confidence.Bounds
 
     @classmethod
     def of(cls, value: float, half: float) -> "_Part":
@@ -133,18 +125,18 @@ def variance_shares(
     those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
     """
-    of_all = answers("y", y)
+    of_all = confidence.answers("y", y)
     points = _checked_points(inputs, x, of_all, soil)
     known = np.isfinite(of_all)
     points, values = points[known], of_all[known]
-    beds = numbered_beds(numbered_beds(bed, len(of_all))[known], len(values))
+    beds = confidence.numbered_beds(confidence.numbered_beds(bed, len(of_all))[known], len(values))
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
     used = _affordable(inputs, points, soil, _checked_attitude(attitude, known))
     if used is None or len(values) - int(beds.max()) - 2 - used.matrix.shape[1] < 1:
         return None
     found = _regression(used.matrix, values)
-    components = bed_components(values, beds, used.matrix)
+    components = confidence.bed_components(values, beds, used.matrix)
     if components.within <= ROUNDING * float(np.var(values)):
         return None
     explained = float(found.squares.sum())
@@ -261,18 +253,18 @@ def _left_out(
         left = _regression(terms[beds != number], y[beds != number])
         rows.append(groups @ left.squares / (left.squares.sum() + left.scatter))
     count = len(rows)
-    half = t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))
+    half = confidence.t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))
     shares = groups @ found.squares / total
     return [_Part.of(s, h) for s, h in zip(shares.tolist(), half.tolist(), strict=True)]
 
 
-def _of_beds(components: BedComponents, rest: float) -> _Part:
+def _of_beds(components: confidence.BedComponents, rest: float) -> _Part:
     """Share of the beds in the whole, of which inputs leave a rest.
 
     Beds that differ less than chance has it have the upper bound to print of beds that differ as chance has it: else an
     estimate below 0 could pass for certainty that there is nothing.
     """
-    tails = [0.5 + side * LEVEL for side in (-0.5, 0.5)]
+    tails = [0.5 + side * confidence.LEVEL for side in (-0.5, 0.5)]
     variances = [components.bed_variance, *(components.variance_at(tail, cut=False) for tail in tails)]
     variances.append(components.positive.variance_at(tails[1]))
     value, lower, upper, most = (rest * components.correlation_at(one) for one in variances)

@@ -9,19 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from lithobrake.chaos.distributions import (
-    NO_CHOICES,
-    Beta,
-    Distribution,
-    Exponential,
-    Gamma,
-    Limited,
-    LogNormal,
-    LogUniform,
-    Normal,
-    Support,
-    Uniform,
-)
+from lithobrake.chaos import distributions
 from lithobrake.chaos.polynomials import Recurrence, discretised
 from lithobrake.vocabulary.arrays import Array
 
@@ -40,7 +28,7 @@ SAMPLE_DEGREE, SAMPLE_ERROR = 40, 1e-8
 
 
 @dataclass(frozen=True)
-class TruncatedNormal(Distribution):
+class TruncatedNormal(distributions.Distribution):
     """Normal(mean, std) restricted to lower <= x <= upper [unit of the input]; either limit may be infinite.
 
     mean and std are those before truncation. Polynomials by discretisation of the density on Gauss-Legendre nodes.
@@ -79,7 +67,7 @@ class TruncatedNormal(Distribution):
         return (self.lower - self.mean) / self.std, (self.upper - self.mean) / self.std
 
     @property
-    def support(self) -> Support:
+    def support(self) -> distributions.Support:
         return self.lower, self.upper
 
     @cached_property
@@ -149,7 +137,7 @@ class TruncatedNormal(Distribution):
 
 
 @dataclass(frozen=True)
-class Empirical(Limited):
+class Empirical(distributions.Limited):
     """The samples themselves [unit of the input], equally probable; polynomials orthonormal over exactly these values.
 
     Quantiles are sample values (no interpolation), so that a Monte Carlo has the moments that the expansion states.
@@ -163,7 +151,9 @@ class Empirical(Limited):
         try:
             values = np.sort(np.asarray(self.samples, dtype=float).ravel())
         except (TypeError, ValueError):
-            raise ValueError(f"Empirical.samples must be numbers, but holds others; {NO_CHOICES}") from None
+            raise ValueError(
+                f"Empirical.samples must be numbers, but holds others; {distributions.NO_CHOICES}"
+            ) from None
         if not np.all(np.isfinite(values)) or len(np.unique(values)) < 2:
             raise ValueError(
                 f"Empirical.samples holds {values.size} values, but needs finite ones, at least two of them distinct"
@@ -175,7 +165,7 @@ class Empirical(Limited):
         return np.asarray(self.samples, dtype=float)
 
     @property
-    def support(self) -> Support:
+    def support(self) -> distributions.Support:
         return self.samples[0], self.samples[-1]
 
     def ppf(self, u: ArrayLike) -> Array:
@@ -233,19 +223,29 @@ class Empirical(Limited):
         return Recurrence(made.center[:degree], made.spread[:degree])
 
 
-KINDS: dict[str, type[Distribution]] = {
+KINDS: dict[str, type[distributions.Distribution]] = {
     entry.kind: entry
-    for entry in (Uniform, LogUniform, Normal, LogNormal, TruncatedNormal, Beta, Gamma, Exponential, Empirical)
+    for entry in (
+        distributions.Uniform,
+        distributions.LogUniform,
+        distributions.Normal,
+        distributions.LogNormal,
+        TruncatedNormal,
+        distributions.Beta,
+        distributions.Gamma,
+        distributions.Exponential,
+        Empirical,
+    )
 }
 
 
-def distribution(kind: str, **parameters: Any) -> Distribution:
+def distribution(kind: str, **parameters: Any) -> distributions.Distribution:
     """Build a distribution from its name, for instance distribution("uniform", lower=0, upper=1).
 
     Raises ValueError for an unknown name, a missing, a surplus or a wrong parameter.
     """
     if kind not in KINDS:
-        raise ValueError(f"distribution is {kind!r}, but must be one of {', '.join(KINDS)}; {NO_CHOICES}")
+        raise ValueError(f"distribution is {kind!r}, but must be one of {', '.join(KINDS)}; {distributions.NO_CHOICES}")
     maker = KINDS[kind]
     allowed = [field.name for field in fields(maker)]  # type: ignore[arg-type]
     surplus = sorted(set(parameters) - set(allowed))
@@ -258,14 +258,14 @@ def distribution(kind: str, **parameters: Any) -> Distribution:
         raise ValueError(f"distribution {kind!r} lacks {', '.join(missing)}: it takes {', '.join(allowed)}") from None
 
 
-def checked_inputs(inputs: Any) -> dict[str, Distribution]:
+def checked_inputs(inputs: Any) -> dict[str, distributions.Distribution]:
     """Check a mapping of input names to distributions and give it back as an ordered dict."""
     if not hasattr(inputs, "items") or not inputs:
         raise ValueError("inputs must be a dict of at least one name with its distribution, for instance Uniform(0, 1)")
     for name, entry in inputs.items():
-        if not isinstance(entry, Distribution):
+        if not isinstance(entry, distributions.Distribution):
             raise ValueError(
                 f"input {name!r} is {entry!r}, but must be a distribution "
-                f"({', '.join(known.__name__ for known in KINDS.values())}); {NO_CHOICES}"
+                f"({', '.join(known.__name__ for known in KINDS.values())}); {distributions.NO_CHOICES}"
             )
     return dict(inputs)

@@ -9,21 +9,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos import moments, scores
+from lithobrake.chaos import moments, scores, storage
 from lithobrake.chaos.basis import Indices, outside_count, points_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.chaos.storage import (
-    indices_from_json,
-    inputs_from_json,
-    inputs_to_json,
-    names_from_json,
-    numbers_from_json,
-    read,
-    write,
-)
 from lithobrake.chaos.training import one_thread
 from lithobrake.vocabulary.arrays import Array
 from lithobrake.vocabulary.given_numbers import numbers
@@ -202,12 +193,12 @@ class Surrogate:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write everything into one readable JSON file."""
-        write(FORMAT, self.content(), path)
+        storage.write(FORMAT, self.content(), path)
 
     def content(self) -> dict[str, Any]:
         """Everything that makes the expansion, as plain JSON values."""
         return {
-            "inputs": inputs_to_json(self.inputs),
+            "inputs": storage.inputs_to_json(self.inputs),
             "output_names": self.output_names,
             "one_dimensional": self.one_dimensional,
             "multi_indices": self.multi_indices.tolist(),
@@ -219,15 +210,15 @@ class Surrogate:
     @classmethod
     def from_content(cls, content: Mapping[str, Any]) -> Self:
         """Make the expansion that `content` gave. Raises ValueError for content that is none."""
-        inputs, names = inputs_from_json(content["inputs"]), names_from_json(content["output_names"])
-        indices = indices_from_json(content["multi_indices"], len(inputs))
-        coefficients = numbers_from_json("coefficients", content["coefficients"], len(names))
+        inputs, names = storage.inputs_from_json(content["inputs"]), storage.names_from_json(content["output_names"])
+        indices = storage.indices_from_json(content["multi_indices"], len(inputs))
+        coefficients = storage.numbers_from_json("coefficients", content["coefficients"], len(names))
         if len(coefficients) != len(indices):
             raise ValueError(f"there are {len(coefficients)} coefficients for {len(indices)} multi_indices")
         one_dimensional, report = content["one_dimensional"], content["report"]
         if type(one_dimensional) is not bool or (one_dimensional and len(names) > 1) or not isinstance(report, dict):
             raise ValueError("one_dimensional must be true or false, true for one output only, and report a table")
-        residuals = numbers_from_json("residuals", content["residuals"], len(names))
+        residuals = storage.numbers_from_json("residuals", content["residuals"], len(names))
         return cls(
             inputs,
             indices,
@@ -241,4 +232,4 @@ class Surrogate:
 
 def load(path: str | os.PathLike[str]) -> Surrogate:
     """Read an expansion that `Surrogate.save` wrote. Raises ValueError if the file is of another kind or damaged."""
-    return read(FORMAT, Surrogate.from_content, path)
+    return storage.read(FORMAT, Surrogate.from_content, path)

@@ -5,28 +5,7 @@ from typing import Annotated
 
 import typer
 
-from lithobrake.cli.arguments import (
-    EXPORT,
-    LOOK,
-    ExecutorName,
-    Force,
-    Json,
-    OutPath,
-    Scheduler,
-    StudyDirectory,
-    StudyPath,
-    Workers,
-    app,
-    given_folder,
-    one_sentence,
-    refuse_written,
-    run_of,
-    scheduler_of,
-    shown_progress,
-    study_folder,
-    tell,
-    tell_result,
-)
+from lithobrake.cli import arguments
 
 Kinds = Annotated[
     list[str],
@@ -64,12 +43,12 @@ Again = Annotated[
 ]
 
 
-@app.command(
-    rich_help_panel=EXPORT,
+@arguments.app.command(
+    rich_help_panel=arguments.EXPORT,
     epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00",
 )
 def export(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     to: Kinds,
     flight: Samples = None,
     frame: Frame = "inertial",
@@ -78,34 +57,36 @@ def export(
     resolution: Resolution = 1.0,
     body_number: BodyNumber = None,
     run: Again = None,
-    force: Force = False,
+    force: arguments.Force = False,
     out: Annotated[
         str | None, typer.Option("--out", metavar="FOLDER", help="Folder; the default is DIR/export.")
     ] = None,
-    json: Json = False,
+    json: arguments.Json = False,
 ) -> None:
     """Write results of a study in the formats of other programs: flights, attitudes, shape, map, motions."""
-    place = folder / "export" if out is None else given_folder(out)
-    with one_sentence():
+    place = folder / "export" if out is None else arguments.given_folder(out)
+    with arguments.one_sentence():
         from lithobrake.results import open_study
 
         # A folder that is no study is refused before numbers are loaded.
         results = open_study(folder)
         from lithobrake.export import ExportOptions, export_study
 
-        with shown_progress("export") as progress:
-            again = None if run is None else run_of(run)
+        with arguments.shown_progress("export") as progress:
+            again = None if run is None else arguments.run_of(run)
             choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
             written = export_study(results, place, to, choices)
-    tell_result(json, {"files": [str(path.resolve()) for path in written]}, (f"Wrote {path}" for path in written))
+    arguments.tell_result(
+        json, {"files": [str(path.resolve()) for path in written]}, (f"Wrote {path}" for path in written)
+    )
 
 
-@app.command(
-    rich_help_panel=EXPORT,
+@arguments.app.command(
+    rich_help_panel=arguments.EXPORT,
     epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv",
 )
 def push(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     speed: Annotated[float, typer.Option(help="Change of velocity, m/s.", show_default=False)],
     elevation: Annotated[float, typer.Option(help="Its angle above the plane of the ground, degrees.")] = 45.0,
     heading: Annotated[float, typer.Option(help="Its direction, from north toward east, degrees.")] = 0.0,
@@ -116,35 +97,35 @@ def push(
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="Table for delivery.states of the next study.")
     ] = Path("push.csv"),
-    force: Force = False,
+    force: arguments.Force = False,
 ) -> None:
     """Write the states of the landers at rest after a push, as the delivery of the next study."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.results import open_study
 
         results = open_study(folder)
-        refuse_written(out, force)
+        arguments.refuse_written(out, force)
         from lithobrake.export import Push, write_push
 
         count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
-    tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
+    arguments.tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
+@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
 def sites(
-    study: StudyPath,
+    study: arguments.StudyPath,
     cells: Annotated[int, typer.Option("--cells", metavar="N", help="Number of sites (cells of equal area).")] = 120,
     landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per site.")] = 200,
-    out: OutPath = None,
-    workers: Workers = None,
-    executor: ExecutorName = "local",
-    scheduler: Scheduler = None,
-    force: Force = False,
-    json: Json = False,
+    out: arguments.OutPath = None,
+    workers: arguments.Workers = None,
+    executor: arguments.ExecutorName = "local",
+    scheduler: arguments.Scheduler = None,
+    force: arguments.Force = False,
+    json: arguments.Json = False,
 ) -> None:
     """Map one delivery over a body: fraction at rest, time, distance, slope and light by site. Writes DIR/sites."""
-    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
-    with one_sentence():
+    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
+    with arguments.one_sentence():
         from lithobrake.study import StudySource
 
         source = StudySource.read(study)
@@ -166,4 +147,4 @@ def sites(
         paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
     beside = ", ".join(one.name for one in paths[1:])
     lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"]
-    tell_result(json, json_values(found), lines)
+    arguments.tell_result(json, json_values(found), lines)

@@ -7,28 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lithobrake.cli.arguments import (
-    EXPERT,
-    EXPORT,
-    RUN,
-    START,
-    ExecutorName,
-    Force,
-    Json,
-    OutPath,
-    Scheduler,
-    StudyDirectory,
-    StudyPath,
-    Workers,
-    app,
-    one_sentence,
-    refuse_written,
-    scheduler_of,
-    shown_progress,
-    study_folder,
-    tell,
-    tell_result,
-)
+from lithobrake.cli import arguments
 from lithobrake.cli.studies import study_command
 from lithobrake.vocabulary.plain_text import plain
 
@@ -40,11 +19,12 @@ if TYPE_CHECKING:
 INCOMPLETE = 1
 
 
-@app.command(
-    rich_help_panel=RUN, epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5"
+@arguments.app.command(
+    rich_help_panel=arguments.RUN,
+    epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5",
 )
 def land(
-    study: StudyPath,
+    study: arguments.StudyPath,
     change: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override a study parameter.")
     ] = None,
@@ -58,14 +38,14 @@ def land(
         ),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Show the motion in a window.")] = False,
-    force: Force = False,
-    json: Json = False,
+    force: arguments.Force = False,
+    json: arguments.Json = False,
 ) -> None:
     """Simulate one landing of a study, or one journey to rest, and print the outcome.
 
     The study's folder is neither read nor written.
     """
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.study import read_study
 
         checked = read_study(study)
@@ -74,13 +54,15 @@ def land(
         values = landing_inputs(checked, change or (), number)
         found = _landed if checked.journey is None else _followed
         told, lines = found(checked, values, out, show, force, json)
-    tell_result(json, told, lines)
+    arguments.tell_result(json, told, lines)
 
 
-@app.command(rich_help_panel=EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242")
+@arguments.app.command(
+    rich_help_panel=arguments.EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242"
+)
 def serve(
-    study: StudyPath,
-    out: OutPath = None,
+    study: arguments.StudyPath,
+    out: arguments.OutPath = None,
     host: Annotated[
         str,
         typer.Option("--host", metavar="ADDRESS", help="Address to listen on; the default serves this machine only."),
@@ -96,8 +78,8 @@ def serve(
     ] = None,
 ) -> None:
     """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
-    folder = study_folder(study, out)
-    with one_sentence():
+    folder = arguments.study_folder(study, out)
+    with arguments.one_sentence():
         # Refused before the imports below, which take seconds.
         from lithobrake.serve.clients import refuse_empty_host
 
@@ -114,22 +96,23 @@ def serve(
     with server, evaluations:
         names = ", ".join(model.name for model in models)
         reach = "" if server.is_local else ", which any machine of the network can reach"
-        tell([f"Serving {names} at {server.address}{reach}; Ctrl-C ends it."])
+        arguments.tell([f"Serving {names} at {server.address}{reach}; Ctrl-C ends it."])
         # That it was ended is no news to whoever ended it.
         with suppress(KeyboardInterrupt):
             server.serve_forever()
 
 
-@app.command(rich_help_panel=START, epilog="Example: lithobrake doctor --json > doctor.json")
+@arguments.app.command(rich_help_panel=arguments.START, epilog="Example: lithobrake doctor --json > doctor.json")
 def doctor(
-    quick: Annotated[bool, typer.Option("--quick", help="Skip the measurement of speed.")] = False, json: Json = False
+    quick: Annotated[bool, typer.Option("--quick", help="Skip the measurement of speed.")] = False,
+    json: arguments.Json = False,
 ) -> None:
     """Report what is installed, what is missing and how to get it, and how fast this machine is."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.doctor import examine
 
         found = examine(quick)
-    tell_result(json, found.to_json(), found.lines())
+    arguments.tell_result(json, found.to_json(), found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
 
@@ -144,8 +127,8 @@ def _landed(
         # Refused before the landing, which may need a bed to be poured first.
         if out.suffix != ".h5":
             refuse_other_kinds(out)
-        refuse_written(out, force)
-    with shown_progress("landing") as progress:
+        arguments.refuse_written(out, force)
+    with arguments.shown_progress("landing") as progress:
         found = land_one(study, values, progress)
     _keep_motion(found, out, shown)
     return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
@@ -185,21 +168,23 @@ def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
         show(bodies)
 
 
-@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500")
+@arguments.app.command(
+    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500"
+)
 def rare(
-    study: StudyPath,
+    study: arguments.StudyPath,
     name: Annotated[
         str, typer.Argument(metavar="NAME", help="Name of a limit state of the study.", show_default=False)
     ],
     landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings per level.")] = 500,
-    out: OutPath = None,
-    workers: Workers = None,
-    executor: ExecutorName = "local",
-    scheduler: Scheduler = None,
+    out: arguments.OutPath = None,
+    workers: arguments.Workers = None,
+    executor: arguments.ExecutorName = "local",
+    scheduler: arguments.Scheduler = None,
 ) -> None:
     """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
-    folder, address = study_folder(study, out), scheduler_of(executor, scheduler)
-    with one_sentence():
+    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
+    with arguments.one_sentence():
         from lithobrake.study import StudySource
 
         source = StudySource.read(study)
@@ -210,12 +195,14 @@ def rare(
             found = rare_failure(
                 source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
             )
-    tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
+    arguments.tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 
 
-@app.command(rich_help_panel=EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv")
+@arguments.app.command(
+    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv"
+)
 def infer(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     bounce: Annotated[
         Path | None,
         typer.Option(
@@ -224,26 +211,30 @@ def infer(
     ] = None,
 ) -> None:
     """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.pipeline import InferredStudy, infer_study
 
         study = InferredStudy.open(folder)
-        with shown_progress("inference") as progress:
+        with arguments.shown_progress("inference") as progress:
             progress(0.0, "identifiability")
             plan = study.plan().lines()
             if bounce is not None:
                 progress(0.5, "posterior")
             found = None if bounce is None else infer_study(folder, bounce)
-    tell(plan)
+    arguments.tell(plan)
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
-        tell([line for line in (found["statement"], found["beds"], written) if line])
+        arguments.tell([line for line in (found["statement"], found["beds"], written) if line])
 
 
-study_command("bed", "Pour and settle the beds, and simulate a preview landing.", EXPERT, until="landing")
-study_command("screen", "Paper method: run the screening design and fit an expansion in all inputs.", EXPERT)
-study_command("refine", "Paper method: run the refined design and fit an expansion in the kept inputs.", EXPERT)
-study_command("test", "Paper method: run the test points and score the expansions on them.", EXPERT)
-study_command("sample", "Take Monte Carlo samples of the emulator (paper method: of the refined expansion).", EXPERT)
-study_command("fly", "Fly the samples that leave the surface to their next impact.", EXPERT)
-study_command("rest", "Follow samples from bounce to bounce until they come to rest.", EXPERT)
+study_command("bed", "Pour and settle the beds, and simulate a preview landing.", arguments.EXPERT, until="landing")
+study_command("screen", "Paper method: run the screening design and fit an expansion in all inputs.", arguments.EXPERT)
+study_command(
+    "refine", "Paper method: run the refined design and fit an expansion in the kept inputs.", arguments.EXPERT
+)
+study_command("test", "Paper method: run the test points and score the expansions on them.", arguments.EXPERT)
+study_command(
+    "sample", "Take Monte Carlo samples of the emulator (paper method: of the refined expansion).", arguments.EXPERT
+)
+study_command("fly", "Fly the samples that leave the surface to their next impact.", arguments.EXPERT)
+study_command("rest", "Follow samples from bounce to bounce until they come to rest.", arguments.EXPERT)

@@ -8,25 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import (
-    BAD_INPUT,
-    LOOK,
-    Force,
-    Json,
-    StudyDirectory,
-    app,
-    given_folder,
-    leave,
-    one_sentence,
-    reader_may_leave,
-    refuse_written,
-    run_of,
-    shown_progress,
-    study_headline,
-    tell,
-    tell_json,
-    tell_result,
-)
+from lithobrake.cli import arguments
 from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.study_files import STUDY_FILE
 
@@ -59,7 +41,7 @@ def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> N
 
     refuse_other_kinds(out, (*JOURNEY_KINDS, *also))
     for path in written_over(out):
-        refuse_written(path, force)
+        arguments.refuse_written(path, force)
 
 
 def follow(
@@ -69,10 +51,12 @@ def follow(
     from lithobrake.pipeline import follow_one
     from lithobrake.view.motion_files import touchdown_paths, write_journey
 
-    with shown_progress("journey") as progress:
-        found = follow_one(study, values, (lambda line: tell([line])) if is_told else (lambda line: None), progress)
+    with arguments.shown_progress("journey") as progress:
+        found = follow_one(
+            study, values, (lambda line: arguments.tell([line])) if is_told else (lambda line: None), progress
+        )
         if is_told:
-            tell([found.track.end_words])
+            arguments.tell([found.track.end_words])
         if out is None:
             return found, []
         if out.suffix == ".h5":
@@ -89,24 +73,24 @@ def show_touchdowns(motion: "JourneyMotion") -> None:
         show(bodies)
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake report runs/study")
-def report(folder: StudyDirectory) -> None:
+@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake report runs/study")
+def report(folder: arguments.StudyDirectory) -> None:
     """Write the report of a study again from its files."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.pipeline import write_report_again
 
         write_report_again(folder)
-    tell(study_headline(folder))
+    arguments.tell(arguments.study_headline(folder))
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake runs runs/study --csv > runs.csv")
+@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake runs runs/study --csv > runs.csv")
 def runs(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
-    json: Json = False,
+    json: arguments.Json = False,
 ) -> None:
     """List the runs of a study: outcome, rebound speed, bed and impact point of each."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.campaign import run_lines, write_csv
         from lithobrake.results import open_study
 
@@ -118,22 +102,22 @@ def runs(
 
             units = run_units()
     if csv and json:
-        leave("--csv and --json are two forms of one list; give one of them", BAD_INPUT)
+        arguments.leave("--csv and --json are two forms of one list; give one of them", arguments.BAD_INPUT)
     if json:
-        tell_json({"units": units, "runs": [asdict(record) for record in records]})
+        arguments.tell_json({"units": units, "runs": [asdict(record) for record in records]})
         return
     if csv:
-        with reader_may_leave():
+        with arguments.reader_may_leave():
             write_csv(records, sys.stdout, units)
         return
     # Of one width where there is no terminal, so that a list in a file is the same wherever it was made.
     width = min(shutil.get_terminal_size().columns, LISTED) if sys.stdout.isatty() else LISTED
-    tell(run_lines(records, units, width, TOLD))
+    arguments.tell(run_lines(records, units, width, TOLD))
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake view runs/study")
+@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake view runs/study")
 def view(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Show a landing in a window instead (PyVista).")] = False,
     run: Annotated[str | None, typer.Option("--run", metavar="ID", help="Run to show with --3d.")] = None,
     journey: JourneyNumber = None,
@@ -143,27 +127,30 @@ def view(
         _view_journey(folder, journey, run, solid)
         return
     if run is not None and not solid:
-        leave(
-            f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run", BAD_INPUT
+        arguments.leave(
+            f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run",
+            arguments.BAD_INPUT,
         )
     if solid:
-        with one_sentence():
+        with arguments.one_sentence():
             from lithobrake.results import open_study
             from lithobrake.view import show
 
             show(_landing(open_study(folder), run))
         return
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.pipeline import report_page
 
         page, doubt = report_page(folder)
-    tell([doubt] if doubt else [])
+    arguments.tell([doubt] if doubt else [])
     _open(page)
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4")
+@arguments.app.command(
+    rich_help_panel=arguments.LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4"
+)
 def film(
-    folder: StudyDirectory,
+    folder: arguments.StudyDirectory,
     run: Annotated[
         str | None, typer.Option("--run", metavar="ID", help="The run; default: the preview landing.")
     ] = None,
@@ -179,61 +166,63 @@ def film(
         float, typer.Option("--seconds", metavar="S", help="Duration of the film, or of each touchdown in it, seconds.")
     ] = 8.0,
     journey: JourneyNumber = None,
-    force: Force = False,
+    force: arguments.Force = False,
 ) -> None:
     """Simulate a landing or a journey of a study again, and write it as a film."""
     what = "landing" if journey is None else "journey"
     path = out or folder / ("landing.mp4" if journey is None else f"journey_{journey}.mp4")
-    with one_sentence():
+    with arguments.one_sentence():
         _refuse_both(journey, run)
         from lithobrake.results import open_study
         from lithobrake.view import refuse_other_kinds, write_journey, write_motion
 
         if journey is None:
             refuse_other_kinds(path)
-            refuse_written(path, force)
+            arguments.refuse_written(path, force)
         else:
             refuse_journey_file(path, force)
         paths = [path]
-        with shown_progress(what) as progress:
+        with arguments.shown_progress(what) as progress:
             results = open_study(folder)
             if journey is None:
                 write_motion(_landing(results, run, progress), path, seconds, progress)
             else:
                 paths = write_journey(results.journey(journey).motion(progress=progress), path, seconds, progress)
-    tell(f"Film: {one.resolve()}" for one in paths)
+    arguments.tell(f"Film: {one.resolve()}" for one in paths)
 
 
-@app.command(rich_help_panel=LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff")
+@arguments.app.command(
+    rich_help_panel=arguments.LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff"
+)
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(metavar="B", help="The folder of the other study.", show_default=False)],
     out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = "comparison",
-    json: Json = False,
-    force: Force = False,
+    json: arguments.Json = False,
+    force: arguments.Force = False,
 ) -> None:
     """Compare two studies run by run: the difference of every result with its interval, as a page and as JSON."""
-    place = given_folder(out)
-    with one_sentence():
+    place = arguments.given_folder(out)
+    with arguments.one_sentence():
         from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
         from lithobrake.results.study_files import json_values
 
         for path in comparison_files(place):
-            refuse_written(path, force)
+            arguments.refuse_written(path, force)
         comparison = compare_studies(first, second)
         page, numbers = write_compared(comparison, place)
     lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]
-    tell_result(json, json_values(comparison), lines)
+    arguments.tell_result(json, json_values(comparison), lines)
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
     page = folder / "report" / f"journey_{number}.html"
-    with one_sentence():
+    with arguments.one_sentence():
         _refuse_both(number, run)
         from lithobrake.results import open_study
         from lithobrake.view import write_journey
 
-        with shown_progress("journey") as progress:
+        with arguments.shown_progress("journey") as progress:
             motion = open_study(folder).journey(number).motion(progress=progress)
         if solid:
             show_touchdowns(motion)
@@ -253,10 +242,10 @@ def _open(page: Path) -> None:
     import webbrowser
 
     if not webbrowser.open(page.as_uri()):
-        tell([f"No browser found; open this file: {page}"])
+        arguments.tell([f"No browser found; open this file: {page}"])
 
 
 def _landing(results: "StudyResults", run: str | None, progress: Progress = silent) -> "MovingBodies":
     if run is None:
         return results.median_landing
-    return results.landing_bodies(run_of(run), progress=progress)
+    return results.landing_bodies(arguments.run_of(run), progress=progress)

@@ -6,26 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lithobrake.cli.arguments import (
-    RUN,
-    START,
-    ExecutorName,
-    Json,
-    Logs,
-    OutPath,
-    Scheduler,
-    StudyDirectory,
-    StudyPath,
-    Workers,
-    app,
-    command_line,
-    one_sentence,
-    scheduler_of,
-    study_folder,
-    study_headline,
-    tell,
-    tell_result,
-)
+from lithobrake.cli import arguments
 
 if TYPE_CHECKING:
     from lithobrake.study.reader import Shipped
@@ -35,7 +16,9 @@ BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
 NAMES = 26
 
 
-@app.command(rich_help_panel=START, epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120")
+@arguments.app.command(
+    rich_help_panel=arguments.START, epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120"
+)
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
     body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = BODY,
@@ -53,7 +36,7 @@ def new(
     ] = False,
 ) -> None:
     """Write a commented study file, NAME.toml, that follows landers to rest."""
-    with one_sentence():
+    with arguments.one_sentence():
         path = Path(name if name.endswith(".toml") else f"{name}.toml")
         # The stem also names the folder of the study, and stands in commands that are pasted.
         odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
@@ -67,7 +50,7 @@ def new(
             raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
         text = template() if first_bounce else _journeys(body, lander, at, shape, full)
         _write_new(path, text)
-    tell([f"Wrote {path}. Edit it, then: {command_line('run', path)}"])
+    arguments.tell([f"Wrote {path}. Edit it, then: {arguments.command_line('run', path)}"])
 
 
 def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) -> str:
@@ -89,24 +72,24 @@ def _write_new(path: Path, text: str) -> None:
         raise ValueError(f"{path} cannot be written ({reason}); choose another name or an existing folder") from error
 
 
-@app.command(rich_help_panel=START, epilog="Example: lithobrake examples notebook_one_landing")
+@arguments.app.command(rich_help_panel=arguments.START, epilog="Example: lithobrake examples notebook_one_landing")
 def examples(
     name: Annotated[
         str | None, typer.Argument(metavar="NAME", help="Which one to copy; absent: list them.", show_default=False)
     ] = None,
 ) -> None:
     """List the studies and examples that come with the package, or copy one to the current folder."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.study.reader import shipped, shipped_by_name
 
         if name is None:
-            tell(_listed(shipped().values()))
+            arguments.tell(_listed(shipped().values()))
             return
         found = shipped_by_name(name)
         first, *beside = found.write(Path())
     others = f", with {' and '.join(map(str, beside))}" if beside else ""
-    command = command_line("run", first) if found.is_study else f"python {first}"
-    tell([f"Wrote {first}{others}. Run it with: {command}"])
+    command = arguments.command_line("run", first) if found.is_study else f"python {first}"
+    arguments.tell([f"Wrote {first}{others}. Run it with: {command}"])
 
 
 def _listed(known: Iterable["Shipped"]) -> list[str]:
@@ -121,58 +104,58 @@ def study_command(name: str, what: str, group: str, until: str | None = None) ->
     last = until or name
 
     def command(
-        study: StudyPath,
-        out: OutPath = None,
-        workers: Workers = None,
-        executor: ExecutorName = "local",
-        scheduler: Scheduler = None,
-        logs: Logs = False,
+        study: arguments.StudyPath,
+        out: arguments.OutPath = None,
+        workers: arguments.Workers = None,
+        executor: arguments.ExecutorName = "local",
+        scheduler: arguments.Scheduler = None,
+        logs: arguments.Logs = False,
     ) -> None:
-        folder = study_folder(study, out)
-        _make(study, folder, last, workers, scheduler_of(executor, scheduler), logs)
-        tell(study_headline(folder) if last == "report" else [f"Done: {folder}"])
+        folder = arguments.study_folder(study, out)
+        _make(study, folder, last, workers, arguments.scheduler_of(executor, scheduler), logs)
+        arguments.tell(arguments.study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
     epilog = f"Example: lithobrake {name} study.toml --out results --workers 4"
     full = f"{what} Reuses the files in its folder, and first runs all earlier stages whose files are missing."
-    app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)(command)
+    arguments.app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)(command)
 
 
-@app.command(rich_help_panel=RUN, epilog="Example: lithobrake plan study.toml")
+@arguments.app.command(rich_help_panel=arguments.RUN, epilog="Example: lithobrake plan study.toml")
 def plan(
-    study: StudyPath,
-    out: OutPath = None,
-    workers: Workers = None,
+    study: arguments.StudyPath,
+    out: arguments.OutPath = None,
+    workers: arguments.Workers = None,
     infer: Annotated[
         bool,
         typer.Option("--infer", help="Also report how many observed bounces halve each input's standard deviation."),
     ] = False,
-    json: Json = False,
+    json: arguments.Json = False,
 ) -> None:
     """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
-    folder = study_folder(study, out)
-    with one_sentence():
+    folder = arguments.study_folder(study, out)
+    with arguments.one_sentence():
         from lithobrake.pipeline import plan_lines, plan_study
 
         found = plan_study(study, folder, workers, infers=infer)
-    tell_result(json, found.to_json(), plan_lines(found))
+    arguments.tell_result(json, found.to_json(), plan_lines(found))
 
 
-study_command("run", "Run a study from its file to its report.", RUN, until="report")
+study_command("run", "Run a study from its file to its report.", arguments.RUN, until="report")
 
 
-@app.command(rich_help_panel=RUN, epilog="Example: lithobrake status runs/study")
-def status(folder: StudyDirectory, json: Json = False) -> None:
+@arguments.app.command(rich_help_panel=arguments.RUN, epilog="Example: lithobrake status runs/study")
+def status(folder: arguments.StudyDirectory, json: arguments.Json = False) -> None:
     """Show the progress of a study, from any terminal, also while the study runs."""
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.pipeline import study_status
 
         found = study_status(folder)
         lines, content = found.lines(), found.to_json()
-    tell_result(json, content, lines)
+    arguments.tell_result(json, content, lines)
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
-    with one_sentence():
+    with arguments.one_sentence():
         from lithobrake.study import StudySource
 
         # A study that is refused is refused at once: what follows brings the engine and its compiler.

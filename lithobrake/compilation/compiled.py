@@ -23,14 +23,8 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 
+from lithobrake.compilation import lighter_compilation
 from lithobrake.compilation.disk_cache import DiskCache
-from lithobrake.compilation.lighter_compilation import (
-    InnerKernel,
-    KernelCompiler,
-    is_for_kernel,
-    is_known,
-    without_garbage_collection,
-)
 
 log = logging.getLogger(__name__)
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -92,16 +86,18 @@ class Kernel(CPUDispatcher):
         super().__init__(py_func, *others, **options)
         self._cache = KernelCache(py_func, "python")
         COUNT.made(_part_of(py_func), py_func)
-        if is_known():
-            self._compiler: Any = KernelCompiler(self, is_inner=False)
+        if lighter_compilation.is_known():
+            self._compiler: Any = lighter_compilation.KernelCompiler(self, is_inner=False)
 
     @cached_property
     def within(self) -> CPUDispatcher:
         """The same for kernels that call it."""
-        if not is_known():
+        if not lighter_compilation.is_known():
             return self.within_others
         part, function = _part_of(self.py_func), self.py_func
-        return InnerKernel(function, targetoptions=self._inner_options, tell=lambda: COUNT.note(part, function))
+        return lighter_compilation.InnerKernel(
+            function, targetoptions=self._inner_options, tell=lambda: COUNT.note(part, function)
+        )
 
     @cached_property
     def within_others(self) -> CPUDispatcher:
@@ -115,7 +111,7 @@ class Kernel(CPUDispatcher):
         return {**self.targetoptions, "no_cpython_wrapper": True}
 
     def _for_caller(self) -> CPUDispatcher:
-        return self.within if is_for_kernel() else self.within_others
+        return self.within if lighter_compilation.is_for_kernel() else self.within_others
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Tell a kernel what a call gives. Constants count as numbers: each would be compiled for itself otherwise."""
@@ -137,7 +133,7 @@ class Kernel(CPUDispatcher):
         with turn:
             if part in _WHAT and not self._cache.has(sig, self.targetctx):
                 announce(part)
-            with without_garbage_collection():
+            with lighter_compilation.without_garbage_collection():
                 found = super().compile(sig)
             COUNT.note(part, self.py_func)
             return found

@@ -16,16 +16,8 @@ from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.training import one_thread
+from lithobrake.emulator import latent_variable
 from lithobrake.emulator.fitting import with_distant_bounds
-from lithobrake.emulator.latent_variable import (
-    LATENT_DEGREE,
-    LATENTS,
-    LatentProblem,
-    LatentTerms,
-    branches,
-    latent_terms,
-    problem_of,
-)
 from lithobrake.emulator.mean_law import candidate_terms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
@@ -57,7 +49,7 @@ class StochasticExpansion:
     """
 
     runs: TrainingRuns
-    terms: LatentTerms
+    terms: latent_variable.LatentTerms
     coefficients: Array
     noise: float
     held_out: float
@@ -150,7 +142,7 @@ class StochasticExpansion:
         counted = self.runs.checked_weights(weights)
         # From where the fit stands, at its noise: going down from a large noise again would repeat the whole path in
         # every refit.
-        coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
+        coefficients = latent_variable.problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
         return replace(self, coefficients=coefficients, weights=counted)
 
     def refits(self, count: int = 200, seed: int = 0) -> list["StochasticExpansion"]:
@@ -170,12 +162,14 @@ class StochasticExpansion:
         write(FORMAT, {**content, **runs_to_json(self.runs)}, path)
 
     @cached_property
-    def _problem(self) -> LatentProblem:
-        return problem_of(self.runs, self.terms, self.weights)
+    def _problem(self) -> latent_variable.LatentProblem:
+        return latent_variable.problem_of(self.runs, self.terms, self.weights)
 
     def _branches(self, x: ArrayLike) -> Array:
         """Coefficients of the powers of the latent variable at x, [point_count, power_count]."""
-        return branches(self.terms, self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients)
+        return latent_variable.branches(
+            self.terms, self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients
+        )
 
     def _means(self, x: ArrayLike) -> Array:
         """The expansion at x and at the nodes of the latent variable, [point_count, node_count]."""
@@ -217,13 +211,19 @@ def load_stochastic_expansion(path: str | os.PathLike[str]) -> StochasticExpansi
         runs = runs_from_json(content)
         indices = indices_from_json(content["multi_indices"], len(runs.inputs) + 1)
         latent, noise = content["latent"], float(content["noise"])
-        if latent not in LATENTS or indices[:, -1].max() > LATENT_DEGREE or not 0.0 < noise < np.inf:
-            raise ValueError(f"latent must be one of {', '.join(LATENTS)}, its powers up to 3, noise above 0")
+        if (
+            latent not in latent_variable.LATENTS
+            or indices[:, -1].max() > latent_variable.LATENT_DEGREE
+            or not 0.0 < noise < np.inf
+        ):
+            raise ValueError(
+                f"latent must be one of {', '.join(latent_variable.LATENTS)}, its powers up to 3, noise above 0"
+            )
         if len(runs.modelled) != 1 or runs.y.shape[1] != 1:
             raise ValueError("output_names must hold one output, which is no rider")
         coefficients = column_from_json("coefficients", content["coefficients"], len(indices))
         weights = column_from_json("weights", content["weights"], len(runs.x))
-        terms = LatentTerms(runs.inputs, latent, indices)
+        terms = latent_variable.LatentTerms(runs.inputs, latent, indices)
         return StochasticExpansion(runs, terms, coefficients, noise, float(content["held_out"]), weights)
 
     return read(FORMAT, build, path)
@@ -253,16 +253,21 @@ def fit_stochastic_expansion(
     """
     if np.ndim(y) != 1 and np.shape(y)[1:] != (1,):
         raise ValueError(f"y has shape {np.shape(y)}, but must be [run_count]: fit one expansion for each output")
-    if latent is not None and latent not in LATENTS:
-        raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
+    if latent is not None and latent not in latent_variable.LATENTS:
+        raise ValueError(
+            f"latent is {latent!r}, but must be one of {', '.join(latent_variable.LATENTS)}, or None to choose"
+        )
     runs = checked_runs(inputs, x, y, groups, None, None, lower, upper, (), (output_name,))
     candidate = candidate_terms(runs.inputs)
     runs = with_distant_bounds(runs, candidate.indices, candidate.matrix(runs.x[runs.has_outputs]))
     weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
-    tried = [_held_out(problem_of(runs, terms, weights), group) for terms in _candidates(runs, degree, latent)]
+    tried = [
+        _held_out(latent_variable.problem_of(runs, terms, weights), group)
+        for terms in _candidates(runs, degree, latent)
+    ]
     chosen = _simplest(tried, group)
     shares = NOISE_SHARES[: chosen.share_count]
-    noise, coefficients = list(problem_of(runs, chosen.terms, weights).path(shares))[-1]
+    noise, coefficients = list(latent_variable.problem_of(runs, chosen.terms, weights).path(shares))[-1]
     return StochasticExpansion(runs, chosen.terms, coefficients, noise, chosen.logarithm, weights)
 
 
@@ -272,7 +277,7 @@ class _HeldOut:
     its group is left out [run_count].
     """
 
-    terms: LatentTerms
+    terms: latent_variable.LatentTerms
     share_count: int
     logarithms: Array
 
@@ -296,11 +301,11 @@ def _simplest(tried: list[_HeldOut], group: NDArray[np.int64]) -> _HeldOut:
     return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithm)
 
 
-def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
+def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[latent_variable.LatentTerms]:
     """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
     degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
-    latents = LATENTS if latent is None else (latent,)
-    found = [latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
+    latents = latent_variable.LATENTS if latent is None else (latent,)
+    found = [latent_variable.latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
     # No inputs are always a candidate: that is the law to fall back on.
     kept = [one for one in found if one.degree == 0 or RUNS_PER_TERM * len(one.indices) <= len(runs.y)]
     if not kept:
@@ -311,7 +316,7 @@ def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> l
     return kept
 
 
-def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
+def _held_out(problem: latent_variable.LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
     """Follow the noise down until runs in groups left out are foretold worse than before."""
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]

@@ -9,14 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from lithobrake.chaos import storage
 from lithobrake.chaos.basis import multi_index_set
-from lithobrake.chaos.storage import (
-    indices_from_json,
-    inputs_from_json,
-    inputs_to_json,
-    names_from_json,
-    numbers_from_json,
-)
 from lithobrake.emulator.law import Choices, ClassChoice, Law, OutcomeClasses
 from lithobrake.emulator.mean_law import Terms
 from lithobrake.emulator.ridge_ladder import Ladder, Rung
@@ -79,7 +73,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
     """The parts that `content_of` wrote; raises ValueError where they do not fit together."""
     runs = runs_from_json(content)
     modelled, inputs = len(runs.modelled), len(runs.inputs)
-    indices = indices_from_json(content["multi_indices"], inputs)
+    indices = storage.indices_from_json(content["multi_indices"], inputs)
     linear = multi_index_set(inputs, 1)[1:]
     if not np.array_equal(indices[:inputs], linear) or (indices[inputs:].sum(axis=1) < 2).any():
         raise ValueError("multi_indices must begin with the linear terms in the order of the inputs")
@@ -119,7 +113,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
 
 def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
     return {
-        "inputs": inputs_to_json(runs.inputs),
+        "inputs": storage.inputs_to_json(runs.inputs),
         "output_names": list(runs.output_names),
         "riders": [runs.output_names[k] for k in runs.riders],
         "distant_bounds": [runs.output_names[k] for k in runs.distant],
@@ -136,9 +130,9 @@ def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:
 
 def runs_from_json(content: dict[str, Any]) -> TrainingRuns:
     """The runs of a file; raises ValueError where its tables do not fit together."""
-    inputs, names = inputs_from_json(content["inputs"]), tuple(names_from_json(content["output_names"]))
-    outcome_names = tuple(names_from_json(content["outcome_names"]))
-    x = numbers_from_json("x", content["x"], len(inputs))
+    inputs, names = storage.inputs_from_json(content["inputs"]), tuple(storage.names_from_json(content["output_names"]))
+    outcome_names = tuple(storage.names_from_json(content["outcome_names"]))
+    x = storage.numbers_from_json("x", content["x"], len(inputs))
     outcome, group = (column_from_json(key, content[key], len(x)).astype(np.int64) for key in ("outcome", "group"))
     if outcome.min() < 0 or outcome.max() >= len(outcome_names) or group.min() < 0:
         raise ValueError("outcome and group must be places from 0 on, one for each run")
@@ -194,7 +188,7 @@ def _table_from_json(name: str, rows: Any, shape: tuple[int, int], none: float) 
 
 
 def _table(name: str, rows: Any, shape: tuple[int, int]) -> Array:
-    table = numbers_from_json(name, rows, shape[1])
+    table = storage.numbers_from_json(name, rows, shape[1])
     if len(table) != shape[0]:
         raise ValueError(f"{name} has {len(table)} rows, but must have {shape[0]}")
     return table

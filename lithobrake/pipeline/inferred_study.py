@@ -9,15 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.analysis import (
-    LEVEL,
-    Observation,
-    Posterior,
-    beds_statement,
-    identifiability,
-    infer,
-    predictive_p_value,
-)
+from lithobrake import analysis
 from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
@@ -46,7 +38,7 @@ DRAWN = 2000
 OWN = "impact."
 
 
-def read_bounces(path: str | os.PathLike[str]) -> list[Observation]:
+def read_bounces(path: str | os.PathLike[str]) -> list[analysis.Observation]:
     """Read bounces, one a row, from a CSV file; an empty cell was not observed.
 
     Columns: outputs of the touchdown, `error:` and the name of one for its standard deviation, uncertain numbers of
@@ -76,7 +68,7 @@ def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
 
 def _bounce(
     path: str | os.PathLike[str], number: int, row: Mapping[str, str], factors: Mapping[str, float]
-) -> Observation:
+) -> analysis.Observation:
     given: dict[str, float] = {}
     for name, text in row.items():
         if name not in (OUTCOME, BED) and text.strip():
@@ -93,7 +85,7 @@ def _bounce(
     # Inputs of a study have dotted names, outputs of a touchdown plain ones.
     known = {name: value for name, value in given.items() if "." in name and not name.startswith(ERROR)}
     outputs = {name: value for name, value in given.items() if name not in known and not name.startswith(ERROR)}
-    return Observation(outputs, errors, known, outcome, (row.get(BED) or "").strip() or None)
+    return analysis.Observation(outputs, errors, known, outcome, (row.get(BED) or "").strip() or None)
 
 
 @dataclass(frozen=True)
@@ -174,7 +166,7 @@ class InferredStudy:
 
     def plan(self) -> ExpectedInference:
         """What bounces of which all outputs are seen would say."""
-        found = identifiability(self.model, self.outputs, own=self.of_each_bounce, bounds=self.bounds, seed=1)
+        found = analysis.identifiability(self.model, self.outputs, own=self.of_each_bounce, bounds=self.bounds, seed=1)
         inputs = {
             name: ExpectedInput({str(count): left for count, left in one.sd_ratio.items()}, one.bounces)
             for name, one in found.items()
@@ -192,13 +184,13 @@ class InferredStudy:
             )
         # An input that one bounce leaves out is unknown of that bounce, so it is inferred for all.
         anew = [name for name in self.of_each_bounce if any(name not in one.known for one in seen)]
-        found = infer(self.model, seen, own=anew, bounds=self.bounds, seed=1)
+        found = analysis.infer(self.model, seen, own=anew, bounds=self.bounds, seed=1)
         return self._content(found, seen)
 
-    def _content(self, found: Posterior, seen: list[Observation]) -> dict[str, Any]:
+    def _content(self, found: analysis.Posterior, seen: list[analysis.Observation]) -> dict[str, Any]:
         units, points = input_units(), found.sample(DRAWN, seed=1)
         surprise = [
-            predictive_p_value(self.model, found, one, bounds=self.bounds, seed=1) if one.outputs else None
+            analysis.predictive_p_value(self.model, found, one, bounds=self.bounds, seed=1) if one.outputs else None
             for one in seen
         ]
         return {
@@ -207,8 +199,8 @@ class InferredStudy:
                 for one in seen
             ],
             "statement": found.statement(),
-            "beds": beds_statement(self.model, seen),
-            "level": LEVEL,
+            "beds": analysis.beds_statement(self.model, seen),
+            "level": analysis.LEVEL,
             "effective_count": found.effective_count,
             "is_reliable": found.is_reliable,
             "log_evidence": found.log_evidence,

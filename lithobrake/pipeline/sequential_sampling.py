@@ -8,14 +8,8 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
+from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.answer.run_answers import (
-    ANSWERED_AFTER,
-    answer_words,
-    answers_of_design,
-    failing_runs,
-    read_shares,
-)
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outdated_files import stage_keys
@@ -40,10 +34,10 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:
         return {}
-    shares = read_shares(folder)
+    shares = run_answers.read_shares(folder)
     # The file is of the number of runs that there were, which enters its key; two is the least that a study has.
     made_for = study.with_run_count(max(len(shares), 2))
-    if stage_keys(made_for)[ANSWERED_AFTER] != key:
+    if stage_keys(made_for)[run_answers.ANSWERED_AFTER] != key:
         return {}
     return shares if study.design.half_width_of is None else _failing_shares(study, folder)
 
@@ -71,7 +65,7 @@ def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
         # More runs have been made since, which have not flown.
         return {}
     state = LimitState.of(study.limit_states.conditions()[str(study.design.half_width_of)])
-    return dict(zip(runs.keys, failing_runs(state, runs, fates).tolist(), strict=True))
+    return dict(zip(runs.keys, run_answers.failing_runs(state, runs, fates).tolist(), strict=True))
 
 
 def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
@@ -84,7 +78,7 @@ def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
     known, flown = known_runs(study, folder), flown_shares(study, folder)
     # More than one step where a folder has runs of a larger count already.
     while known.keys() & flown.keys() >= set(design.keys):
-        values, bed = answers_of_design(design, known, flown)
+        values, bed = run_answers.answers_of_design(design, known, flown)
         count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
         if count is None:
             break
@@ -110,8 +104,8 @@ def width_sentence(job: Job) -> str:
     width, design = _width(job), job.study.design
     known = "not known within any bound yet" if width is None else f"known to +- {100 * width:.2g} points"
     return (
-        f"{answer_words(job.study)} is {known} from {design.run_count} runs on {job.study.bed_count} beds, and "
-        f"design.half_width asks for +- {100 * (design.half_width or 0.0):.2g}"
+        f"{run_answers.answer_words(job.study)} is {known} from {design.run_count} runs on {job.study.bed_count} beds, "
+        f"and design.half_width asks for +- {100 * (design.half_width or 0.0):.2g}"
     )
 
 
@@ -126,7 +120,7 @@ def _width(job: Job) -> float | None:
     from lithobrake.analysis import half_width_of
 
     known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
-    return half_width_of(*answers_of_design(job.design, known, flown))
+    return half_width_of(*run_answers.answers_of_design(job.design, known, flown))
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:

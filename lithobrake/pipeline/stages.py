@@ -10,67 +10,23 @@ from lithobrake.pipeline.answer.study_summary import summary_dependencies, write
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.design import SIDE_DESIGNS, beds_of_runs
-from lithobrake.pipeline.first_bounces.bounces_to_rest import (
-    aim_dependencies,
-    aim_files,
-    follow_aims,
-    follow_samples,
-    rest_dependencies,
-    rest_files,
-)
-from lithobrake.pipeline.first_bounces.emulator import (
-    EMULATOR_FILE,
-    EXPLORER_FILE,
-    draw_emulator_samples,
-    make_emulator,
-)
+from lithobrake.pipeline.first_bounces import bounces_to_rest, emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job, Stage, same_files
+from lithobrake.pipeline.journeys import emulated_journeys
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
-from lithobrake.pipeline.journeys.emulated_journeys import (
-    EMULATED_FILES,
-    emulated_dependencies,
-    follow_options,
-    make_emulated,
-    option_dependencies,
-    option_files,
-)
+from lithobrake.pipeline.paper import expansions
 from lithobrake.pipeline.paper.expansion_journeys import follow_expansion_samples
 from lithobrake.pipeline.paper.expansion_samples import sample_expansion
-from lithobrake.pipeline.paper.expansions import (
-    fit_refined,
-    fit_screening,
-    make_refined_runs,
-    make_screening_runs,
-    make_test_runs,
-    score_all,
-)
 from lithobrake.pipeline.paper.paper_summary import write_summary
 from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
+from lithobrake.pipeline.runs import landings
 from lithobrake.pipeline.runs.beds import pour_beds
-from lithobrake.pipeline.runs.landings import (
-    land_once,
-    land_tellingly,
-    landing_dependencies,
-    landing_files,
-    make_drawn_runs,
-    make_side_runs,
-    telling_files,
-)
 from lithobrake.pipeline.runs.run_table import file_of
 from lithobrake.pipeline.sky import look_up, sky_dependencies, sky_files
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import OWN_KEYS
-from lithobrake.vocabulary.study_files import (
-    BODY_FILE,
-    FLIGHT_CHECKS_FILE,
-    REFINED_FILE,
-    SAMPLE_FLIGHTS_FILE,
-    SAMPLES_FILE,
-    SCORES_FILE,
-    SCREENING_FILE,
-    SUMMARY_FILE,
-)
+from lithobrake.vocabulary import study_files
 
 # Beds and landings are known by the hash of the engine and of all that they follow from; this is how they are chosen
 # and written down.
@@ -79,10 +35,14 @@ RUN_PARTS = (
     "chaos", "vocabulary/quantities.py", "geometry/attitude.py",
 )  # fmt: skip
 BED = Stage("bed", "bed", bed_files, pour_beds, dependencies=bed_dependencies)
-FIRST_LANDING = Stage("landing", "preview landing", landing_files, land_once, ("bed",), landing_dependencies)
+FIRST_LANDING = Stage(
+    "landing", "preview landing", landings.landing_files, landings.land_once, ("bed",), landings.landing_dependencies
+)
 # Without parts of its own: the choice of the run is made by code that is among those of the runs.
-TELLING_LANDING = Stage("telling_landing", "representative landing", telling_files, land_tellingly, ("runs",))
-FLIGHT_FILES = (SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE, BODY_FILE, PATHS_FILE)
+TELLING_LANDING = Stage(
+    "telling_landing", "representative landing", landings.telling_files, landings.land_tellingly, ("runs",)
+)
+FLIGHT_FILES = (study_files.SAMPLE_FLIGHTS_FILE, study_files.FLIGHT_CHECKS_FILE, study_files.BODY_FILE, PATHS_FILE)
 FLIGHT_PARTS = (
     "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
     "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
@@ -104,11 +64,32 @@ EMULATOR_PARTS = (
     "analysis", "results/explorer_tables.py", "vocabulary/quantities.py",
 )  # fmt: skip
 EMULATOR = Stage(
-    "emulator", "emulator", same_files(EMULATOR_FILE, EXPLORER_FILE), make_emulator, ("runs",), parts=EMULATOR_PARTS
+    "emulator",
+    "emulator",
+    same_files(emulator.EMULATOR_FILE, emulator.EXPLORER_FILE),
+    emulator.make_emulator,
+    ("runs",),
+    parts=EMULATOR_PARTS,
 )
 REST_PARTS = ("pipeline/first_bounces", *FLIGHT_PARTS)
-REST = Stage("rest", "bounces until rest", rest_files, follow_samples, ("fly",), rest_dependencies, REST_PARTS)
-AIM = Stage("aim", "aims", aim_files, follow_aims, ("fly",), aim_dependencies, REST_PARTS)
+REST = Stage(
+    "rest",
+    "bounces until rest",
+    bounces_to_rest.rest_files,
+    bounces_to_rest.follow_samples,
+    ("fly",),
+    bounces_to_rest.rest_dependencies,
+    REST_PARTS,
+)
+AIM = Stage(
+    "aim",
+    "aims",
+    bounces_to_rest.aim_files,
+    bounces_to_rest.follow_aims,
+    ("fly",),
+    bounces_to_rest.aim_dependencies,
+    REST_PARTS,
+)
 JOURNEY_PARTS = (
     "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/attitude.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
@@ -116,14 +97,20 @@ EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS
 EMULATED = Stage(
     "emulated",
     "journeys by the emulator",
-    same_files(*EMULATED_FILES),
-    make_emulated,
+    same_files(*emulated_journeys.EMULATED_FILES),
+    emulated_journeys.make_emulated,
     ("runs",),
-    emulated_dependencies,
+    emulated_journeys.emulated_dependencies,
     EMULATED_PARTS,
 )
 OPTIONS = Stage(
-    "aim", "delivery options", option_files, follow_options, ("emulated",), option_dependencies, EMULATED_PARTS
+    "aim",
+    "delivery options",
+    emulated_journeys.option_files,
+    emulated_journeys.follow_options,
+    ("emulated",),
+    emulated_journeys.option_dependencies,
+    EMULATED_PARTS,
 )
 SKY_PARTS = ("pipeline/sky.py", "pipeline/site.py", *FLIGHT_PARTS)
 SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",), sky_dependencies, SKY_PARTS)
@@ -135,7 +122,7 @@ ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, 
 JOURNEY_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(SUMMARY_FILE),
+    same_files(study_files.SUMMARY_FILE),
     write_journey_summary,
     ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
     summary_dependencies,
@@ -144,16 +131,32 @@ JOURNEY_SUMMARY = Stage(
 SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(SUMMARY_FILE),
+    same_files(study_files.SUMMARY_FILE),
     write_drawn_summary,
     ("landing", "telling_landing", "estimate", "rest", "aim"),
     summary_dependencies,
     ANSWER_PARTS,
 )
 PAPER_PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
-MEDIAN_LANDING = Stage("landing", "median landing", landing_files, land_once, ("bed",), landing_dependencies)
-REFINE = Stage("refine", "refinement", same_files(REFINED_FILE), fit_refined, ("refined_runs",), parts=PAPER_PARTS)
-TEST = Stage("test", "scores", same_files(SCORES_FILE), score_all, ("refine", "test_runs"), parts=PAPER_PARTS)
+MEDIAN_LANDING = Stage(
+    "landing", "median landing", landings.landing_files, landings.land_once, ("bed",), landings.landing_dependencies
+)
+REFINE = Stage(
+    "refine",
+    "refinement",
+    same_files(study_files.REFINED_FILE),
+    expansions.fit_refined,
+    ("refined_runs",),
+    parts=PAPER_PARTS,
+)
+TEST = Stage(
+    "test",
+    "scores",
+    same_files(study_files.SCORES_FILE),
+    expansions.score_all,
+    ("refine", "test_runs"),
+    parts=PAPER_PARTS,
+)
 FLY_EXPANSION_SAMPLES = Stage(
     "fly",
     "flights",
@@ -166,16 +169,16 @@ FLY_EXPANSION_SAMPLES = Stage(
 FOLLOW_EXPANSION_SAMPLES = Stage(
     "rest",
     "bounces until rest",
-    rest_files,
+    bounces_to_rest.rest_files,
     follow_expansion_samples,
     ("fly",),
-    rest_dependencies,
+    bounces_to_rest.rest_dependencies,
     (*PAPER_PARTS, *REST_PARTS),
 )
 PAPER_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(SUMMARY_FILE),
+    same_files(study_files.SUMMARY_FILE),
     write_summary,
     ("landing", "rest"),
     summary_dependencies,
@@ -193,13 +196,13 @@ def _side_files(study: Study) -> list[str]:
 
 
 DRAWN_RUNS = Stage(
-    "runs", "runs", same_files(file_of("drawn")), make_drawn_runs, ("bed",), drawn_dependencies, RUN_PARTS
+    "runs", "runs", same_files(file_of("drawn")), landings.make_drawn_runs, ("bed",), drawn_dependencies, RUN_PARTS
 )
 SIDE_RUNS = Stage(
     "side_runs",
     "side runs",
     _side_files,
-    make_side_runs,
+    landings.make_side_runs,
     ("runs",),
     lambda study: [study.design.side_runs, study.design.twin_shift],
     RUN_PARTS,
@@ -213,8 +216,8 @@ def sample_dependencies(study: Study) -> Any:
 SAMPLE = Stage(
     "sample",
     "samples",
-    same_files(SAMPLES_FILE),
-    draw_emulator_samples,
+    same_files(study_files.SAMPLES_FILE),
+    emulator.draw_emulator_samples,
     ("emulator",),
     sample_dependencies,
     EMULATOR_PARTS,
@@ -242,7 +245,7 @@ def _delivery(study: Study) -> list[Any]:
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, BODY_FILE, PATHS_FILE),
+    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, study_files.BODY_FILE, PATHS_FILE),
     make_journeys,
     ("bed",),
     journey_dependencies,
@@ -264,19 +267,25 @@ SCREENING_RUNS = Stage(
     "screening_runs",
     "screening runs",
     same_files(file_of("screening")),
-    make_screening_runs,
+    expansions.make_screening_runs,
     ("bed",),
     _screening_dependencies,
     PAPER_PARTS,
 )
 SCREEN = Stage(
-    "screen", "screening", same_files(SCREENING_FILE), fit_screening, ("screening_runs",), _design("fit"), PAPER_PARTS
+    "screen",
+    "screening",
+    same_files(study_files.SCREENING_FILE),
+    expansions.fit_screening,
+    ("screening_runs",),
+    _design("fit"),
+    PAPER_PARTS,
 )
 REFINED_RUNS = Stage(
     "refined_runs",
     "refined runs",
     same_files(file_of("refined")),
-    make_refined_runs,
+    expansions.make_refined_runs,
     ("screen",),
     _design("refined_level", "refined_count", "refined_degree", "kept_share", "kept_outputs"),
     PAPER_PARTS,
@@ -285,7 +294,7 @@ TEST_RUNS = Stage(
     "test_runs",
     "test runs",
     same_files(file_of("test_kept"), file_of("test_all")),
-    make_test_runs,
+    expansions.make_test_runs,
     ("refined_runs",),
     _design("test_count"),
     PAPER_PARTS,
@@ -293,7 +302,7 @@ TEST_RUNS = Stage(
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
-    same_files(SAMPLES_FILE, EXPLORER_FILE),
+    same_files(study_files.SAMPLES_FILE, emulator.EXPLORER_FILE),
     sample_expansion,
     ("refine", "test"),
     sample_dependencies,

@@ -8,44 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
-from lithobrake.results.dispersion import (
-    FlightResults,
-    ImpactNumbers,
-    LandingEllipses,
-    RestRegion,
-    RestResults,
-    WithoutScatter,
-)
-from lithobrake.results.journey_results import (
-    DeliveryResults,
-    EmulatedJourneys,
-    JourneyRest,
-    SideResults,
-    SkyResults,
-    SoilResults,
-)
-from lithobrake.results.model_results import (
-    DesignCounts,
-    EmulatorResults,
-    ExpansionResults,
-    ExpansionSamples,
-    MonteCarlo,
-    NodeCounts,
-    OutputErrors,
-)
+from lithobrake.results import dispersion, journey_results, model_results, run_results
 from lithobrake.results.questions import AimResults, LimitStateResult
-from lithobrake.results.run_results import (
-    CountedShare,
-    LandingShares,
-    OutputDirection,
-    OutputEstimate,
-    OutputRange,
-    ReturnFraction,
-    RunResults,
-    RunShares,
-    SampleShares,
-    VarianceParts,
-)
 from lithobrake.results.site_results import BedNumbers, SiteResults
 from lithobrake.results.study_files import json_values, results_in
 from lithobrake.vocabulary.plain_text import short_repr
@@ -55,13 +19,13 @@ from lithobrake.vocabulary.plain_text import short_repr
 class Estimates:
     """What the runs of a drawn study say, as estimates.json holds it."""
 
-    returns: ReturnFraction
-    shares: RunShares
-    flights: ImpactNumbers
-    variance_shares: Mapping[str, VarianceParts | None]
-    outputs: Mapping[str, OutputEstimate | OutputDirection]
-    runs: RunResults
-    sides: Mapping[str, SideResults]
+    returns: run_results.ReturnFraction
+    shares: run_results.RunShares
+    flights: dispersion.ImpactNumbers
+    variance_shares: Mapping[str, run_results.VarianceParts | None]
+    outputs: Mapping[str, run_results.OutputEstimate | run_results.OutputDirection]
+    runs: run_results.RunResults
+    sides: Mapping[str, journey_results.SideResults]
     __repr__ = short_repr
 
 
@@ -72,66 +36,66 @@ class DrawnResults:
     units: Mapping[str, str]
     """unit of each output of the emulator"""
     beds: tuple[BedNumbers, ...]
-    returns: ReturnFraction
-    shares: LandingShares
-    flights: FlightResults
-    variance_shares: Mapping[str, VarianceParts | None]
-    outputs: Mapping[str, OutputEstimate | OutputDirection]
-    runs: RunResults
-    outputs_of_runs: Mapping[str, OutputRange]
+    returns: run_results.ReturnFraction
+    shares: run_results.LandingShares
+    flights: dispersion.FlightResults
+    variance_shares: Mapping[str, run_results.VarianceParts | None]
+    outputs: Mapping[str, run_results.OutputEstimate | run_results.OutputDirection]
+    runs: run_results.RunResults
+    outputs_of_runs: Mapping[str, run_results.OutputRange]
     site: SiteResults
-    monte_carlo: MonteCarlo | None
+    monte_carlo: model_results.MonteCarlo | None
     """samples of the emulator; null with [journey]"""
-    ellipses: LandingEllipses | None
-    without_scatter: WithoutScatter | None
+    ellipses: dispersion.LandingEllipses | None
+    without_scatter: dispersion.WithoutScatter | None
     """null: samples of an emulator have no expansion alone"""
-    rest: RestResults | JourneyRest
+    rest: dispersion.RestResults | journey_results.JourneyRest
     """with [journey]: where, when and how the landers come to rest; otherwise trajectories of samples of the
     emulator"""
     limit_states: Mapping[str, LimitStateResult]
     """each limit state of the study file; empty if it has none"""
     aim: AimResults | None
     """delivery options; null where the study file has none"""
-    emulator: EmulatorResults | None
+    emulator: model_results.EmulatorResults | None
     """null with [journey]"""
     answer: tuple[str, ...]
     """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the main numbers, in sentences"""
-    sides: Mapping[str, SideResults]
+    sides: Mapping[str, journey_results.SideResults]
     """by the side of the lander that faces the ground at the first touchdown; empty for a sphere, a cube, and if
     attitudes are not known"""
-    end_variance_shares: Mapping[str, VarianceParts | None]
+    end_variance_shares: Mapping[str, run_results.VarianceParts | None]
     """with [journey]: parts of the variance of the ends by inputs of the first touchdown: at_rest (0 or 1), and time_s
     and distance_m of the landers at rest; empty without [journey]"""
-    ends: Mapping[str, CountedShare] | None = None
+    ends: Mapping[str, run_results.CountedShare] | None = None
     """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
-    delivery: DeliveryResults | None = None
+    delivery: journey_results.DeliveryResults | None = None
     """with [journey]: place and state of the first impacts"""
     journeys: int | None = None
     """with [journey]: how many were followed"""
     touchdowns: int | None = None
     """with [journey]: landings that were simulated for them"""
-    sky: Mapping[str, SkyResults]
+    sky: Mapping[str, journey_results.SkyResults]
     """visibility of sun, earth and orbiter for the landers at rest; empty without [sky]"""
-    emulated: EmulatedJourneys | None = None
+    emulated: journey_results.EmulatedJourneys | None = None
     """with [journey]: landers that the emulator of the touchdowns followed"""
-    soils: Mapping[str, SoilResults]
+    soils: Mapping[str, journey_results.SoilResults]
     """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
-    regions: tuple[RestRegion, ...] = ()
+    regions: tuple[dispersion.RestRegion, ...] = ()
     """smallest regions that contain 50 and 95 % of the next impacts of the samples; empty with [journey], and if there
     are too few"""
     __repr__ = short_repr
 
     @property
-    def spreads(self) -> dict[str, OutputEstimate]:
+    def spreads(self) -> dict[str, run_results.OutputEstimate]:
         """The outputs with mean and quantiles."""
-        return {name: one for name, one in self.outputs.items() if isinstance(one, OutputEstimate)}
+        return {name: one for name, one in self.outputs.items() if isinstance(one, run_results.OutputEstimate)}
 
     @property
-    def directions(self) -> dict[str, OutputDirection]:
+    def directions(self) -> dict[str, run_results.OutputDirection]:
         """The outputs with neither beginning nor end."""
-        return {name: one for name, one in self.outputs.items() if isinstance(one, OutputDirection)}
+        return {name: one for name, one in self.outputs.items() if isinstance(one, run_results.OutputDirection)}
 
 
 @dataclass(frozen=True)
@@ -141,35 +105,35 @@ class PaperResults:
     units: Mapping[str, str]
     """unit of each output of the expansions"""
     beds: tuple[BedNumbers, ...]
-    node_counts: NodeCounts
-    designs: Mapping[str, DesignCounts]
-    outputs_of_runs: Mapping[str, OutputRange]
-    screening: ExpansionResults
+    node_counts: model_results.NodeCounts
+    designs: Mapping[str, model_results.DesignCounts]
+    outputs_of_runs: Mapping[str, run_results.OutputRange]
+    screening: model_results.ExpansionResults
     """the expansion in all inputs"""
-    refined: ExpansionResults
+    refined: model_results.ExpansionResults
     """the expansion in the kept inputs"""
     kept_inputs: tuple[str, ...]
     """inputs that the refined design varies, by dotted key"""
     kept_share: Mapping[str, float]
     """by output: share of the variance of the screening expansion that the kept inputs explain together"""
-    scores: Mapping[str, Mapping[str, OutputErrors]]
+    scores: Mapping[str, Mapping[str, model_results.OutputErrors]]
     """errors of the expansions by set of runs and output; scores.json also has those of single runs"""
-    monte_carlo: ExpansionSamples
+    monte_carlo: model_results.ExpansionSamples
     site: SiteResults
-    variance_shares: Mapping[str, VarianceParts | None]
+    variance_shares: Mapping[str, run_results.VarianceParts | None]
     """null: one bed, one impact point and one attitude have no parts"""
-    shares: SampleShares
-    returns: ReturnFraction
-    flights: FlightResults
-    ellipses: LandingEllipses | None
-    without_scatter: WithoutScatter | None
+    shares: run_results.SampleShares
+    returns: run_results.ReturnFraction
+    flights: dispersion.FlightResults
+    ellipses: dispersion.LandingEllipses | None
+    without_scatter: dispersion.WithoutScatter | None
     """null where the samples have no scatter from run to run"""
-    rest: RestResults
+    rest: dispersion.RestResults
     answer: tuple[str, ...]
     """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the main numbers, in sentences"""
-    regions: tuple[RestRegion, ...] = ()
+    regions: tuple[dispersion.RestRegion, ...] = ()
     """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty for few"""
     __repr__ = short_repr
 

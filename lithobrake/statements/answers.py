@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.results.journey_results import JourneyRest
+from lithobrake.statements import labels, touchdowns
 from lithobrake.statements.captions import place_words
 from lithobrake.statements.ends import (
     Scope,
@@ -21,26 +22,7 @@ from lithobrake.statements.ends import (
 from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
 from lithobrake.statements.expansion import error_words, noise, telling_sentences
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
-from lithobrake.statements.labels import (
-    END_WORDS,
-    GROUND_WORDS,
-    area,
-    bare_share,
-    bracket,
-    extent,
-    input_words,
-    quantile,
-    share_interval,
-)
 from lithobrake.statements.limits import rare_warnings
-from lithobrake.statements.touchdowns import (
-    BAND,
-    CENTIMETRES,
-    left_out,
-    output_spread,
-    output_variance,
-    touchdown_outcomes,
-)
 from lithobrake.vocabulary.number_words import LEVEL, fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus, SampleOutcome
 
@@ -74,9 +56,9 @@ def landing_headline(results: "DrawnResults") -> list[str]:
     """The answer, and the most informative numbers behind it."""
     emulator, speed, shares = results.emulator, results.spreads.get("speed_out"), results.variance_shares["speed_out"]
     behind = [
-        touchdown_outcomes(results.runs.outcomes, results.runs.count, "landings"),
-        *([output_spread("speed_out", speed)] if speed else []),
-        *([output_variance("speed_out", shares)] if shares else []),
+        touchdowns.touchdown_outcomes(results.runs.outcomes, results.runs.count, "landings"),
+        *([touchdowns.output_spread("speed_out", speed)] if speed else []),
+        *([touchdowns.output_variance("speed_out", shares)] if shares else []),
         *([emulator.statement] if emulator else []),
         *([f"{emulator.warning}."] if emulator and emulator.warning else []),
     ]
@@ -160,8 +142,8 @@ def landing_tiles(data: "DrawnPage") -> list[Tile]:
     found = _at_rest(data)
     if "speed_out" in results.spreads:
         median = results.spreads["speed_out"].quantiles["0.5"]
-        shown = median.on_scale(lambda value: CENTIMETRES * value)
-        words = f"rebound speed, median of those that leave{bracket(shown.lower, shown.upper, level=data.level)}"
+        shown = median.on_scale(lambda value: touchdowns.CENTIMETRES * value)
+        words = f"rebound speed, median of those that leave{labels.bracket(shown.lower, shown.upper, level=data.level)}"
         found.append(Tile(number(shown.value), "cm/s", words))
     parts = results.variance_shares["speed_out"]
     if parts is not None:
@@ -169,12 +151,12 @@ def landing_tiles(data: "DrawnPage") -> list[Tile]:
         is_found = value[0].isdigit()
         words = "at least of the variance of the rebound speed is explained by soil"
         words = words if is_found else "effect of the soil on the variance of the rebound speed"
-        interval = share_interval(parts.soil)
+        interval = labels.share_interval(parts.soil)
         found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval})"))
     band = data.emulator.scores.outputs.get("speed_out")
     if band:
-        held = f"within the {percent(BAND)} bands of the emulator"
-        words = f"of the rebound speeds on {left_out(results.runs.beds)} lay {held}"
+        held = f"within the {percent(touchdowns.BAND)} bands of the emulator"
+        words = f"of the rebound speeds on {touchdowns.left_out(results.runs.beds)} lay {held}"
         found.append(Tile(percent(band.band_90).removesuffix(" %"), "%", words))
     return found
 
@@ -186,7 +168,11 @@ def _at_rest(data: "DrawnPage") -> list[Tile]:
         share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED].share).partition(" %")
         unknown = table.outcomes[JourneyStatus.OUTSIDE].share.value
         lost = f"; {unknown_outcome(unknown)}" if unknown > 0.0 else ""
-        return [Tile(share, "%", f"at rest within {limit}, bounce after bounce on {GROUND_WORDS[ground]}{ends}{lost}")]
+        return [
+            Tile(
+                share, "%", f"at rest within {limit}, bounce after bounce on {labels.GROUND_WORDS[ground]}{ends}{lost}"
+            )
+        ]
     return []
 
 
@@ -194,10 +180,12 @@ def sample_tiles(data: "PaperPage", telling: "TellingNumbers") -> list[Tile]:
     """The rebound speed of an expansion, how touchdowns ended, its dominant input, and how accurate it is."""
     main, score, speed = telling.main_input, telling.score, telling.speed
     index = (
-        f"{input_words(main.name)}: largest total index of the rebound speed in the refined expansion"
-        f"{bracket(*main.interval, fixed, level=PAPER_LEVEL)}, without truncation error{noise(main.noise_share)}"
+        f"{labels.input_words(main.name)}: largest total index of the rebound speed in the refined expansion"
+        f"{labels.bracket(*main.interval, fixed, level=PAPER_LEVEL)}, without truncation error{noise(main.noise_share)}"
     )
-    accuracy = f"rebound speed, new runs, all inputs varied{bracket(*score.q2_interval, fixed, level=PAPER_LEVEL)}"
+    accuracy = (
+        f"rebound speed, new runs, all inputs varied{labels.bracket(*score.q2_interval, fixed, level=PAPER_LEVEL)}"
+    )
     beside = f"; {telling.failed} more runs failed" if telling.failed else ""
     found = [
         Tile(str(telling.left_count), f"of {telling.ended.total()}", f"touchdowns left the surface{beside}"),
@@ -206,7 +194,9 @@ def sample_tiles(data: "PaperPage", telling: "TellingNumbers") -> list[Tile]:
     ]
     if not speed:
         return found
-    low, middle, high = (number(CENTIMETRES * speed[f"quantile_{level}"]) for level in ("0.05", "0.5", "0.95"))
+    low, middle, high = (
+        number(touchdowns.CENTIMETRES * speed[f"quantile_{level}"]) for level in ("0.05", "0.5", "0.95")
+    )
     return [Tile(middle, "cm/s", f"rebound speed, median; 5th to 95th percentile {low} to {high}"), *found]
 
 
@@ -227,19 +217,19 @@ def journey_tiles(data: "JourneyPage") -> list[Tile]:
 
 
 def _region(one: "RestRegion") -> Tile:
-    words = f"smallest region with {percent(one.share)} of those at rest; {extent(one)}"
-    return Tile(area(one.area_m2).removesuffix(" m2"), "m²", words)
+    words = f"smallest region with {percent(one.share)} of those at rest; {labels.extent(one)}"
+    return Tile(labels.area(one.area_m2).removesuffix(" m2"), "m²", words)
 
 
 def _end(name: str, one: "CountedShare", count: int) -> Tile:
-    interval = share_interval(one.share)
-    words = f"{END_WORDS[name]}, {one.count} of {count}" + (f" ({interval})" if interval else "")
+    interval = labels.share_interval(one.share)
+    words = f"{labels.END_WORDS[name]}, {one.count} of {count}" + (f" ({interval})" if interval else "")
     # An end that did not occur has no colour.
-    return Tile(bare_share(one.share), "%", words, name if one.count else "")
+    return Tile(labels.bare_share(one.share), "%", words, name if one.count else "")
 
 
 def _quantile(found: "RestQuantiles", unit: str, words: str, size: float = 1.0) -> Tile:
     """A median with its interval, and the 95th percentile."""
-    value, _, ends = quantile(found.median, size).partition(" ")
-    most = quantile(found.q95, size).partition(" ")[0]
+    value, _, ends = labels.quantile(found.median, size).partition(" ")
+    most = labels.quantile(found.q95, size).partition(" ")[0]
     return Tile(value, unit, f"{words} {ends}; 95 % within {most} {unit}".replace(" ;", ";"))

@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING
 
 from lithobrake.results.model_results import ExpansionResults, OutputErrors
 from lithobrake.results.summary import PaperResults
+from lithobrake.statements import touchdowns
 from lithobrake.statements.labels import PAPER_OUTPUTS, bracket, input_words, output
-from lithobrake.statements.touchdowns import (
-    CENTIMETRES,
-    leaving_samples,
-    none_leaves,
-    rebound_speed,
-    touchdown_outcomes,
-)
 from lithobrake.vocabulary.number_words import (
     as_sentence,
     at_level,
@@ -103,11 +97,11 @@ def telling_sentences(results: "PaperResults", *, has_scatter: bool) -> list[str
 
     telling = TellingNumbers.of(results)
     ended = dict(telling.ended) | ({"failed": telling.failed} if telling.failed else {})
-    said = [touchdown_outcomes(ended, telling.ended.total(), "touchdowns")]
+    said = [touchdowns.touchdown_outcomes(ended, telling.ended.total(), "touchdowns")]
     if telling.speed:
         of = "with run-to-run scatter" if has_scatter else "by the expansion alone, without scatter"
         shown = {level: telling.speed[level] for level in QUANTILES}
-        said.append(rebound_speed(f"the samples that leave the surface, {of}", shown))
+        said.append(touchdowns.rebound_speed(f"the samples that leave the surface, {of}", shown))
     return [*said, _largest_index(telling.main_input), _accuracy(telling.score)]
 
 
@@ -144,7 +138,7 @@ def _accuracy(score: "OutputErrors") -> str:
 
 def error_words(score: "OutputErrors") -> str:
     """The error of the rebound speed on new runs."""
-    error, spread = (number(CENTIMETRES * one, 2) for one in (score.rmse, score.std))
+    error, spread = (number(touchdowns.CENTIMETRES * one, 2) for one in (score.rmse, score.std))
     return f"error {error} cm/s at a spread of {spread} cm/s"
 
 
@@ -237,11 +231,11 @@ def samples(data: "PaperPage") -> str:
     table = data.results.monte_carlo
     total, leaving = table.sample_count, table.leaving_count
     if not leaving:
-        return none_leaves(total)
+        return touchdowns.none_leaves(total)
     speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
-    low, high = (number(CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
+    low, high = (number(touchdowns.CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
     least, most = (number(output("elevation_out").factor * angle[level]) for level in (QUANTILES[0], QUANTILES[2]))
     return (
-        f"{leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at {low} to "
-        f"{high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
+        f"{touchdowns.leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at {low} "
+        f"to {high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
     )

@@ -4,17 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from lithobrake.statements import labels
 from lithobrake.statements.ends import missing_landings
-from lithobrake.statements.labels import (
-    FAILED,
-    RUN_WORDS,
-    bracket,
-    input_words,
-    output,
-    output_words,
-    part_words,
-    spread,
-)
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
     counted,
@@ -52,24 +43,24 @@ def touchdown_outcomes(ended: Mapping[str, int], total: int, what: str) -> str:
     """How touchdowns ended; ended: those of each outcome; total: of all with an outcome; what: they are."""
     left, *others = TouchdownOutcome
     found = [f"{out_of(ended.get(left, 0), total, what)} {left.label}"]
-    found += [f"{ended[one]} {RUN_WORDS[one]}" for one in (*others, FAILED) if ended.get(one)]
+    found += [f"{ended[one]} {labels.RUN_WORDS[one]}" for one in (*others, labels.FAILED) if ended.get(one)]
     return f"{'; '.join(found)}."
 
 
 def rebound_speed(of: str, quantiles: Mapping[str, float], interval: str = "") -> str:
     """Median and middle nine tenths of the rebound speed [m/s]; interval: of the median, in brackets."""
     shown = [CENTIMETRES * one for one in quantiles.values()]
-    return spread(f"Rebound speed of {of}", shown, "cm/s", interval)
+    return labels.spread(f"Rebound speed of {of}", shown, "cm/s", interval)
 
 
 def output_spread(name: str, one: "OutputEstimate") -> str:
     """Median with its interval and middle nine tenths of an output over the landings that have it."""
-    shown, middle = output(name), one.quantiles["0.5"]
+    shown, middle = labels.output(name), one.quantiles["0.5"]
     unit, factor = ("cm/s", CENTIMETRES) if shown.unit == "m/s" else (shown.unit, shown.factor)
     ends = middle.on_scale(lambda value: value * factor)
     words = f"{shown.words[:1].upper()}{shown.words[1:]} of {one.of}"
     values = [found.value * factor for found in one.quantiles.values()]
-    return spread(words, values, unit, bracket(ends.lower, ends.upper, level=ends.level))
+    return labels.spread(words, values, unit, labels.bracket(ends.lower, ends.upper, level=ends.level))
 
 
 def runs(data: "RunsPage") -> str:
@@ -114,7 +105,7 @@ def variance_parts(what: str, parts: str) -> str:
 
 def output_variance(name: str, record: "VarianceParts") -> str:
     """What explains the variance of an output."""
-    whole = f"the {output_words(name)} over the input distributions of the study file"
+    whole = f"the {labels.output_words(name)} over the input distributions of the study file"
     return variance_parts(whole, all_parts(record))
 
 
@@ -126,7 +117,7 @@ def variance(data: "RunsPage") -> str:
     first, *others = records
     said = [output_variance(first, records[first])]
     if others:
-        soils = [f"{part(records[name].soil)} of the {output_words(name)}" for name in others]
+        soils = [f"{part(records[name].soil)} of the {labels.output_words(name)}" for name in others]
         said.append(f"Soil, at least: {listing(soils)}.")
     said.append(floor_words(records[first]))
     if all(record.chaos is None for record in records.values()):
@@ -149,7 +140,7 @@ def all_parts(record: "VarianceParts") -> str:
     found = []
     for name, one in record.parts.items():
         more = _main_input(record) if name == "soil" else ""
-        whose = part_words(record, name).replace(", chaos", " with chaos").replace(",", "")
+        whose = labels.part_words(record, name).replace(", chaos", " with chaos").replace(",", "")
         # What is not detected is not "at least" so much.
         found.append(f"{whose if one.value > 0.0 else NAMES.get(name, whose)} {part(one, more)}")
     return listing(found)
@@ -171,7 +162,7 @@ def _main_input(record: "VarianceParts") -> str:
     alone = {name: one.value for name, one in record.soil_by_input.items()}
     name = max(alone, key=lambda one: alone[one], default="")
     is_main = bool(name) and alone[name] > MAIN * record.soil.value and (record.soil_by_input[name].lower or 0.0) > 0.0
-    return f"; most of it {input_words(name)}" if is_main else ""
+    return f"; most of it {labels.input_words(name)}" if is_main else ""
 
 
 def left_out(bed_count: int) -> str:
@@ -184,7 +175,7 @@ def so_far(captured: "LandingFraction", speed: Estimate | None, returns: "Landin
     lines = [f"so far, from {captured.from_}:", f"  captured: {_with_reason(captured)}"]
     if speed is not None:
         mean = speed.on_scale(lambda value: CENTIMETRES * value)
-        interval = bracket(mean.lower, mean.upper, level=mean.level)
+        interval = labels.bracket(mean.lower, mean.upper, level=mean.level)
         lines.append(f"  mean rebound speed: {number(mean.value)} cm/s{interval}")
     return [*lines, f"  {NO_FLIGHTS}" if returns is None else f"  return fraction: {_with_reason(returns)}"]
 
@@ -219,7 +210,7 @@ def calibration(data: "DrawnPage") -> str:
     scores = data.emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}
     bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
-    shares = [f"{percent(share)} of {output_words(name)}" for name, share in held.items()]
+    shares = [f"{percent(share)} of {labels.output_words(name)}" for name, share in held.items()]
     said = [
         f"On {left_out(data.results.runs.beds)} the {percent(BAND)} bands contained {listing(shares)}.",
         f"For a calibrated emulator the histogram is flat; the grey band covers {percent(BAND)} of the sampling "
@@ -230,8 +221,8 @@ def calibration(data: "DrawnPage") -> str:
     ]
     lucky = {name: band_luck(sum(score.pit)) for name, score in scores.items()}
     for words, off in (
-        ("too narrow", [output_words(name) for name, share in held.items() if share < lucky[name][0]]),
-        ("too wide", [output_words(name) for name, share in held.items() if share > lucky[name][1]]),
+        ("too narrow", [labels.output_words(name) for name, share in held.items() if share < lucky[name][0]]),
+        ("too wide", [labels.output_words(name) for name, share in held.items() if share > lucky[name][1]]),
     ):
         if off:
             said.append(f"The bands of {listing(off)} are {words}, by more than chance explains.")

@@ -7,29 +7,11 @@ import shlex
 import shutil
 from collections.abc import Iterator
 
+from lithobrake.study import ground_checks, lander_checks
 from lithobrake.study.body_checks import body_problems, rotation_problems
 from lithobrake.study.delivery_checks import journey_problems
 from lithobrake.study.design_checks import design_problems
-from lithobrake.study.ground_checks import (
-    TWO_IMAGES,
-    boulder_problems,
-    boulder_width,
-    contact_problems,
-    size_problems,
-    slope_problems,
-    soil_problems,
-    widths_in_grains,
-)
 from lithobrake.study.ground_sections import Bell, Between, Constant, PowerLaw
-from lithobrake.study.lander_checks import (
-    NAME,
-    inertia_problems,
-    lander_radius,
-    main_radius,
-    mass_problems,
-    part_problems,
-    shape_problems,
-)
 from lithobrake.study.quantity import reach
 from lithobrake.study.question_checks import aim_problems
 from lithobrake.study.study import Study
@@ -53,7 +35,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _limit_state_problems(study)
     yield from aim_problems(study)
     yield from journey_problems(study)
-    yield from soil_problems(study)
+    yield from ground_checks.soil_problems(study)
     yield from _touchdown_problems(study)
     yield from rotation_problems(study)
     yield from body_problems(study)
@@ -67,15 +49,15 @@ def landing_problems(study: Study) -> Iterator[str]:
 
 def _arrival_problems(study: Study) -> Iterator[str]:
     yield from _shape_problems(study)
-    yield from inertia_problems(study.lander)
+    yield from lander_checks.inertia_problems(study.lander)
     yield from _grain_problems(study)
     yield from _place_problems(study)
 
 
 def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
-        yield from contact_problems(study)
-        yield from slope_problems(study)
+        yield from ground_checks.contact_problems(study)
+        yield from ground_checks.slope_problems(study)
     gravity = study.surface.gravity
     # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).
     if not isinstance(gravity, str):
@@ -97,7 +79,7 @@ def _grain_problems(study: Study) -> Iterator[str]:
         yield from _size_problems("bed.boulders.diameter", study.bed.boulders.diameter)
     largest = largest_diameter(study)
     repeats = study.bed.sides == "periodic"
-    least = widths_in_grains(study)[0] if repeats else BED_WIDTH_PER_GRAIN
+    least = ground_checks.widths_in_grains(study)[0] if repeats else BED_WIDTH_PER_GRAIN
     limit = min(study.bed.width) / least
     # A grain of exactly a third may not fail by the rounding of the division.
     if largest > limit * (1 + 1e-12):
@@ -159,7 +141,7 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
     """Names that no file or table can show, and a method that has no landings drawn from their law."""
     names = study.limit_states.conditions()
     for name in names:
-        if not re.fullmatch(NAME, name):
+        if not re.fullmatch(lander_checks.NAME, name):
             yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
     if names and study.design.method == "paper":
         yield (
@@ -171,12 +153,12 @@ def _limit_state_problems(study: Study) -> Iterator[str]:
 def _shape_problems(study: Study) -> Iterator[str]:
     """A lander without a shape or with parts that are none, too large for the bed, or that no body can be."""
     # Sizes and masses below are those of whole shapes: what is missing here would fail there in other words.
-    found = [*shape_problems("lander", study.lander), *part_problems(study.lander)]
+    found = [*lander_checks.shape_problems("lander", study.lander), *lander_checks.part_problems(study.lander)]
     yield from found
     if found:
         return
     try:
-        radius, found = lander_radius(study.lander), list(mass_problems(study.lander))
+        radius, found = lander_checks.lander_radius(study.lander), list(lander_checks.mass_problems(study.lander))
     except (ValueError, OSError) as error:
         meshes = [name for name, part in study.lander.part.items() if part.file is not None]
         yield f"lander.file{f', or that of lander.part.{meshes[0]}' if meshes else ''}: {error}"
@@ -184,8 +166,8 @@ def _shape_problems(study: Study) -> Iterator[str]:
     yield from found
     if found:
         return
-    yield from size_problems(study, radius)
-    yield from boulder_problems(study, largest_diameter(study), radius)
+    yield from ground_checks.size_problems(study, radius)
+    yield from ground_checks.boulder_problems(study, largest_diameter(study), radius)
     yield from _width_problems(study, radius)
 
 
@@ -194,14 +176,16 @@ def _width_problems(study: Study, radius: float) -> Iterator[str]:
     lander, width = study.lander, min(study.bed.width)
     mesh = f', or name the unit of lander.file (lander.unit is "{lander.unit}")'
     unit = mesh if lander.file else ", or mend the lengths of the lander, which are in m"
-    main = 2 * main_radius(lander)
+    main = 2 * lander_checks.main_radius(lander)
     least, why = BED_WIDTH_PER_LANDER * main, f"twice the largest diameter of the lander ({main:.3g} m)"
-    beside = widths_in_grains(study)[1] if study.bed.sides == "periodic" else 0.0
+    beside = ground_checks.widths_in_grains(study)[1] if study.bed.sides == "periodic" else 0.0
     images = 2 * radius + beside * largest_diameter(study)
     if images > least:
         parts = ", with its parts," if lander.part else ""
         reach = f"twice the {radius:.3g} m that the lander{parts} reaches from its centre of mass"
-        grains = f", and {beside:.3g} of the grains' largest diameters, {TWO_IMAGES}" if beside > 0.0 else ""
+        grains = (
+            f", and {beside:.3g} of the grains' largest diameters, {ground_checks.TWO_IMAGES}" if beside > 0.0 else ""
+        )
         least, why = images, f"{reach}{grains}"
     if width < least:
         yield (
@@ -212,10 +196,13 @@ def _width_problems(study: Study, radius: float) -> Iterator[str]:
 
 def narrowest_period(study: Study) -> float:
     """Least width [m] of ground that repeats, for the lander, the grains and the boulders of a study."""
-    radius, (per_grain, beside_lander) = lander_radius(study.lander), widths_in_grains(study)
+    radius, (per_grain, beside_lander) = (
+        lander_checks.lander_radius(study.lander),
+        ground_checks.widths_in_grains(study),
+    )
     largest = largest_diameter(study)
-    boulders = boulder_width(study, largest, radius)
-    main = BED_WIDTH_PER_LANDER * 2.0 * main_radius(study.lander)
+    boulders = ground_checks.boulder_width(study, largest, radius)
+    main = BED_WIDTH_PER_LANDER * 2.0 * lander_checks.main_radius(study.lander)
     return max(main, 2.0 * radius + beside_lander * largest, per_grain * largest, boulders)
 
 
@@ -256,7 +243,7 @@ def _solver_problems(study: Study) -> Iterator[str]:
         return
     for name in solver.inputs:
         # Names stand in figures and tables, where other characters have a meaning of their own.
-        if not re.fullmatch(NAME, name):
+        if not re.fullmatch(lander_checks.NAME, name):
             yield f"solver.inputs.{name} is no name; allowed: letters, digits, _ and -; rename it"
     yield from _solver_file_problems(study)
     if solver.command is None:

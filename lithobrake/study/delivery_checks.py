@@ -4,17 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from lithobrake.study.delivery_sections import (
-    ANY_HEADING,
-    FLOWN,
-    OWN_KEYS,
-    PLACE_KEYS,
-    SIDE,
-    SURFACE_KEYS,
-    DeliverySection,
-    Matrix,
-    ReleaseSection,
-)
+from lithobrake.study import delivery_sections
 from lithobrake.study.quantity import Uncertain
 from lithobrake.study.question_checks import sky_problems
 from lithobrake.study.study import Study
@@ -31,29 +21,29 @@ AIM = ("latitude_deg", "longitude_deg")
 ICRF = ("pole_right_ascension_deg", "pole_declination_deg", "meridian_deg")
 
 
-def covariance_problems(matrix: Matrix) -> Iterator[str]:
+def covariance_problems(matrix: delivery_sections.Matrix) -> Iterator[str]:
     """What is wrong with a matrix of six rows, after its name; the first thing alone."""
-    pairs = [(row, column) for row in range(SIDE) for column in range(row)]
-    wrong = [text for row in range(SIDE) if (text := _variance(matrix, row))]
+    pairs = [(row, column) for row in range(delivery_sections.SIDE) for column in range(row)]
+    wrong = [text for row in range(delivery_sections.SIDE) if (text := _variance(matrix, row))]
     wrong = wrong or [text for row, column in pairs if (text := _pair(matrix, row, column))]
     if wrong:
         yield wrong[0]
     # Entries that are off by ROUNDING move an eigenvalue by at most SIDE times that.
-    elif (smallest := _smallest(matrix)) < -SIDE * ROUNDING:
+    elif (smallest := _smallest(matrix)) < -delivery_sections.SIDE * ROUNDING:
         yield (
             f"has correlations whose matrix has the eigenvalue {smallest:.3g}; allowed: none below 0 (positive "
             "semi-definite); weaken correlations that contradict each other, or write more digits"
         )
 
 
-def _variance(matrix: Matrix, row: int) -> str | None:
+def _variance(matrix: delivery_sections.Matrix, row: int) -> str | None:
     variance = matrix[row][row]
     if variance >= 0.0:
         return None
     return f"has {variance:g} as the variance in row {row + 1}; allowed: at least 0; mend it"
 
 
-def _pair(matrix: Matrix, row: int, column: int) -> str | None:
+def _pair(matrix: delivery_sections.Matrix, row: int, column: int) -> str | None:
     one, other = matrix[row][column], matrix[column][row]
     size = math.sqrt(matrix[row][row] * matrix[column][column])
     where = f"row {row + 1}, column {column + 1}"
@@ -67,13 +57,13 @@ def _pair(matrix: Matrix, row: int, column: int) -> str | None:
     return None
 
 
-def _smallest(matrix: Matrix) -> float:
+def _smallest(matrix: delivery_sections.Matrix) -> float:
     """The smallest eigenvalue of its correlations; what has no variance is left out by being correlated with nothing"""
     import numpy as np
 
     # Of the correlations and not of the covariance: m2 and m2/s2 may differ by ten powers of ten, and no one tolerance
     # would suit both.
-    variances = np.array([matrix[row][row] for row in range(SIDE)])
+    variances = np.array([matrix[row][row] for row in range(delivery_sections.SIDE)])
     scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
     return float(np.linalg.eigvalsh(np.array(matrix) / np.outer(scale, scale))[0])
 
@@ -83,7 +73,7 @@ def delivery_problems(study: Study) -> Iterator[str]:
     if delivery is None:
         return
     yield from _double_problems(study, delivery)
-    given = [key for key in OWN_KEYS if getattr(delivery, key) is not None]
+    given = [key for key in delivery_sections.OWN_KEYS if getattr(delivery, key) is not None]
     if given and study.journey is None:
         yield f"delivery.{given[0]} goes with [journey], and there is none; add it, or leave the key out"
         return
@@ -102,16 +92,16 @@ def delivery_problems(study: Study) -> Iterator[str]:
             )
 
 
-def _double_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
+def _double_problems(study: Study, delivery: delivery_sections.DeliverySection) -> Iterator[str]:
     """Keys of [delivery] that stand with another value in the tables that they stand for."""
-    for key in SURFACE_KEYS:
-        part = "site" if key in PLACE_KEYS else "impact"
+    for key in delivery_sections.SURFACE_KEYS:
+        part = "site" if key in delivery_sections.PLACE_KEYS else "impact"
         value, other = getattr(delivery, key), getattr(getattr(study, part), key)
         if value is not None and value != other:
             yield f"delivery.{key} is {show(value)} and {part}.{key} {show(other)}; keep one of the two"
 
 
-def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
+def _correlation_problems(study: Study, delivery: delivery_sections.DeliverySection) -> Iterator[str]:
     """Correlations of what is not uncertain, that stand twice, or that contradict each other."""
     seen: set[frozenset[str]] = set()
     for one, other, _ in delivery.correlations or ():
@@ -133,10 +123,12 @@ def _correlation_problems(study: Study, delivery: DeliverySection) -> Iterator[s
 
 
 def _uncorrelated(study: Study, key: str) -> str | None:
-    if key not in SURFACE_KEYS:
-        allowed = ", ".join(SURFACE_KEYS)
-        return f"delivery.correlations names {show(key)}{closest(key, SURFACE_KEYS)}; allowed: {allowed}"
-    value = getattr(study.site if key in PLACE_KEYS else study.impact, key)
+    if key not in delivery_sections.SURFACE_KEYS:
+        allowed = ", ".join(delivery_sections.SURFACE_KEYS)
+        return (
+            f"delivery.correlations names {show(key)}{closest(key, delivery_sections.SURFACE_KEYS)}; allowed: {allowed}"
+        )
+    value = getattr(study.site if key in delivery_sections.PLACE_KEYS else study.impact, key)
     if isinstance(value, Uncertain):
         return None
     return (
@@ -145,14 +137,14 @@ def _uncorrelated(study: Study, key: str) -> str | None:
     )
 
 
-def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
+def _flown_problems(study: Study, delivery: delivery_sections.DeliverySection) -> Iterator[str]:
     name = "delivery.states" if delivery.states is not None else "[delivery.release]"
     if delivery.states is not None and delivery.release is not None:
         yield "delivery.states and [delivery.release] are both given; keep one"
-    for key in FLOWN:
-        part = "site" if key in PLACE_KEYS else "impact"
+    for key in delivery_sections.FLOWN:
+        part = "site" if key in delivery_sections.PLACE_KEYS else "impact"
         # A flown study has these where its file gives nothing.
-        if getattr(getattr(study, part), key) not in (None, 0.0, ANY_HEADING):
+        if getattr(getattr(study, part), key) not in (None, 0.0, delivery_sections.ANY_HEADING):
             yield f"{part}.{key} is given, and the flight from {name} tells it; leave it out"
     for key in AIM:
         value, is_given = getattr(study.site, key), key in study.site.model_fields_set
@@ -164,7 +156,7 @@ def _flown_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
     yield from _frame_problems(study, delivery, name)
 
 
-def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Iterator[str]:
+def _frame_problems(study: Study, delivery: delivery_sections.DeliverySection, name: str) -> Iterator[str]:
     if delivery.frame is None:
         yield f'delivery.frame is missing; allowed with {name}: "body_fixed" or "icrf"; write the axes of the states'
     lacking = [key for key in ICRF if getattr(study.site, key) is None]
@@ -193,7 +185,7 @@ def _frame_problems(study: Study, delivery: DeliverySection, name: str) -> Itera
         yield f"delivery.epoch {error}"
 
 
-def _state_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
+def _state_problems(study: Study, delivery: delivery_sections.DeliverySection) -> Iterator[str]:
     """States that cannot be read, or are too few, and a spread that is none."""
     if delivery.release is not None:
         yield from _release_problems(delivery.release)
@@ -213,7 +205,7 @@ def _state_problems(study: Study, delivery: DeliverySection) -> Iterator[str]:
         )
 
 
-def _release_problems(release: ReleaseSection) -> Iterator[str]:
+def _release_problems(release: delivery_sections.ReleaseSection) -> Iterator[str]:
     spreads = [key for key in ("position_std", "velocity_std") if getattr(release, key) is not None]
     if release.covariance is not None and spreads:
         yield f"delivery.release has covariance and {spreads[0]}; keep one of the two"
@@ -228,7 +220,7 @@ def correlated_keys(study: "Study") -> tuple[str, ...]:
     """The keys of [delivery] that are correlated with another, those of the place before all others."""
     pairs = () if study.delivery is None else study.delivery.correlations or ()
     named = {key for one, other, _ in pairs for key in (one, other)}
-    return tuple(key for key in SURFACE_KEYS if key in named)
+    return tuple(key for key in delivery_sections.SURFACE_KEYS if key in named)
 
 
 def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
@@ -239,7 +231,7 @@ def copula_of(study: "Study", keys: tuple[str, ...]) -> "GaussianCopula":
 
     laws, matrix = {}, np.eye(len(keys))
     for key in keys:
-        value = getattr(study.site if key in PLACE_KEYS else study.impact, key)
+        value = getattr(study.site if key in delivery_sections.PLACE_KEYS else study.impact, key)
         assert isinstance(value, Uncertain)
         laws[key] = value.to_chaos()
     assert study.delivery is not None

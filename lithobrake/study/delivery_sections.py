@@ -6,30 +6,19 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 from pydantic_core import core_schema
 
-from lithobrake.study.quantity import (
-    Angle,
-    MaybeUncertain,
-    Number,
-    Numbers,
-    Scalar,
-    Section,
-    Uncertain,
-    Whole,
-    is_number,
-    refuse,
-)
+from lithobrake.study import quantity
 
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6
-Error = Annotated[Scalar, MaybeUncertain("m")]
-Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
+Error = Annotated[quantity.Scalar, quantity.MaybeUncertain("m")]
+Spin = Annotated[quantity.Scalar, quantity.MaybeUncertain("rad/s")]
 # Of its keys, those that say where the lander arrives; the others say how.
 PLACE_KEYS = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
 # Those of a lander that is flown to the ground from a state, and of draws that go together: of no other table.
 OWN_KEYS = ("correlations", "frame", "epoch", "states", "release")
 # What such a flight tells and no one gives; from the aim point no direction is then better than another.
 FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
-ANY_HEADING = Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
+ANY_HEADING = quantity.Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
 # Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
 # (docs/decisions/touchdown.md).
 HELD_SPEED = 0.03
@@ -42,9 +31,11 @@ class SquareMatrix:
     def read(self, value: Any) -> Matrix:
         rows = value if isinstance(value, list | tuple) else ()
         if len(rows) != SIDE or not all(isinstance(row, list | tuple) and len(row) == SIDE for row in rows):
-            raise refuse(value, f"{SIDE} rows of {SIDE} numbers", "write six lists of six numbers in square brackets")
-        if not all(is_number(entry) for row in rows for entry in row):
-            raise refuse(value, f"{SIDE} rows of {SIDE} finite numbers", "write finite numbers without quotes")
+            raise quantity.refuse(
+                value, f"{SIDE} rows of {SIDE} numbers", "write six lists of six numbers in square brackets"
+            )
+        if not all(quantity.is_number(entry) for row in rows for entry in row):
+            raise quantity.refuse(value, f"{SIDE} rows of {SIDE} finite numbers", "write finite numbers without quotes")
         return tuple(tuple(float(entry) for entry in row) for row in rows)
 
 
@@ -55,33 +46,33 @@ class CorrelatedPair:
     def read(self, value: Any) -> tuple[str, str, float]:
         allowed = "two keys and a number between -1 and 1"
         if not isinstance(value, list | tuple) or len(value) != 3 or not all(isinstance(one, str) for one in value[:2]):
-            raise refuse(value, allowed, 'write it as ["north_error", "east_error", 0.5]')
-        if not is_number(value[2]) or not -1.0 < value[2] < 1.0:
-            raise refuse(value, allowed, "write such a number without quotes")
+            raise quantity.refuse(value, allowed, 'write it as ["north_error", "east_error", 0.5]')
+        if not quantity.is_number(value[2]) or not -1.0 < value[2] < 1.0:
+            raise quantity.refuse(value, allowed, "write such a number without quotes")
         return value[0], value[1], float(value[2])
 
 
 Correlation = Annotated[tuple[str, str, float], CorrelatedPair()]
 
 
-class Deviations(Numbers):
+class Deviations(quantity.Numbers):
     """One standard deviation, or three."""
 
     def check(self, value: Any) -> tuple[float, ...]:
         """Give back three numbers."""
-        return super().check([value] * 3 if is_number(value) else value)
+        return super().check([value] * 3 if quantity.is_number(value) else value)
 
 
-class ReleaseSection(Section):
+class ReleaseSection(quantity.Section):
     """The mean state in which a carrier releases the lander, in the axes of delivery.frame. The state of each journey
     is sampled from a normal distribution about it, and the lander flies to the ground. The spread is `covariance`, or
     `position_std` and `velocity_std`; without them all journeys begin in the same state."""
 
-    time: Annotated[float, Number("s")] = 0.0
+    time: Annotated[float, quantity.Number("s")] = 0.0
     """Time of the release, counted from delivery.epoch."""
-    position: Annotated[tuple[float, ...], Numbers("m")] = Field(examples=["[0.0, -300.0, 0.0]"])
+    position: Annotated[tuple[float, ...], quantity.Numbers("m")] = Field(examples=["[0.0, -300.0, 0.0]"])
     """x, y, z from the centre of the body."""
-    velocity: Annotated[tuple[float, ...], Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
+    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
     """Along the same axes."""
     position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0)] | None = Field(
         default=None, examples=["30.0"]
@@ -96,30 +87,30 @@ class ReleaseSection(Section):
     m2/s2]."""
 
 
-class DeliverySection(Section):
+class DeliverySection(quantity.Section):
     """How the lander arrives at its first touchdown: as the keys state, or by a flight to the ground from a state,
     which is a row of `states` or a sample of [delivery.release]. Each key up to spin_z may be given here or, by the
     same name, in [impact] or [site]. After a flight, speed, incidence, heading and place are those of the flight;
     attitude and spin are those given here, unless `states` has them. latitude_deg and longitude_deg are then the aim
     point: distances count from it, and beds settle under its gravity."""
 
-    latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] | None = None
+    latitude_deg: Annotated[quantity.Scalar, quantity.MaybeUncertain("deg", at_least=-90, at_most=90)] | None = None
     """Latitude of the aim point, planetocentric."""
-    longitude_deg: Angle | None = None
+    longitude_deg: quantity.Angle | None = None
     """Longitude of the aim point, east."""
-    heading_deg: Angle | None = None
+    heading_deg: quantity.Angle | None = None
     """Direction of the incoming horizontal velocity, from north toward east."""
     north_error: Error | None = None
     """Distance by which the delivery misses the aim point toward north."""
     east_error: Error | None = None
     """The same toward east."""
-    speed: Annotated[Scalar, MaybeUncertain("m/s", above=0, at_most=1000)] | None = None
+    speed: Annotated[quantity.Scalar, quantity.MaybeUncertain("m/s", above=0, at_most=1000)] | None = None
     """Speed relative to the ground."""
-    incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] | None = None
+    incidence_deg: Annotated[quantity.Scalar, quantity.MaybeUncertain("deg", at_least=0, below=90)] | None = None
     """Angle between the velocity and the inward normal of the ground; 0 is straight down."""
-    orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] | None = None
+    orientation: Annotated[tuple[float, ...] | str, quantity.Numbers("", count=4, word="random")] | None = None
     """Attitude as a quaternion w, x, y, z, or "random"; absent: random."""
-    pointing_error_deg: Annotated[float, Number("deg", above=0, at_most=180)] | None = None
+    pointing_error_deg: Annotated[float, quantity.Number("deg", above=0, at_most=180)] | None = None
     """Half the opening angle of the cone in which the lander's z axis points, about its direction by `orientation`."""
     spin_x: Spin | None = None
     """Angular velocity about x, which lies along the incoming horizontal velocity where impact.azimuth_deg is 0."""
@@ -152,18 +143,20 @@ class DeliverySection(Section):
 SURFACE_KEYS = tuple(key for key in DeliverySection.model_fields if key not in OWN_KEYS)
 
 
-class JourneySection(Section):
+class JourneySection(quantity.Section):
     """Each lander is followed to rest, with a simulated landing at every impact. Absent: only the first touchdown is
     simulated, and the emulator predicts later ones."""
 
-    count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None = Field(default=None, examples=["96"])
+    count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = Field(
+        default=None, examples=["96"]
+    )
     """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
-    duration: Annotated[float, Number("s", above=0)] = 172_800.0
+    duration: Annotated[float, quantity.Number("s", above=0)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
-    hop_height: Annotated[float, Number("m", above=0)] | None = None
+    hop_height: Annotated[float, quantity.Number("m", above=0)] | None = None
     """A lander that would rise higher above the ground than this leaves the bed and flies in the gravity of the body;
     lower hops are part of the touchdown. Absent: three times the lander's largest diameter."""
-    emulated_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 5000
+    emulated_count: Annotated[int, quantity.Whole("", at_least=0, at_most=1_000_000)] = 5000
     """Number of further landers that the emulator of all touchdowns follows, as a check and to narrow the intervals of
     the fractions of all ends. 0: none."""
 

@@ -5,10 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from lithobrake.geometry.limits import alike
-from lithobrake.study.ground_sections import (
-    allowed,
-    with_properties,
-)
+from lithobrake.study import ground_sections
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
 from lithobrake.vocabulary.material import SURFACE_PROPERTIES, MaterialProperty
 from lithobrake.vocabulary.quantities import SIDES
@@ -53,7 +50,7 @@ class _PartBody(Section):
     """Rotation of the part about that point: a quaternion w, x, y, z."""
     mass: Annotated[float, Number("kg", above=0)] | None = Field(default=None, examples=["0.05"])
     """Its mass, which is part of lander.mass; or give density."""
-    density: Annotated[float, allowed("density", Number)] | None = None
+    density: Annotated[float, ground_sections.allowed("density", Number)] | None = None
     """Its mass divided by its volume; or give mass."""
 
 
@@ -64,7 +61,7 @@ def _of_part(known: MaterialProperty) -> str:
     return f"{known.title} of the part{more}; absent: that of the lander."
 
 
-_PartProperties: Any = with_properties(
+_PartProperties: Any = ground_sections.with_properties(
     _PartBody,
     SURFACE_PROPERTIES,
     _of_part,
@@ -107,7 +104,7 @@ def _of_hull(known: MaterialProperty) -> str:
     return f"{known.title} of the lander's hull; absent: that of the grains."
 
 
-_LanderProperties: Any = with_properties(
+_LanderProperties: Any = ground_sections.with_properties(
     _LanderBody,
     SURFACE_PROPERTIES,
     _of_hull,

@@ -8,37 +8,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, PrivateAttr, model_validator
 
+from lithobrake.study import design_sections, ground_sections, impact_sections
 from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
-from lithobrake.study.design_sections import (
-    DEFAULT_METHOD,
-    AimSection,
-    CampaignSection,
-    DesignSection,
-    LimitStatesSection,
-    MonteCarloSection,
-    SkySection,
-    SolverSection,
-    method_name,
-)
-from lithobrake.study.ground_sections import (
-    JOURNEYS_A_BED,
-    LANDINGS_A_BED,
-    BedSection,
-    GrainSection,
-    SoilSection,
-    default_bed_count,
-)
-from lithobrake.study.impact_sections import (
-    ContactSection,
-    FlightSection,
-    ImpactSection,
-    LandingSection,
-    PlaceSection,
-    RestSection,
-    SiteSection,
-    SurfaceSection,
-    kernel_values,
-)
 from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
 
@@ -51,26 +22,26 @@ class Study(Section):
     # JSON numbers are doubles to most readers, exact up to 2**53.
     seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] = 1
     """Seed of all random numbers of the study."""
-    bed: BedSection
-    grain: GrainSection
-    soil: dict[str, SoilSection] = Field(default={})
+    bed: ground_sections.BedSection
+    grain: ground_sections.GrainSection
+    soil: dict[str, ground_sections.SoilSection] = Field(default={})
     lander: LanderSection
     delivery: DeliverySection | None = None
-    impact: ImpactSection
-    surface: SurfaceSection
-    contact: ContactSection = ContactSection()
-    landing: LandingSection = LandingSection()
+    impact: impact_sections.ImpactSection
+    surface: impact_sections.SurfaceSection
+    contact: impact_sections.ContactSection = impact_sections.ContactSection()
+    landing: impact_sections.LandingSection = impact_sections.LandingSection()
     journey: JourneySection | None = None
-    solver: SolverSection = SolverSection()
-    campaign: CampaignSection = CampaignSection()
-    design: DesignSection = DesignSection()
-    monte_carlo: MonteCarloSection = MonteCarloSection()
-    site: SiteSection = SiteSection()
-    flight: FlightSection = FlightSection()
-    rest: RestSection = RestSection()
-    limit_states: LimitStatesSection = LimitStatesSection()
-    aim: AimSection = AimSection()
-    sky: SkySection = SkySection()
+    solver: design_sections.SolverSection = design_sections.SolverSection()
+    campaign: design_sections.CampaignSection = design_sections.CampaignSection()
+    design: design_sections.DesignSection = design_sections.DesignSection()
+    monte_carlo: design_sections.MonteCarloSection = design_sections.MonteCarloSection()
+    site: impact_sections.SiteSection = impact_sections.SiteSection()
+    flight: impact_sections.FlightSection = impact_sections.FlightSection()
+    rest: impact_sections.RestSection = impact_sections.RestSection()
+    limit_states: design_sections.LimitStatesSection = design_sections.LimitStatesSection()
+    aim: design_sections.AimSection = design_sections.AimSection()
+    sky: design_sections.SkySection = design_sections.SkySection()
     _function: str | None = PrivateAttr(default=None)
 
     @model_validator(mode="before")
@@ -81,7 +52,10 @@ class Study(Section):
             return tables
         tables = journey_tables(delivered_tables(tables))
         design = tables.get("design", {})
-        if not isinstance(design, Mapping) or method_name(design.get("method", DEFAULT_METHOD)) != "drawn":
+        if (
+            not isinstance(design, Mapping)
+            or design_sections.method_name(design.get("method", design_sections.DEFAULT_METHOD)) != "drawn"
+        ):
             return tables
         filled, bed, impact = dict(tables), tables.get("bed"), tables.get("impact")
         if isinstance(bed, Mapping):
@@ -127,12 +101,16 @@ class Study(Section):
         """How many beds are landed on."""
         if self.bed.bed_count is not None:
             return self.bed.bed_count
-        return default_bed_count(self.design.run_count, self.runs_a_bed) if self.design.method == "drawn" else 1
+        return (
+            ground_sections.default_bed_count(self.design.run_count, self.runs_a_bed)
+            if self.design.method == "drawn"
+            else 1
+        )
 
     @property
     def runs_a_bed(self) -> int:
         """How many runs each bed of a drawn study has where its file does not say how many beds there are."""
-        return LANDINGS_A_BED if self.journey is None else JOURNEYS_A_BED
+        return ground_sections.LANDINGS_A_BED if self.journey is None else ground_sections.JOURNEYS_A_BED
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
@@ -151,7 +129,7 @@ class Study(Section):
 
         Raises ValueError or ImportError where the kernels do not tell any more what they did when the study was read.
         """
-        read = {f"site.{key}": value for key, value in kernel_values(self.site).items()}
+        read = {f"site.{key}": value for key, value in impact_sections.kernel_values(self.site).items()}
         return _scalars("site", self.site) | read
 
 
@@ -161,7 +139,7 @@ def _scalars(path: str, section: BaseModel) -> dict[str, Scalar]:
         value = getattr(section, name)
         if isinstance(value, float | Uncertain):
             values[f"{path}.{name}"] = value
-        elif isinstance(value, PlaceSection | CentreSection):
+        elif isinstance(value, impact_sections.PlaceSection | CentreSection):
             values |= _scalars(f"{path}.{name}", value)
         elif isinstance(value, dict):
             for key, entry in value.items():

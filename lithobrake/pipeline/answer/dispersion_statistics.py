@@ -16,15 +16,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.results.dispersion import (
-    EllipseShare,
-    FlightChecks,
-    GroundResults,
-    ImpactNumber,
-    ImpactNumbers,
-    LandingEllipses,
-    RestResults,
-)
+from lithobrake.results import dispersion
 from lithobrake.results.journey_results import DeliveryResults
 from lithobrake.results.run_results import CountedShare, Level, SampleShares
 from lithobrake.results.site_results import KernelNumbers, SiteResults
@@ -118,24 +110,26 @@ def shares(samples: Samples, flights: Rows, *, holds: bool) -> SampleShares:
     return SampleShares(total, len(flights), {name: proportion(count, total) for name, count in counts.items()})
 
 
-def impact_numbers(rows: Rows) -> ImpactNumbers:
+def impact_numbers(rows: Rows) -> dispersion.ImpactNumbers:
     """Quantiles of time, speed and incidence of the flights that end on the body."""
-    return ImpactNumbers(**{name: ImpactNumber(quantiles) for name, quantiles in flight_numbers(rows).items()})
+    return dispersion.ImpactNumbers(
+        **{name: dispersion.ImpactNumber(quantiles) for name, quantiles in flight_numbers(rows).items()}
+    )
 
 
-def flight_checks(job: Job) -> FlightChecks:
+def flight_checks(job: Job) -> dispersion.FlightChecks:
     """How exact the flights of a study are."""
-    return results_in(FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
+    return results_in(dispersion.FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
 
 
-def ellipses(site: Site, rows: Rows, status: str) -> LandingEllipses | None:
+def ellipses(site: Site, rows: Rows, status: str) -> dispersion.LandingEllipses | None:
     """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none."""
     down = [row for row in rows if row["status"] == status]
     latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
     return place_ellipses(site, latitude, longitude)
 
 
-def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> LandingEllipses | None:
+def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> dispersion.LandingEllipses | None:
     """Ellipses that hold half and 95 % of places [deg], both [count]; None where there are none.
 
     The axes in metres are the angles times the radius at the middle.
@@ -150,26 +144,26 @@ def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> L
     held = []
     for share, (long, short) in found.semi_axes_deg.items():
         long_m, short_m = (np.radians((long, short)) * radius).tolist()
-        held.append(EllipseShare(share, (long, short), (long_m, short_m)))
-    return LandingEllipses(found.latitude_deg, found.longitude_deg, found.heading_deg, tuple(held))
+        held.append(dispersion.EllipseShare(share, (long, short), (long_m, short_m)))
+    return dispersion.LandingEllipses(found.latitude_deg, found.longitude_deg, found.heading_deg, tuple(held))
 
 
-def rest_results(job: Job) -> RestResults:
+def rest_results(job: Job) -> dispersion.RestResults:
     """What became of the samples that were followed, on each ground."""
     rows, known = read_table(job.folder, REST_FILE), job.folder.read_json(REST_NOTES_FILE)
     site = site_results(job.site)
     ranges = {name: (low, high) for name, (low, high) in known["trained_ranges"].items()}
-    found: dict[str, GroundResults | None] = {}
+    found: dict[str, dispersion.GroundResults | None] = {}
     for ground in ("soil", "hard", "equivalent"):
         part = [row for row in rows if row["ground"] == ground]
         found[ground] = _ends(job, site, ground, part, ranges) if part else None
     hard = found["hard"]
     if hard is not None:
         found["hard"] = _with_sampling_intervals(hard)
-    return RestResults(known["why_no_soil"], ranges, **found)
+    return dispersion.RestResults(known["why_no_soil"], ranges, **found)
 
 
-def _with_sampling_intervals(found: GroundResults) -> GroundResults:
+def _with_sampling_intervals(found: dispersion.GroundResults) -> dispersion.GroundResults:
     """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
     from lithobrake.analysis import LEVEL, wilson_interval
 
@@ -182,7 +176,7 @@ def _with_sampling_intervals(found: GroundResults) -> GroundResults:
 
 def _ends(
     job: Job, site: SiteResults, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]
-) -> GroundResults:
+) -> dispersion.GroundResults:
     """Shares of each end, and the numbers of the landers that settled."""
     statuses, total = [row["status"] for row in rows], len(rows)
     settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
@@ -193,7 +187,7 @@ def _ends(
     lowest = ranges[IMPACT_SPEED][0] if IMPACT_SPEED in ranges else 0.0
     # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
     outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
-    return GroundResults(
+    return dispersion.GroundResults(
         sample_count=total,
         outcomes={str(name): proportion(statuses.count(name), total) for name in JourneyStatus},
         slid=proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), total),

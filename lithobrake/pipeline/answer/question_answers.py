@@ -5,15 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis import (
-    LEVEL,
-    best_choice,
-    drawn_counts,
-    failure_inputs,
-    failure_probability,
-    regression_terms,
-    wilson_interval,
-)
+from lithobrake import analysis
 from lithobrake.analysis.limit_states import limit_state_met
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
@@ -33,24 +25,16 @@ from lithobrake.study import Study
 from lithobrake.study.design_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.lander_section import side_words
 from lithobrake.study.units import input_units
+from lithobrake.vocabulary import outcomes
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.limit_state import LimitState
-from lithobrake.vocabulary.outcomes import (
-    CAPTURED,
-    LOFTED,
-    RETURNS,
-    SETTLED,
-    FlightStatus,
-    JourneyStatus,
-    SampleOutcome,
-)
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
 from lithobrake.vocabulary.study_files import AIM_FILE
 
 # The outcome of these landers is unknown.
-UNKNOWN = (JourneyStatus.OUTSIDE, JourneyStatus.BOUNCING, UNKNOWN_END)
+UNKNOWN = (outcomes.JourneyStatus.OUTSIDE, outcomes.JourneyStatus.BOUNCING, UNKNOWN_END)
 # The words of bounces and of journeys.
-RESTS = (SETTLED, AT_REST)
+RESTS = (outcomes.SETTLED, AT_REST)
 
 
 def limit_state_results(
@@ -95,16 +79,16 @@ def _one(
             "ended); choose another condition, or correct the outcomes"
         )
     x = runs.columns(list(inputs))
-    found = failure_probability(
+    found = analysis.failure_probability(
         failing,
         runs.inputs["bed"],
-        terms=regression_terms(inputs, x),
+        terms=analysis.regression_terms(inputs, x),
         drawn=_drawn(state, of_samples),
         like_missing=left_in_flight(runs),
         why=why_no_interval(study),
     )
     several = len(np.unique(runs.inputs["bed"][np.isfinite(failing)])) > 1
-    of_inputs = failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
+    of_inputs = analysis.failure_inputs(inputs, x, failing, runs.inputs["bed"], study.seed) if several else {}
     return LimitStateResult(
         condition=state.text,
         probability=found.probability,
@@ -126,7 +110,7 @@ def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> Estim
     (word,) = state.fates
     one = shares[word].share
     so, otherwise = (
-        limit_state_met(state, {CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
+        limit_state_met(state, {outcomes.CAPTURED: np.full(1, end), word: np.full(1, end)})[0] for end in (1.0, 0.0)
     )
     if so == otherwise:
         return None
@@ -140,9 +124,14 @@ def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: b
     """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
     total = len(met["returns"])
     known = ~met["missing"]
-    words = {status.value: met[status] for status in FlightStatus}
-    captured = met[SampleOutcome.CAPTURED]
-    words |= {RETURNS: met["returns"], CAPTURED: captured, SETTLED: captured & holds, LOFTED: captured & (not holds)}
+    words = {status.value: met[status] for status in outcomes.FlightStatus}
+    captured = met[outcomes.SampleOutcome.CAPTURED]
+    words |= {
+        outcomes.RETURNS: met["returns"],
+        outcomes.CAPTURED: captured,
+        outcomes.SETTLED: captured & holds,
+        outcomes.LOFTED: captured & (not holds),
+    }
     values = {name: samples.output(name)[:total] for name in samples.output_names}
     return values | {word: np.where(known, one.astype(float), np.nan) for word, one in words.items()}
 
@@ -155,10 +144,10 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
     """
     if not state.outputs or any(name not in values for name in state.outputs):
         return None
-    met, refit = limit_state_met(state, values), np.arange(len(values[CAPTURED])) % REFIT_COUNT
-    if np.isnan(met[values[CAPTURED] == 1.0]).any():
+    met, refit = limit_state_met(state, values), np.arange(len(values[outcomes.CAPTURED])) % REFIT_COUNT
+    if np.isnan(met[values[outcomes.CAPTURED] == 1.0]).any():
         return None
-    drawn = drawn_counts(met, refit, REFIT_COUNT)
+    drawn = analysis.drawn_counts(met, refit, REFIT_COUNT)
     # Of so few samples no scatter between refits can be told.
     return drawn if drawn[1].min() >= 2 else None
 
@@ -200,7 +189,7 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
         within=tuple(study.aim.within),
         lander_count=soil.status.shape[1],
         refit_count=REFIT_COUNT,
-        level=LEVEL,
+        level=analysis.LEVEL,
         why=fitted.why,
         aims=tuple(
             AimResult(tuple(aim.values()), *both)
@@ -255,7 +244,7 @@ def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitt
     """Share of some landers that have met an event, with its bounds: over refits on soil, by their number on hard."""
     if ground == "hard":
         share = float(met.sum() / of.sum())
-        return Estimate(share, *wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
+        return Estimate(share, *analysis.wilson_interval(int(met.sum()), int(of.sum()), NORMAL_QUANTILE_90))
     return fitted.share(met, of, refit)
 
 
@@ -283,7 +272,7 @@ def _best(
     if bed_count is None:
         return parts, BestAim(int(shares.argmax()), None, None, None, None, None)
     order = np.argsort(landers.refit[0], kind="stable")
-    found = best_choice(landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1), bed_count, allowed)
+    found = analysis.best_choice(landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1), bed_count, allowed)
     parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
     others = tuple(aim for aim in found.not_worse if aim != found.best)
     share = float(found.shares[found.best])

@@ -6,44 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.analysis import (
-    LEVEL,
-    chaos_variance,
-    direction_estimate,
-    mean_estimate,
-    quantile_estimates,
-    regression_terms,
-    share_estimate,
-    soil_total_effect,
-    variance_shares,
-)
+from lithobrake import analysis
+from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
-from lithobrake.pipeline.answer.run_answers import (
-    KNOWN,
-    LOST,
-    described,
-    left_in_flight,
-    missing_landings,
-    missing_warning,
-    why_no_interval,
-)
 from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.results import run_results
 from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers
-from lithobrake.results.run_results import (
-    CountedShare,
-    OutputDirection,
-    OutputEstimate,
-    ReturnFraction,
-    RunResults,
-    RunShares,
-    SideRuns,
-    VarianceParts,
-)
 from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import Estimates
 from lithobrake.statements.ends import journeys_at_rest
@@ -76,12 +49,14 @@ ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 
 
-def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> ReturnFraction:
+def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> run_results.ReturnFraction:
     """The return fraction with its interval, which covers whatever became of the landings without an outcome."""
-    return ReturnFraction.of(_share(study, runs, flights.returns))
+    return run_results.ReturnFraction.of(_share(study, runs, flights.returns))
 
 
-def run_shares(study: Study, runs: DesignRuns, flights: RunFlights, returns: ReturnFraction) -> RunShares:
+def run_shares(
+    study: Study, runs: DesignRuns, flights: RunFlights, returns: run_results.ReturnFraction
+) -> run_results.RunShares:
     """Every fate of all landings as a share of 1, by one estimator; returns: the estimate of the return fraction.
 
     count: flights that ended so, of FLIGHT_COUNT a landing; one that was captured, or has no outcome, counts as so
@@ -94,13 +69,13 @@ def run_shares(study: Study, runs: DesignRuns, flights: RunFlights, returns: Ret
         found[name] = _counted(int(ended.sum()), _share(study, runs, share))
     found[RETURNS] = _counted(round(float(np.nansum(flights.returns * FLIGHT_COUNT))), returns)
     _balance(found)
-    why = why_no_interval(study)
-    for outcome in (*LOST, MISSING):
-        met = ~np.isin(runs.outcomes, KNOWN) if outcome == MISSING else np.array(runs.outcomes) == outcome
-        known = share_estimate(met.astype(float), runs.inputs["bed"], why=why)
+    why = run_answers.why_no_interval(study)
+    for outcome in (*run_answers.LOST, MISSING):
+        met = ~np.isin(runs.outcomes, run_answers.KNOWN) if outcome == MISSING else np.array(runs.outcomes) == outcome
+        known = analysis.share_estimate(met.astype(float), runs.inputs["bed"], why=why)
         found[str(outcome)] = _counted(FLIGHT_COUNT * int(met.sum()), known)
     flown = int(flights.fates[:, : len(FlightStatus)].sum())
-    return RunShares(FLIGHT_COUNT * runs.run_count, flown, LEVEL, why, found)
+    return run_results.RunShares(FLIGHT_COUNT * runs.run_count, flown, analysis.LEVEL, why, found)
 
 
 def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> ImpactNumbers:
@@ -113,16 +88,16 @@ def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> 
         points = np.quantile(values, QUANTILES, method="hazen").tolist()
         ends: list[tuple[float, float] | None] = [None] * len(QUANTILES)
         if why is None and several:
-            found = quantile_estimates(values, bed, QUANTILES)
+            found = analysis.quantile_estimates(values, bed, QUANTILES)
             points, ends = [one.value for one in found], [one.bounds for one in found]
         quantiles, intervals = (dict(zip(keys, one, strict=True)) for one in (points, ends))
         table[name] = ImpactNumber(quantiles, intervals, landings)
     return ImpactNumbers(**table)
 
 
-def _counted(count: int, found: LandingFraction) -> CountedShare:
+def _counted(count: int, found: LandingFraction) -> run_results.CountedShare:
     """A fraction of the landings beside the flights that it comes from; the table says why it has no interval."""
-    return CountedShare(count, found.share.without_reason)
+    return run_results.CountedShare(count, found.share.without_reason)
 
 
 def _events(fates: np.ndarray) -> dict[str, np.ndarray]:
@@ -131,7 +106,7 @@ def _events(fates: np.ndarray) -> dict[str, np.ndarray]:
     return by_fate | {CAPTURED: by_fate[SETTLED] + by_fate[LOFTED]}
 
 
-def _balance(table: dict[str, CountedShare]) -> None:
+def _balance(table: dict[str, run_results.CountedShare]) -> None:
     """Let the parts add up to the return fraction and to 1: each has a regression on the inputs of its own.
 
     What is left over goes to the parts in proportion to their variances (least-squares adjustment to a known total).
@@ -148,7 +123,7 @@ def _balance(table: dict[str, CountedShare]) -> None:
     table[CAPTURED] = _moved(table[CAPTURED], settled + table[LOFTED].share.value)
 
 
-def _moved(one: CountedShare, share: float) -> CountedShare:
+def _moved(one: run_results.CountedShare, share: float) -> run_results.CountedShare:
     """Another share, which its interval always holds."""
     bounds = one.share.bounds
     lower, upper = (None, None) if bounds is None else (min(bounds[0], share), max(bounds[1], share))
@@ -161,14 +136,14 @@ def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction
     if study.soil:
         # On the soils of regions the grains of a run follow another law than the study gives for [grain].
         inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
-    terms = regression_terms(inputs, runs.columns(list(inputs)))
-    bed, why = runs.inputs["bed"], why_no_interval(study)
-    return share_estimate(share, bed, terms=terms, like_missing=left_in_flight(runs), why=why)
+    terms = analysis.regression_terms(inputs, runs.columns(list(inputs)))
+    bed, why = runs.inputs["bed"], run_answers.why_no_interval(study)
+    return analysis.share_estimate(share, bed, terms=terms, like_missing=run_answers.left_in_flight(runs), why=why)
 
 
 def parts_of_variance(
     job: Job, runs: DesignRuns, y: np.ndarray, of: str, twins: np.ndarray | None = None
-) -> VarianceParts | None:
+) -> run_results.VarianceParts | None:
     """Parts of the variance of y [run_count], NaN where a run has none; None where the runs cannot tell.
 
     of: which runs it describes, in words. twins [pair_count]: differences of y between twins, where there are any.
@@ -176,7 +151,7 @@ def parts_of_variance(
     return _parts(job, runs, _touchdown_inputs(job, runs), y, of, twins)
 
 
-def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[str, VarianceParts | None]:
+def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[str, run_results.VarianceParts | None]:
     """Parts of the variance of how and where journeys end, by their delivery and first touchdowns, runs.
 
     table: of the journeys of these runs, in their order. Whether a lander comes to rest is 1 or 0.
@@ -231,15 +206,15 @@ def _delivery_inputs(job: Job, runs: DesignRuns) -> Inputs:
 
 def _parts(
     job: Job, runs: DesignRuns, inputs: Inputs, y: np.ndarray, of: str, twins: np.ndarray | None
-) -> VarianceParts | None:
+) -> run_results.VarianceParts | None:
     if not inputs:
         return None
     laws = {name: law for name, (law, _) in inputs.items()}
     x = np.column_stack([values for _, values in inputs.values()])
     soil = [key for key in laws if key.startswith(SOIL)]
     attitude = independent_terms(job.design, runs.inputs)
-    found = variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
-    return None if found is None else VarianceParts.of_shares(found, of)
+    found = analysis.variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
+    return None if found is None else run_results.VarianceParts.of_shares(found, of)
 
 
 def estimate(job: Job) -> None:
@@ -252,7 +227,7 @@ def estimate(job: Job) -> None:
             f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite lists how each ended), "
             "so there is no result; correct the outcomes of the runs, or widen the bed"
         )
-    bed, why = runs.inputs["bed"].astype(int), why_no_interval(study)
+    bed, why = runs.inputs["bed"].astype(int), run_answers.why_no_interval(study)
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
     found = return_fraction(study, runs, flights)
     estimates = Estimates(
@@ -261,7 +236,7 @@ def estimate(job: Job) -> None:
         flights=flight_estimates(RunImpacts.load(job.folder), runs, why),
         variance_shares={name: _split(job, runs, name, y) for name, y in values.items()},
         outputs={
-            name: _spread(name, y, bed, why, described(np.isfinite(y), runs.outcomes))
+            name: _spread(name, y, bed, why, run_answers.described(np.isfinite(y), runs.outcomes))
             for name, y in _outputs(runs).items()
         },
         runs=_counts(job, runs, values),
@@ -276,29 +251,31 @@ def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
     return {name: y for name, y in known.items() if np.isfinite(y).sum() >= 2}
 
 
-def _spread(name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str) -> OutputEstimate | OutputDirection:
+def _spread(
+    name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str
+) -> run_results.OutputEstimate | run_results.OutputDirection:
     """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them.
 
     Of the azimuth, which has neither beginning nor end, mean direction and resultant length. of: landings it describes.
     """
     if name == AZIMUTH_OUT:
-        return OutputDirection(**vars(direction_estimate(y, bed, why=why)), of=of)
+        return run_results.OutputDirection(**vars(analysis.direction_estimate(y, bed, why=why)), of=of)
     known = y[np.isfinite(y)]
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
-        mean, *quantiles = mean_estimate(y, bed), *quantile_estimates(y, bed, QUANTILES)
+        mean, *quantiles = analysis.mean_estimate(y, bed), *analysis.quantile_estimates(y, bed, QUANTILES)
     else:
         points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
         mean, *quantiles = (Estimate(float(point), None, None) for point in points)
     levels = (f"{level:g}" for level in QUANTILES)
-    return OutputEstimate(mean, dict(zip(levels, quantiles, strict=True)), float(known.std(ddof=1)), of)
+    return run_results.OutputEstimate(mean, dict(zip(levels, quantiles, strict=True)), float(known.std(ddof=1)), of)
 
 
-def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> VarianceParts | None:
+def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> run_results.VarianceParts | None:
     """Parts of the variance of an output; None where the runs cannot tell."""
     twins = _differences(job, "twins", name, y)
     known = twins if np.isfinite(twins).any() else None
-    return parts_of_variance(job, runs, y, described(np.isfinite(y), runs.outcomes), known)
+    return parts_of_variance(job, runs, y, run_answers.described(np.isfinite(y), runs.outcomes), known)
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
@@ -311,15 +288,15 @@ def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:
     return difference
 
 
-def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> RunResults:
+def _counts(job: Job, runs: DesignRuns, values: Mapping[str, np.ndarray]) -> run_results.RunResults:
     """How many runs ended how, and what the side runs say that the parts of the variance do not hold."""
     left, outcomes = np.array(runs.outcomes) == TouchdownOutcome.CLEAR, runs.outcome_counts()
-    return RunResults(
+    return run_results.RunResults(
         count=runs.run_count,
         beds=len(np.unique(runs.inputs["bed"])),
         outcomes=outcomes,
-        missing=missing_landings(outcomes),
-        warning=missing_warning(job.study, outcomes),
+        missing=run_answers.missing_landings(outcomes),
+        warning=run_answers.missing_warning(job.study, outcomes),
         # A lander that clearly flies beyond the rim has left; one that does not is left_sideways.
         over_rim=int((runs.output(OVER_RIM) == 1.0)[left].sum()),
         farther_than_period=_farther_than_period(runs),
@@ -333,7 +310,7 @@ def _farther_than_period(runs: DesignRuns) -> int | None:
     return int((travelled > 1.0).sum()) if np.isfinite(travelled).any() else None
 
 
-def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> SideRuns:
+def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> run_results.SideRuns:
     """Numbers of pairs, the total effect of the soil, and the standard deviation that chaos gives an output."""
     soil_pairs, twin_count = (DesignRuns.load(job.folder, design).run_count for design in ("soil_pairs", "twins"))
     effects, chaos = {}, {}
@@ -341,7 +318,7 @@ def _side_runs(job: Job, values: Mapping[str, np.ndarray]) -> SideRuns:
         pairs, twins = (_differences(job, design, name, y) for design in ("soil_pairs", "twins"))
         known = np.isfinite(y)
         if np.isfinite(pairs).sum() >= 2 and known.sum() >= 2 and np.ptp(y[known]) > 0.0:
-            effects[name] = soil_total_effect(pairs, y)
+            effects[name] = analysis.soil_total_effect(pairs, y)
         if np.isfinite(twins).any():
-            chaos[name] = chaos_variance(twins).on_scale(lambda variance: variance**0.5)
-    return SideRuns(soil_pairs, twin_count, job.study.design.twin_shift, effects, chaos)
+            chaos[name] = analysis.chaos_variance(twins).on_scale(lambda variance: variance**0.5)
+    return run_results.SideRuns(soil_pairs, twin_count, job.study.design.twin_shift, effects, chaos)

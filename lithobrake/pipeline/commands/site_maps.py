@@ -8,6 +8,7 @@ import numpy as np
 from lithobrake.analysis import EqualAreaCells
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.files.atomic import write_json, write_rows
+from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.design import DrawnDesign
@@ -18,14 +19,6 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.site_grid import (
-    SiteGround,
-    all_at_rest,
-    first_places,
-    follow_sites,
-    site_agreement,
-    site_cells,
-)
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.site_results import SiteMap
@@ -105,8 +98,8 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
 def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> SiteMap:
     study, runs = job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN)
     fitted = Refits(len(np.unique(runs.inputs["bed"])), runs.run_count, why_no_interval(study))
-    ground, landers = SiteGround.of(job, cells), follow_sites(job, cells, lander_count)
-    latitude, longitude = (one[np.isfinite(one)] for one in first_places(job))
+    ground, landers = site_grid.SiteGround.of(job, cells), site_grid.follow_sites(job, cells, lander_count)
+    latitude, longitude = (one[np.isfinite(one)] for one in site_grid.first_places(job))
     journeys = np.bincount(cells.cell_of(latitude, longitude), minlength=cells.total)
     shape = job.site.body.shape
     found = SiteMap(
@@ -123,9 +116,9 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         touchdowns=fitted.run_count,
         # The cells are of equal area on a sphere, which here has the volume of the body.
         area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
-        at_rest=all_at_rest(landers, fitted),
-        cells=site_cells(cells, landers, ground, fitted, journeys),
-        agreement=site_agreement(job),
+        at_rest=site_grid.all_at_rest(landers, fitted),
+        cells=site_grid.site_cells(cells, landers, ground, fitted, journeys),
+        agreement=site_grid.site_agreement(job),
     )
     return with_words(found)
 

@@ -9,19 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import directions
-from lithobrake.pipeline.design.arrivals import (
-    MEAN_INCIDENCE,
-    against_ground,
-    attitude_inputs,
-    first_uniforms,
-    icrf_to_body,
-    impact_inputs,
-    lander_inertia,
-    met_ground,
-    on_ground,
-    turned,
-    turned_in_flight,
-)
+from lithobrake.pipeline.design import arrivals
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
@@ -133,9 +121,9 @@ class Descents:
         columns = {key: values[first:] for key, values in site.sampled(first + count).items()}
         states = _states(site, first, uniforms)
         into_body = _into_body(study, states.time, columns["spin_period"])
-        position, velocity = turned(into_body, states.position), turned(into_body, states.velocity)
+        position, velocity = arrivals.turned(into_body, states.position), arrivals.turned(into_body, states.velocity)
         if _is_icrf(study):
-            velocity = against_ground(position, velocity, columns["spin_period"])
+            velocity = arrivals.against_ground(position, velocity, columns["spin_period"])
         clock = site.clock(columns)
         if (ground := site.body.rotation) is None:
             clock = clock + states.time
@@ -179,27 +167,27 @@ class Descents:
             found.append(row | self._attitude(lander, row))
         start = flights.start
         found = Soils(self.site).on_soil(found, flights.position[down])
-        return on_ground(
+        return arrivals.on_ground(
             flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
             start.spin_period[down],
         )  # fmt: skip
 
     def _impact(self, lander: int) -> Row:
-        met = impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
+        met = arrivals.impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
         if not self.site.study.site.roughness_deg:
             return met
-        return met | {MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
+        return met | {arrivals.MEAN_INCIDENCE: np.degrees(float(self.flights.incidence[lander]))}
 
     def _attitude(self, lander: int, row: Row) -> Row:
         if self.attitude is None or self.spin is None:
             return {}
         period, time = float(self.flights.start.spin_period[lander]), float(self.flights.time[lander])
-        inertia = lander_inertia(self.site.study, row)
+        inertia = arrivals.lander_inertia(self.site.study, row)
         ground, start = self.flights.body.rotation, float(self.flights.start.time[lander])
-        attitude, spin = turned_in_flight(
+        attitude, spin = arrivals.turned_in_flight(
             *(inertia, self.attitude[lander], self.spin[lander], period, time), ground=ground, start=start
         )
-        return attitude_inputs(self.axes[lander], row[IMPACT_AZIMUTH], attitude, spin)
+        return arrivals.attitude_inputs(self.axes[lander], row[IMPACT_AZIMUTH], attitude, spin)
 
 
 def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
@@ -207,8 +195,8 @@ def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) 
     axes, incidence = np.tile(np.eye(3), (len(flights), 1, 1)), np.array(flights.incidence)
     up = flights.body.shape.normals[flights.facet[down]]
     journeys = (first + np.flatnonzero(down)).tolist()
-    axes[down], incidence[down] = met_ground(
-        study, flights.velocity[down], up, incidence[down], lambda: first_uniforms(study, journeys)
+    axes[down], incidence[down] = arrivals.met_ground(
+        study, flights.velocity[down], up, incidence[down], lambda: arrivals.first_uniforms(study, journeys)
     )
     return axes, incidence
 
@@ -220,7 +208,7 @@ def _is_icrf(study: Study) -> bool:
 def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.ndarray:
     """Rotations from the axes of the states into those of the body, [count, 3, 3]."""
     if _is_icrf(study):
-        return icrf_to_body(study.site, time, spin_period)
+        return arrivals.icrf_to_body(study.site, time, spin_period)
     return np.tile(np.eye(3), (len(time), 1, 1))
 
 
@@ -239,7 +227,7 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
         return None, None
     # The scalar stands first in the file and last in SciPy.
     given = Rotation.from_quat(np.roll(states.attitude, -1, axis=1))
-    return Rotation.from_matrix(into_body) * given, turned(into_body, given.apply(states.rates))
+    return Rotation.from_matrix(into_body) * given, arrivals.turned(into_body, given.apply(states.rates))
 
 
 def _refuse_below(site: Site, position: np.ndarray, source: Sequence[str]) -> None:

@@ -15,14 +15,8 @@ from lithobrake.pipeline.first_bounces.bounces_to_rest import ways_from_aims
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, save_explorer, tables_of_refits
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys import touchdown_emulator
 from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
-from lithobrake.pipeline.journeys.touchdown_emulator import (
-    TOUCHDOWN_EMULATOR_FILE,
-    Arrivals,
-    TouchdownEmulator,
-    fit_touchdowns,
-    why_no_emulator,
-)
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.explorer_tables import ExplorerAttitude
@@ -43,7 +37,7 @@ from lithobrake.vocabulary.quantities import (
 )
 from lithobrake.vocabulary.study_files import AIM_FILE, TOUCHDOWN_EXPLORER_FILE
 
-EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
+EMULATED_FILES: tuple[str, ...] = (touchdown_emulator.TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
 # Landers that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
@@ -54,7 +48,7 @@ LANDINGS_ALONE = "Landers that are delivered as states are followed by landings 
 SITE = "site."
 
 
-def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
+def write_explorer(job: Job, emulator: touchdown_emulator.TouchdownEmulator) -> None:
     runs = DesignRuns.load(job.folder, JOURNEY_DESIGN)
     # Only the size of the spin counts for the energy: an arrival without one of its own has that of the median.
     spin = np.linalg.norm([runs.inputs[name] for name in SPIN], axis=0)
@@ -88,7 +82,7 @@ def emulated_dependencies(study: Study) -> Any:
 
 
 def make_emulated(job: Job) -> None:
-    why = fit_touchdowns(job)
+    why = touchdown_emulator.fit_touchdowns(job)
     rows = _followed(job) if why is None else []
     if why is not None:
         write_reason(job, why)
@@ -97,7 +91,7 @@ def make_emulated(job: Job) -> None:
 
 
 def _followed(job: Job) -> list[list[Any]]:
-    emulator = TouchdownEmulator.read(job.design, job.folder)
+    emulator = touchdown_emulator.TouchdownEmulator.read(job.design, job.folder)
     write_explorer(job, emulator)
     assert job.study.journey is not None
     if job.design.is_flown:
@@ -110,17 +104,17 @@ def most_landings(job: Job) -> int:
     return int(MOST_LANDINGS * DesignRuns.load(job.folder, JOURNEY_DESIGN).run_count)
 
 
-def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
+def _fresh(job: Job, emulator: touchdown_emulator.TouchdownEmulator) -> Sequence[list[Any]]:
     assert job.study.journey is not None
     # Numbers behind those of the journeys: other points of the sequence, so other landers.
     followed = len(job.design.rows)
-    begin = Arrivals.drawn(job.design, followed, job.study.journey.emulated_count)
+    begin = touchdown_emulator.Arrivals.drawn(job.design, followed, job.study.journey.emulated_count)
     return _rows(job, emulator, FRESH, begin, most_landings(job))
 
 
-def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
+def _own(job: Job, emulator: touchdown_emulator.TouchdownEmulator) -> Sequence[list[Any]]:
     """Rows of the landers of the journeys, each by refits that have not seen its bed, without any landing."""
-    begin = Arrivals.drawn(job.design, 0, len(job.design.rows))
+    begin = touchdown_emulator.Arrivals.drawn(job.design, 0, len(job.design.rows))
     unseen = {bed: emulator.unseen(bed) for bed in {int(row["bed"]) for row in begin.rows}}
     pairs = [
         (lander, refit)
@@ -133,7 +127,9 @@ def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     return _rows(job, emulator, OWN, begin.taken(which, refit), 0)
 
 
-def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, most: int) -> list[list[Any]]:
+def _rows(
+    job: Job, emulator: touchdown_emulator.TouchdownEmulator, name: str, begin: touchdown_emulator.Arrivals, most: int
+) -> list[list[Any]]:
     landers = EmulatedLanders.of(job, emulator, f"{name} landers by the emulator", begin)
     landers.follow(most)
     columns = (
@@ -165,9 +161,12 @@ def follow_options(job: Job) -> None:
     count = job.study.aim.lander_count * REFIT_COUNT
     end, time = np.full(len(begin.rows), UNKNOWN_END, dtype=object), np.zeros(len(begin.rows))
     distance = time
-    if why_no_emulator(job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None:
+    if touchdown_emulator.why_no_emulator(job.folder.read_json(touchdown_emulator.TOUCHDOWN_EMULATOR_FILE)) is None:
         landers = EmulatedLanders.of(
-            job, TouchdownEmulator.read(job.design, job.folder), "landers at the delivery options", begin
+            job,
+            touchdown_emulator.TouchdownEmulator.read(job.design, job.folder),
+            "landers at the delivery options",
+            begin,
         )
         # At most a tenth as many landings as the journeys had touchdowns, so that the cost stays theirs.
         landers.follow(most_landings(job))
@@ -183,11 +182,11 @@ def follow_options(job: Job) -> None:
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-def option_arrivals(design: DrawnDesign) -> Arrivals:
+def option_arrivals(design: DrawnDesign) -> touchdown_emulator.Arrivals:
     """The landers of all options, one option after the other."""
     study, place = design.study, design.site
     options = study.aim.aims()
-    one = Arrivals.drawn(design, len(design.rows), study.aim.lander_count * REFIT_COUNT)
+    one = touchdown_emulator.Arrivals.drawn(design, len(design.rows), study.aim.lander_count * REFIT_COUNT)
     count = len(one.rows)
     rows, site = [], {key: np.tile(values, len(options)) for key, values in one.site.items()}
     for number, option in enumerate(options):
@@ -200,10 +199,10 @@ def option_arrivals(design: DrawnDesign) -> Arrivals:
         of_impact = {name: value for name, value in chosen.items() if not name.startswith(SITE)}
         rows += [row | of_impact | attitude for row, attitude in zip(one.rows, attitudes, strict=True)]
     numbers, refit = (np.tile(values, len(options)) for values in (one.number, one.refit))
-    return Arrivals.of(place, numbers, rows, site, refit)
+    return touchdown_emulator.Arrivals.of(place, numbers, rows, site, refit)
 
 
-def _attitudes(study: Study, side: str, landers: Arrivals) -> list[dict[str, float]]:
+def _attitudes(study: Study, side: str, landers: touchdown_emulator.Arrivals) -> list[dict[str, float]]:
     random = np.random.default_rng(hashed_seed(study.seed, "attitudes of options"))
     directions, count = np.array(directions_of_sides(study.lander)[side]), len(landers.rows)
     down = directions[random.integers(len(directions), size=count)]

@@ -14,18 +14,8 @@ from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, MEAN_INCIDENCE, fr
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys import touchdown_emulator
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS, JourneyModel, on_ground
-from lithobrake.pipeline.journeys.touchdown_emulator import (
-    ALONG,
-    ASIDE,
-    DURATION,
-    GRAVITY,
-    SLOPE,
-    Answers,
-    Arrivals,
-    Row,
-    TouchdownEmulator,
-)
 from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
@@ -73,7 +63,7 @@ class LandingsBetween:
 
     job: Job
     title: str
-    begin: Arrivals
+    begin: touchdown_emulator.Arrivals
     most: int
     made: int = 0
 
@@ -81,10 +71,10 @@ class LandingsBetween:
     def model(self) -> JourneyModel:
         return JourneyModel(self.job.design)
 
-    def answers(self, impacts: NextImpacts, number: int) -> Answers:
+    def answers(self, impacts: NextImpacts, number: int) -> touchdown_emulator.Answers:
         """Land at touchdowns of a number, the first ones as long as landings are left; of others nothing is known."""
         total = len(impacts.lander)
-        found, count = Answers.unknown(total), min(total, self.most - self.made)
+        found, count = touchdown_emulator.Answers.unknown(total), min(total, self.most - self.made)
         if count > 0:
             self.made += count
             rows = [self._row(impacts, place, number) for place in range(count)]
@@ -93,7 +83,7 @@ class LandingsBetween:
                 _take_in(found, place, record)
         return found
 
-    def _row(self, impacts: NextImpacts, place: int, number: int) -> Row:
+    def _row(self, impacts: NextImpacts, place: int, number: int) -> touchdown_emulator.Row:
         """Inputs of a landing: the lander's own soil and bed, at a fresh place, in a random direction and attitude."""
         lander = int(impacts.lander[place])
         row, acceleration = self.begin.rows[lander], impacts.acceleration[place].tolist()
@@ -118,14 +108,14 @@ class LandingsBetween:
         }
 
 
-def _take_in(found: Answers, place: int, record: Record) -> None:
+def _take_in(found: touchdown_emulator.Answers, place: int, record: Record) -> None:
     outputs = record.outputs
     if record.status == RunStatus.FAILED:
         found.outcome[place] = RunStatus.FAILED.value
         return
     found.outcome[place] = str(record.outcome)
-    found.duration[place] = outputs.get(DURATION, 0.0)
-    found.way[place] = outputs.get(ALONG, 0.0), outputs.get(ASIDE, 0.0), 0.0
+    found.duration[place] = outputs.get(touchdown_emulator.DURATION, 0.0)
+    found.way[place] = outputs.get(touchdown_emulator.ALONG, 0.0), outputs.get(touchdown_emulator.ASIDE, 0.0), 0.0
     if record.outcome == TouchdownOutcome.CLEAR:
         found.velocity[place] = [outputs[name] for name in VELOCITY_OUT]
         found.spin[place] = [outputs.get(name, 0.0) for name in SPIN_OUT]
@@ -142,9 +132,9 @@ class EmulatedLanders:
     """
 
     job: Job
-    emulator: TouchdownEmulator
+    emulator: touchdown_emulator.TouchdownEmulator
     title: str
-    begin: Arrivals
+    begin: touchdown_emulator.Arrivals
     position: np.ndarray
     axes: np.ndarray
     spin: np.ndarray
@@ -157,7 +147,9 @@ class EmulatedLanders:
     soil: dict[str, np.ndarray] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, job: Job, emulator: TouchdownEmulator, title: str, begin: Arrivals) -> "EmulatedLanders":
+    def of(
+        cls, job: Job, emulator: touchdown_emulator.TouchdownEmulator, title: str, begin: touchdown_emulator.Arrivals
+    ) -> "EmulatedLanders":
         count = len(begin.rows)
         names = [name for name in emulator.plain_inputs if name not in emulator.ranges]
         return cls(
@@ -207,15 +199,15 @@ class EmulatedLanders:
         local = felt(body, self.position[going], clock, site["mass"][going], site["spin_period"][going])
         return np.einsum("nij,nj->ni", self.axes[going], local)
 
-    def _answers(self, going: np.ndarray, acceleration: np.ndarray, number: int) -> Answers:
+    def _answers(self, going: np.ndarray, acceleration: np.ndarray, number: int) -> touchdown_emulator.Answers:
         rows = (self.begin.rows[one] for one in going.tolist())
         # The emulator reads the size of the acceleration and the slope, for which any azimuth will do.
         ground = [ground_inputs(one, 0.0, friction_of(row)) for one, row in zip(acceleration, rows, strict=True)]
         inputs = {name: values[going] for name, values in self.soil.items()} | {
             IMPACT_SPEED: self.speed[going],
             IMPACT_INCIDENCE: self.incidence[going],
-            GRAVITY: np.array([one[GRAVITY] for one in ground]),
-            SLOPE: np.array([one[SLOPE] for one in ground]),
+            touchdown_emulator.GRAVITY: np.array([one[touchdown_emulator.GRAVITY] for one in ground]),
+            touchdown_emulator.SLOPE: np.array([one[touchdown_emulator.SLOPE] for one in ground]),
             **self._attitude(going, number),
         }
         beyond = self.emulator.beyond(inputs)
@@ -238,7 +230,7 @@ class EmulatedLanders:
         random = np.random.default_rng(hashed_seed(self.job.study.seed, self.title, "attitudes", number))
         return self.emulator.attitude_of(Rotation.random(len(self.end), rng=random)[going])
 
-    def _go_on(self, going: np.ndarray, answers: Answers, number: int) -> None:
+    def _go_on(self, going: np.ndarray, answers: touchdown_emulator.Answers, number: int) -> None:
         duration = self.duration
         self.time[going] += answers.duration
         self.position[going] += np.einsum("nji,nj->ni", self.axes[going], answers.way)

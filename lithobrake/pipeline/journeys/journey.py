@@ -11,16 +11,7 @@ import numpy as np
 from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import attitude_of, from_frame, spin_of
-from lithobrake.pipeline.design.arrivals import (
-    MEAN_INCIDENCE,
-    attitude_inputs,
-    friction_of,
-    ground_inputs,
-    impact_inputs,
-    lander_inertia,
-    met_ground,
-    turned_in_flight,
-)
+from lithobrake.pipeline.design import arrivals
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.design.soils import Soils, felt
@@ -77,7 +68,7 @@ class JourneyModel:
 
     def inertia(self, row: Mapping[str, float]) -> np.ndarray:
         """Inertia of the lander of a journey about its centre of mass [kg m2], [3, 3]."""
-        return lander_inertia(self.design.study, row)
+        return arrivals.lander_inertia(self.design.study, row)
 
     def place(self, x: float, y: float, row: Mapping[str, float]) -> tuple[float, float]:
         """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""
@@ -231,7 +222,7 @@ class Journey:
         # A touchdown gives the spin against the ground, and torque-free rotation is that against axes that do not turn.
         spin = spin_of(outputs) @ self.axes + turning
         inertia = self.model.inertia(self.row)
-        return turned_in_flight(inertia, attitude, spin, self.spin_period, time, ground=ground, start=start)
+        return arrivals.turned_in_flight(inertia, attitude, spin, self.spin_period, time, ground=ground, start=start)
 
     def _arrive(self, flight: "Flights", attitude: "Rotation", spin: np.ndarray) -> None:
         """Prepare the touchdown at the end of a flight: a fresh place of the journey's bed, and a fresh direction."""
@@ -246,20 +237,22 @@ class Journey:
         arrival = {
             "touchdown": float(number),
             TIME_LEFT: self.model.duration - self.time,
-            **impact_inputs(float(flight.impact_speed[0]), incidence),
+            **arrivals.impact_inputs(float(flight.impact_speed[0]), incidence),
             IMPACT_AZIMUTH: azimuth,
-            **attitude_inputs(self.axes, azimuth, attitude, spin),
+            **arrivals.attitude_inputs(self.axes, azimuth, attitude, spin),
             **dict(zip(PLACE, self.model.place(x, y, self.row), strict=True)),
-            **ground_inputs(self.axes @ self._felt(), azimuth, friction_of(self.row)),
+            **arrivals.ground_inputs(self.axes @ self._felt(), azimuth, arrivals.friction_of(self.row)),
         }
-        if MEAN_INCIDENCE in self.row:
-            arrival[MEAN_INCIDENCE] = math.degrees(float(flight.incidence[0]))
+        if arrivals.MEAN_INCIDENCE in self.row:
+            arrival[arrivals.MEAN_INCIDENCE] = math.degrees(float(flight.incidence[0]))
         self.row = {**self.row, **arrival}
 
     def _meet_ground(self, flight: "Flights", gradient: list[float]) -> float:
         """Lay the frame of the next touchdown, by two uniform numbers; gives the incidence in it [rad]."""
         study, up = self.model.design.study, self.model.body.shape.normals[flight.facet]
-        axes, incidence = met_ground(study, flight.velocity, up, flight.incidence, lambda: np.array([gradient]))
+        axes, incidence = arrivals.met_ground(
+            study, flight.velocity, up, flight.incidence, lambda: np.array([gradient])
+        )
         self.axes = axes[0]
         return float(incidence[0])
 

@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.pipeline.answer.dispersion_statistics import (
-    Rows,
-    ellipses,
-    flight_checks,
-    impact_numbers,
-    rest_results,
-    shares,
-    site_results,
-)
+from lithobrake.pipeline.answer import dispersion_statistics
 from lithobrake.pipeline.answer.run_answers import place_regions, scope
 from lithobrake.pipeline.answer.run_estimates import SPLIT
 from lithobrake.pipeline.answer.study_summary import bed_results, outputs_of_runs, write_summary_file
@@ -25,16 +17,8 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansions import kept_inputs, replicate_count
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import MISSING, Samples
+from lithobrake.results import model_results
 from lithobrake.results.dispersion import FlightResults, WithoutScatter
-from lithobrake.results.model_results import (
-    DesignCounts,
-    ExpansionResults,
-    ExpansionSamples,
-    NodeCounts,
-    OutputErrors,
-    OutputFit,
-    SampledOutput,
-)
 from lithobrake.results.run_results import ReturnFraction, SampleShares
 from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import PaperResults
@@ -86,29 +70,31 @@ def _results(job: Job, runs: dict[str, DesignRuns], distinct: DesignRuns) -> Pap
         kept_share=_by_output(screening, np.asarray(screening.sobol_group(kept))),
         scores=_scores(job),
         monte_carlo=_monte_carlo(samples),
-        site=(site := site_results(job.site)),
+        site=(site := dispersion_statistics.site_results(job.site)),
         # One bed, one place and one attitude have no parts.
         variance_shares=dict.fromkeys(SPLIT),
         shares=table,
         returns=return_fraction(study, table, sum(ended.values())),
-        flights=FlightResults(impact_numbers(flights), flight_checks(job)),
-        ellipses=ellipses(job.site, flights, FlightStatus.IMPACT),
+        flights=FlightResults(dispersion_statistics.impact_numbers(flights), dispersion_statistics.flight_checks(job)),
+        ellipses=dispersion_statistics.ellipses(job.site, flights, FlightStatus.IMPACT),
         regions=place_regions(site, flights, FlightStatus.IMPACT),
         without_scatter=_without_scatter(job, samples, ended, holds=holds),
-        rest=rest_results(job),
+        rest=dispersion_statistics.rest_results(job),
         answer=(),
         headline=(),
     )
 
 
-def limited_shares(samples: Samples, flights: Rows, run_outcomes: Mapping[str, int], *, holds: bool) -> SampleShares:
+def limited_shares(
+    samples: Samples, flights: dispersion_statistics.Rows, run_outcomes: Mapping[str, int], *, holds: bool
+) -> SampleShares:
     """What became of the samples; run_outcomes: how often each came in the runs; holds: whether the site does.
 
     upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
     """
     from lithobrake.analysis import upper_limit
 
-    found = shares(samples, flights, holds=holds)
+    found = dispersion_statistics.shares(samples, flights, holds=holds)
     outcomes, limit = dict(found.outcomes), upper_limit(sum(run_outcomes.values()))
     for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
         outcomes[outcome.value] = replace(outcomes[outcome.value], upper_limit=limit)
@@ -123,7 +109,11 @@ def _without_scatter(
         return None
     flights = read_table(job.folder, "flights_without_scatter.csv")
     found = limited_shares(samples.expansion_alone(), flights, run_outcomes, holds=holds)
-    return WithoutScatter(found, impact_numbers(flights), ellipses(job.site, flights, FlightStatus.IMPACT))
+    return WithoutScatter(
+        found,
+        dispersion_statistics.impact_numbers(flights),
+        dispersion_statistics.ellipses(job.site, flights, FlightStatus.IMPACT),
+    )
 
 
 def return_fraction(study: Study, table: SampleShares, run_count: int) -> ReturnFraction:
@@ -140,28 +130,28 @@ def return_fraction(study: Study, table: SampleShares, run_count: int) -> Return
     )
 
 
-def _scores(job: Job) -> dict[str, dict[str, OutputErrors]]:
+def _scores(job: Job) -> dict[str, dict[str, model_results.OutputErrors]]:
     """Scores by set of runs and output, less the errors of each run."""
     return {
         stage: {
-            output: replace(results_in(OutputErrors, score, f"{stage}.{output}"), ape=None)
+            output: replace(results_in(model_results.OutputErrors, score, f"{stage}.{output}"), ape=None)
             for output, score in table.items()
         }
         for stage, table in job.folder.read_json(SCORES_FILE).items()
     }
 
 
-def _monte_carlo(samples: Samples) -> ExpansionSamples:
+def _monte_carlo(samples: Samples) -> model_results.ExpansionSamples:
     """Spread of each output over the samples that leave the surface."""
     leaving, outputs = samples.leaves, {}
     for index, name in enumerate(samples.output_names if leaving.any() else ()):
         values = samples.outputs[leaving, index]
         quantiles = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-        outputs[name] = SampledOutput(float(values.mean()), float(values.std()), quantiles)
-    return ExpansionSamples(len(leaving), int(leaving.sum()), outputs)
+        outputs[name] = model_results.SampledOutput(float(values.mean()), float(values.std()), quantiles)
+    return model_results.ExpansionSamples(len(leaving), int(leaving.sum()), outputs)
 
 
-def _node_counts(study: Study, input_count: int) -> NodeCounts:
+def _node_counts(study: Study, input_count: int) -> model_results.NodeCounts:
     """Nodes of the full tensor grid and of the Smolyak grid, by number of inputs and level: what the design saves."""
     from lithobrake.chaos import smolyak_count, tensor_count
 
@@ -171,11 +161,11 @@ def _node_counts(study: Study, input_count: int) -> NodeCounts:
         tuple(tuple(int(count(n, level)) for level in levels) for n in counts)
         for count in (tensor_count, smolyak_count)
     )
-    return NodeCounts(counts, levels, tensor, smolyak)
+    return model_results.NodeCounts(counts, levels, tensor, smolyak)
 
 
-def _design(design: DesignRuns, replicate_count: int) -> DesignCounts:
-    return DesignCounts(
+def _design(design: DesignRuns, replicate_count: int) -> model_results.DesignCounts:
+    return model_results.DesignCounts(
         point_count=design.run_count // replicate_count,
         replicate_count=replicate_count,
         run_count=design.run_count,
@@ -184,7 +174,7 @@ def _design(design: DesignRuns, replicate_count: int) -> DesignCounts:
     )
 
 
-def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> ExpansionResults:
+def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) -> model_results.ExpansionResults:
     """What an expansion says, with its Sobol indices freed of scatter, and their 95 % intervals [lower, upper].
 
     An index is a share of the variance that the inputs give the expansion, not of that of the runs.
@@ -205,7 +195,7 @@ def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) 
             output: {name: (low, upper[output][name]) for name, low in ends.items()} for output, ends in lower.items()
         }
 
-    return ExpansionResults(
+    return model_results.ExpansionResults(
         inputs=tuple(inputs),
         term_count=len(surrogate.multi_indices),
         degree=surrogate.degree,
@@ -219,7 +209,7 @@ def _expansion(job: Job, design: str, surrogate: "Surrogate", runs: DesignRuns) 
     )
 
 
-def _fit(entry: dict[str, Any]) -> OutputFit:
+def _fit(entry: dict[str, Any]) -> model_results.OutputFit:
     """How one output was fitted, the error expected at a new run and the scatter between equal runs, SI.
 
     noise_share: of the variance of the runs; None where the scatter is not known or the runs do not vary.
@@ -228,7 +218,9 @@ def _fit(entry: dict[str, Any]) -> OutputFit:
     table: dict[str, Any] = {key: entry.get(key) for key in keys}
     noise, share = table["noise_std"], table["rrmse_estimate"]
     known = noise is not None and bool(share)
-    return OutputFit(**table, noise_share=min((noise * share / table["rmse_estimate"]) ** 2, 1.0) if known else None)
+    return model_results.OutputFit(
+        **table, noise_share=min((noise * share / table["rmse_estimate"]) ** 2, 1.0) if known else None
+    )
 
 
 def _by_output(surrogate: "Surrogate", values: np.ndarray) -> dict[str, float]:

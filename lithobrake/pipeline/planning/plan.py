@@ -5,17 +5,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from lithobrake.pipeline.inferred_study import ExpectedInference
+from lithobrake.pipeline.planning import planned_ground
 from lithobrake.pipeline.planning.expected_steps import PlannedRuns
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth, RunsABed
-from lithobrake.pipeline.planning.planned_ground import (
-    PlannedBeds,
-    PlannedBoulders,
-    PlannedGrains,
-    PlannedGround,
-    PlannedSoils,
-    PlannedTile,
-)
 from lithobrake.vocabulary.number_words import thousands, unit_of_time
 
 # One, and more.
@@ -64,7 +57,7 @@ class Plan:
     folder: str
     stages: tuple[str, ...]
     made: Mapping[str, tuple[int, int]]
-    beds: tuple[PlannedBeds, ...]
+    beds: tuple[planned_ground.PlannedBeds, ...]
     runs: tuple[PlannedRuns, ...]
     half_width: ExpectedHalfWidth | None
     process_count: int | None
@@ -75,11 +68,11 @@ class Plan:
     warnings: tuple[str, ...]
     site_slope_deg: float
     runs_a_bed: RunsABed | None = None
-    grains: PlannedGrains | None = None
-    boulders: PlannedBoulders | None = None
-    tile: PlannedTile | None = None
-    ground: PlannedGround | None = None
-    soils: PlannedSoils | None = None
+    grains: planned_ground.PlannedGrains | None = None
+    boulders: planned_ground.PlannedBoulders | None = None
+    tile: planned_ground.PlannedTile | None = None
+    ground: planned_ground.PlannedGround | None = None
+    soils: planned_ground.PlannedSoils | None = None
     delivery: str | None = None
     inference: ExpectedInference | None = None
 

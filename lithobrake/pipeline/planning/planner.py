@@ -12,14 +12,8 @@ from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
+from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
-from lithobrake.pipeline.planning.expected_time import (
-    basis,
-    expected_bytes,
-    expected_seconds,
-    flight_count,
-    journey_count,
-)
 from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
 from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
 from lithobrake.pipeline.planning.planned_ground import (
@@ -92,7 +86,7 @@ def plan_of(
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
-    sizes, free = expected_bytes(largest, runs[-1], soil), _free(folder.path)
+    sizes, free = expected_time.expected_bytes(largest, runs[-1], soil), _free(folder.path)
     room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
@@ -103,8 +97,8 @@ def plan_of(
         runs=runs,
         half_width=expected_width(design, known, folder, soil),
         process_count=workers,
-        seconds=expected_seconds(design.site, made, soil, ended, workers) if stale else {},
-        basis=basis(made, soil, ended),
+        seconds=expected_time.expected_seconds(design.site, made, soil, ended, workers) if stale else {},
+        basis=expected_time.basis(made, soil, ended),
         bytes=sizes,
         free_bytes=free,
         warnings=(*room, *study_warnings(design, soil)),
@@ -134,8 +128,8 @@ def _made(
         "journeys to rest": journeys,
         "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
         # How many samples leave the surface is known when they are drawn.
-        "flights": (0, flight_count(study) if "fly" in stale else 0),
-        "journeys": (journey_count(study),) * 2 if "rest" in stale else (0, 0),
+        "flights": (0, expected_time.flight_count(study) if "fly" in stale else 0),
+        "journeys": (expected_time.journey_count(study),) * 2 if "rest" in stale else (0, 0),
     }
 
 

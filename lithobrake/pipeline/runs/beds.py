@@ -13,18 +13,7 @@ from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
 from lithobrake.pipeline.design.design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.study import Study
-from lithobrake.study.touchdown_model import (
-    acceleration,
-    boulders,
-    contact,
-    engine_hash,
-    grain,
-    grain_sizes,
-    in_words_of_the_study,
-    medians,
-    refuse_other_code,
-)
+from lithobrake.study import Study, touchdown_model
 from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -127,8 +116,8 @@ def pour_one(
     """
     from lithobrake.touchdown import pour_bed, stored_or_poured
 
-    refuse_other_code(engine)
-    with in_words_of_the_study():
+    touchdown_model.refuse_other_code(engine)
+    with touchdown_model.in_words_of_the_study():
         # Another study may have poured it meanwhile, and a worker on another machine may have a library of its own.
         stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=tell))
 
@@ -139,7 +128,7 @@ def _pour_here(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> dict[s
     count = job.study.bed_count
     numbered = f"bed {number + 1} of {count}: " if count > 1 else ""
     try:
-        pour_one(*bed, engine_hash(), lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
+        pour_one(*bed, touchdown_model.engine_hash(), lambda done, what: job.progress(done, 1.0, f"{numbered}{what}"))
     except (ValueError, FloatingPointError) as error:
         return {_reason(error): [number]}
     return {}
@@ -147,7 +136,7 @@ def _pour_here(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> dict[s
 
 def _pour_on_workers(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> dict[str, list[int]]:
     """Pour beds on the workers; give the numbers of those that failed, by their reasons."""
-    engine = engine_hash()
+    engine = touchdown_model.engine_hash()
     numbers = {job.executor.submit(pour_one, *bed, engine): number for number, bed in beds.items()}
     failures: dict[str, list[int]] = {}
     pending, total = set(numbers), len(numbers)
@@ -190,7 +179,7 @@ def pour_beds(job: Job) -> None:
 
     (job.folder / "beds").mkdir(exist_ok=True)
     names = {index: name for index, name in enumerate(bed_files(job.study)) if name in job.wanted}
-    with in_words_of_the_study():
+    with touchdown_model.in_words_of_the_study():
         recipes = {index: bed_recipe(job.study, index) for index in names}
         new = {index: recipe for index, recipe in recipes.items() if not take_stored(recipe, job.folder / names[index])}
     found = len(names) - len(new)
@@ -205,17 +194,17 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
     """What the bed of a number follows from, uncertain quantities at their median."""
     from lithobrake.touchdown import BedRecipe
 
-    values = medians(study)
+    values = touchdown_model.medians(study)
     return BedRecipe(
         grain_count=study.bed.grain_count,
-        sizes=grain_sizes(study),
+        sizes=touchdown_model.grain_sizes(study),
         cloud_point_count=study.bed.cloud_point_count,
         width=study.bed.width,
-        material=grain(values),
-        gravity=acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
+        material=touchdown_model.grain(values),
+        gravity=touchdown_model.acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
         seed=pour_seed(study, index),
-        contact=contact(study),
+        contact=touchdown_model.contact(study),
         sides=study.bed.sides,
-        boulders=boulders(study),
+        boulders=touchdown_model.boulders(study),
     )

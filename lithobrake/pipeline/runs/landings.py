@@ -7,27 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.campaign import (
-    Ledger,
-    Limits,
-    ModelServer,
-    Record,
-    RunOptions,
-    Runs,
-    Tally,
-    missing,
-    read_records,
-    run_seed,
-)
+from lithobrake import campaign
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.external_model import PREFIX
-from lithobrake.pipeline.design.dependencies import (
-    bed_files,
-    solver_command,
-    solver_setting,
-    touchdown_dependencies,
-    touchdown_keys,
-)
+from lithobrake.pipeline.design import dependencies
 from lithobrake.pipeline.design.design import SIDE_DESIGNS, DrawnDesign, inputs_of
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.beds import compile_kernels
@@ -35,17 +18,8 @@ from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, SolverModel
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.study import Study
+from lithobrake.study import Study, touchdown_model
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import (
-    TouchdownModel,
-    draw,
-    engine_hash,
-    in_words_of_the_study,
-    lander,
-    landing,
-    stored_bed,
-)
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
 from lithobrake.vocabulary.study_files import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
@@ -67,14 +41,14 @@ def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[
 
 def touchdowns(
     job: Job, rows: Sequence[Mapping[str, float]], title: str, replicate: int, ledger_file: str = RUNS_FILE
-) -> Runs:  # fmt: skip
+) -> campaign.Runs:  # fmt: skip
     """Make the touchdowns with these inputs; those that the ledger has are read from it."""
     study = job.study
 
-    def show(state: Tally) -> None:
+    def show(state: campaign.Tally) -> None:
         job.progress(state.ended, state.total, title, "\n".join([state.sentence(), *state.spread_lines(OUTPUTS)]))
 
-    with Ledger(job.folder / ledger_file) as ledger:
+    with campaign.Ledger(job.folder / ledger_file) as ledger:
         return run_campaign(
             model_of(study, job.folder.path.absolute(), job.model),
             np.array([list(row.values()) for row in rows]),
@@ -89,10 +63,10 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
     """What every campaign of landings of a study is given, as arguments of `campaign.run` and `run_chains`."""
     asked = job.study.campaign
     return {
-        "context": touchdown_dependencies(job.study),
+        "context": dependencies.touchdown_dependencies(job.study),
         "executor": job.executor,
-        "limits": Limits(asked.wall_limit or math.inf, asked.memory_limit or math.inf),
-        "options": RunOptions(
+        "limits": campaign.Limits(asked.wall_limit or math.inf, asked.memory_limit or math.inf),
+        "options": campaign.RunOptions(
             seed=job.study.seed,
             replicate=replicate,
             retry_count=asked.retry_count,
@@ -103,32 +77,36 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
 
 def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
     study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
-    drawn = draw(study, values, run_seed(values, study.seed, replicate))
+    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate))
     return {name: float(value) for name, value in drawn.items()}
 
 
 def model_of(
     study: Study, folder: Path, function: Model | None
-) -> TouchdownModel | SolverModel | ServerModel | FunctionModel:
+) -> touchdown_model.TouchdownModel | SolverModel | ServerModel | FunctionModel:
     """What makes the touchdowns of a study with this folder, an absolute path: workers may have another one."""
     if function is not None:
         return FunctionModel(function)
     if study.solver.command and study.solver.command.startswith(PREFIX):
         return ServerModel(
-            ModelServer.of(study.solver.command), tuple(uncertain(study.touchdown_values())), solver_setting(study)
+            campaign.ModelServer.of(study.solver.command),
+            tuple(uncertain(study.touchdown_values())),
+            dependencies.solver_setting(study),
         )
     if study.solver.command:
-        return SolverModel(solver_command(study, folder), solver_setting(study))
-    return TouchdownModel(study, tuple(folder / name for name in bed_files(study)), engine_hash())
+        return SolverModel(dependencies.solver_command(study, folder), dependencies.solver_setting(study))
+    return touchdown_model.TouchdownModel(
+        study, tuple(folder / name for name in dependencies.bed_files(study)), touchdown_model.engine_hash()
+    )
 
 
-def known_runs(study: Study, folder: StudyFolder) -> dict[str, Record]:
+def known_runs(study: Study, folder: StudyFolder) -> dict[str, campaign.Record]:
     """Runs of the folder's ledger, by key, that are not made again; none where there is no ledger.
 
     Raises ValueError for a file that is no ledger.
     """
     path = folder / RUNS_FILE
-    records = read_records(path) if path.is_file() else []
+    records = campaign.read_records(path) if path.is_file() else []
     tries = study.campaign.retry_count
     return {
         entry.key: entry
@@ -152,11 +130,11 @@ def make_rows(job: Job, design: str, rows: Sequence[Sequence[Mapping[str, float]
     """Make runs with all their inputs, a list for each time that they are made, and write their table."""
     count, title = len(rows), f"{design.replace('_', ' ')} runs"
     titles = [f"{title}, {number} of {count} times" if count > 1 else title for number in range(1, count + 1)]
-    keys = [key for replicate, one in enumerate(rows) for key in touchdown_keys(job.study, one, replicate)]
+    keys = [key for replicate, one in enumerate(rows) for key in dependencies.touchdown_keys(job.study, one, replicate)]
     # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs(design, keys)
     made = [touchdowns(job, rows[replicate], words, replicate) for replicate, words in enumerate(titles)]
-    runs = Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
+    runs = campaign.Runs([record for one in made for record in one.records], sum(one.reused_count for one in made))
     inputs = tuple(job.design.inputs)
     account(job, design, runs, inputs)
     gained = energy_warning(job.design, runs.records, height_of_beds(job.study, job.folder))
@@ -171,13 +149,13 @@ def say_gravity(job: Job) -> None:
         job.say(job.site.gravity_warning)
 
 
-def account(job: Job, design: str, runs: Runs, inputs: Sequence[str]) -> None:
+def account(job: Job, design: str, runs: campaign.Runs, inputs: Sequence[str]) -> None:
     """Say what of a design was known before, and what is missing. Raises ValueError when too much is."""
     name, distinct = design.replace("_", " "), len({record.key for record in runs.records})
     if runs.reused_count:
         job.say(f"{name}: {runs.reused_count} of {distinct} runs were known and are reused")
     x = inputs_of([record.inputs for record in runs.records], inputs)
-    lost = missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
+    lost = campaign.missing(x, runs.reasons, inputs, job.study.campaign.failed_share)
     if lost:
         job.say(f"{name}: {lost}")
 
@@ -191,14 +169,14 @@ def telling_files(study: Study) -> list[str]:
 
 
 def landing_dependencies(study: Study) -> dict[str, Any]:
-    return {"touchdown": touchdown_dependencies(study), "values": landing_values(DrawnDesign(study))}
+    return {"touchdown": dependencies.touchdown_dependencies(study), "values": landing_values(DrawnDesign(study))}
 
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if design.study.design.method == "paper":
         # The paper's method has no first drawn run; its landing is that of the medians.
-        return draw(design.study, design.medians, design.study.seed)
+        return touchdown_model.draw(design.study, design.medians, design.study.seed)
     return design.shown_row
 
 
@@ -236,9 +214,9 @@ def telling_run(runs: DesignRuns) -> int:
 def _land(job: Job, values: dict[str, float], file: str, **notes: str) -> str:
     from lithobrake.touchdown import land
 
-    bed = stored_bed(job.folder / bed_files(job.study)[round(values["bed"])])
-    with in_words_of_the_study():
-        body, arrival = lander(job.study, values), landing(job.study, values)
+    bed = touchdown_model.stored_bed(job.folder / dependencies.bed_files(job.study)[round(values["bed"])])
+    with touchdown_model.in_words_of_the_study():
+        body, arrival = touchdown_model.lander(job.study, values), touchdown_model.landing(job.study, values)
         outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
     outcome.save_frames(job.folder / file, bed, body, arrival, **notes)
     return str(outcome.status)

@@ -9,16 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.patheffects import Normal, Stroke
 
-from lithobrake.report.figures.ground_map import (
-    LINE_POINTS,
-    SITE_STYLE,
-    GroundMap,
-    MapPanel,
-    mark_site,
-    panel_around,
-    round_length,
-    step_of,
-)
+from lithobrake.report.figures import ground_map
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE, WASH
 from lithobrake.results import JourneyTrack
 from lithobrake.vocabulary.arrays import Array
@@ -33,7 +24,7 @@ SIZE = (9.2, 5.2)
 TRACK_RIM = [Stroke(linewidth=2.6, foreground="white"), Normal()]
 
 
-def frame_local(axes: Axes, ground: GroundMap, panel: MapPanel) -> None:
+def frame_local(axes: Axes, ground: ground_map.GroundMap, panel: ground_map.MapPanel) -> None:
     """A panel in metres from the middle of its map, with the lines of latitude and longitude that cross it."""
     axes.set_xlim(panel.east - panel.half, panel.east + panel.half)
     axes.set_ylim(panel.north - panel.half, panel.north + panel.half)
@@ -56,19 +47,19 @@ def frame_local(axes: Axes, ground: GroundMap, panel: MapPanel) -> None:
     draw_bar(axes, 2.0 * panel.half)
 
 
-def graticule(latitude: Array, longitude: Array, ground: GroundMap) -> Iterator[tuple[str, Array, Array]]:
+def graticule(latitude: Array, longitude: Array, ground: ground_map.GroundMap) -> Iterator[tuple[str, Array, Array]]:
     """The lines over a part of the body with these latitudes and longitudes [deg]: name, latitude, longitude."""
     turned = (longitude - ground.longitude + 180.0) % 360.0 - 180.0
-    step = step_of(float(np.ptp(latitude)))
-    around = np.linspace(-180.0, 180.0, LINE_POINTS)
+    step = ground_map.step_of(float(np.ptp(latitude)))
+    around = np.linspace(-180.0, 180.0, ground_map.LINE_POINTS)
     for value in _multiples(float(latitude.min()), float(latitude.max()), step):
-        yield degrees(value, "N", "S"), np.full(LINE_POINTS, value), ground.longitude + around
+        yield degrees(value, "N", "S"), np.full(ground_map.LINE_POINTS, value), ground.longitude + around
     # About a pole all meridians meet, and few of them are enough.
     low, high = ground.longitude + float(turned.min()), ground.longitude + float(turned.max())
-    across = step_of(high - low)
-    along = np.linspace(-90.0, 90.0, LINE_POINTS)
+    across = ground_map.step_of(high - low)
+    along = np.linspace(-90.0, 90.0, ground_map.LINE_POINTS)
     for value in _multiples(low, high, across):
-        yield degrees((value + 180.0) % 360.0 - 180.0, "E", "W"), along, np.full(LINE_POINTS, value)
+        yield degrees((value + 180.0) % 360.0 - 180.0, "E", "W"), along, np.full(ground_map.LINE_POINTS, value)
 
 
 def degrees(value: float, positive: str, negative: str) -> str:
@@ -83,7 +74,7 @@ def _multiples(low: float, high: float, step: float) -> Array:
     return step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1.0)
 
 
-def _leaves(x: Array, y: Array, panel: MapPanel) -> tuple[float, float, bool] | None:
+def _leaves(x: Array, y: Array, panel: ground_map.MapPanel) -> tuple[float, float, bool] | None:
     """Where a line meets the left edge of a panel, or else its lower one: place, and whether it is the left one."""
     for is_left, along, across, edge, middle in (
         (True, x, y, panel.east - panel.half, panel.north),
@@ -100,7 +91,7 @@ def _leaves(x: Array, y: Array, panel: MapPanel) -> tuple[float, float, bool] | 
     return None
 
 
-def _poles(axes: Axes, ground: GroundMap, panel: MapPanel | None) -> None:
+def _poles(axes: Axes, ground: ground_map.GroundMap, panel: ground_map.MapPanel | None) -> None:
     """Both poles as points, as far as they lie on this side of the body, and within a panel."""
     for latitude, name in ((90.0, "N"), (-90.0, "S")):
         at = np.array([latitude]), np.array([0.0])
@@ -114,7 +105,7 @@ def _poles(axes: Axes, ground: GroundMap, panel: MapPanel | None) -> None:
         )  # fmt: skip
 
 
-def frame_half(axes: Axes, ground: GroundMap, title: str) -> Circle:
+def frame_half(axes: Axes, ground: ground_map.GroundMap, title: str) -> Circle:
     """The half of the body around the middle of a map, as a disc; returns it, to clip by."""
     edge = ground.edge
     disc = Circle((0.0, 0.0), edge, facecolor=WASH, edgecolor=QUIET, linewidth=0.8, zorder=0)
@@ -124,17 +115,17 @@ def frame_half(axes: Axes, ground: GroundMap, title: str) -> Circle:
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_title(title, loc="center", fontsize=8.5, fontweight="normal")
-    around, along = np.linspace(-180.0, 180.0, LINE_POINTS), np.linspace(-90.0, 90.0, LINE_POINTS)
+    around, along = np.linspace(-180.0, 180.0, ground_map.LINE_POINTS), np.linspace(-90.0, 90.0, ground_map.LINE_POINTS)
     for latitude in range(-60, 61, 30):
         name = degrees(latitude, "N", "S")
-        _named_line(axes, ground, np.full(LINE_POINTS, float(latitude)), ground.longitude + around, name)
+        _named_line(axes, ground, np.full(ground_map.LINE_POINTS, float(latitude)), ground.longitude + around, name)
     for longitude in range(-180, 180, 30):
-        _named_line(axes, ground, along, np.full(LINE_POINTS, float(longitude)), "")
+        _named_line(axes, ground, along, np.full(ground_map.LINE_POINTS, float(longitude)), "")
     _poles(axes, ground, None)
     return disc
 
 
-def _named_line(axes: Axes, ground: GroundMap, latitude: Array, longitude: Array, name: str) -> None:
+def _named_line(axes: Axes, ground: ground_map.GroundMap, latitude: Array, longitude: Array, name: str) -> None:
     x, y = ground.line(latitude, longitude)
     axes.plot(x, y, **LINE)
     if name and np.isfinite(x).any():
@@ -144,7 +135,7 @@ def _named_line(axes: Axes, ground: GroundMap, latitude: Array, longitude: Array
 
 def draw_bar(axes: Axes, width: float) -> None:
     """A bar of a round length in the lower left corner of axes that are so wide [m]."""
-    length = round_length(LONGEST_BAR * width)
+    length = ground_map.round_length(LONGEST_BAR * width)
     part = length / width
     style: dict[str, Any] = {"transform": axes.transAxes, "zorder": 7}
     axes.add_patch(Rectangle((0.025, 0.022), part + 0.03, 0.085, color="white", alpha=0.85, linewidth=0.0, **style))
@@ -160,8 +151,8 @@ def track_map(track: JourneyTrack, shown: int | None = None) -> Figure:
     places = np.array([one.place for one in track.touchdowns])
     end = np.array([track.end_place]) if track.end_place is not None else np.empty((0, 2))
     latitude, longitude = np.concatenate([places, end]).T
-    ground = GroundMap(*track.aim, track.radius)
-    panel = panel_around(ground, [(latitude, longitude)])
+    ground = ground_map.GroundMap(*track.aim, track.radius)
+    panel = ground_map.panel_around(ground, [(latitude, longitude)])
     if shown is not None:
         places, end = places[: shown + 1], end[:0]
     figure = Figure(figsize=SIZE)
@@ -187,7 +178,9 @@ def track_map(track: JourneyTrack, shown: int | None = None) -> Figure:
     return figure
 
 
-def _draw_track(axes: Axes, track: JourneyTrack, ground: GroundMap, places: Any, end: Any, *, is_close: bool) -> None:
+def _draw_track(
+    axes: Axes, track: JourneyTrack, ground: ground_map.GroundMap, places: Any, end: Any, *, is_close: bool
+) -> None:
     """Impacts, lines between them, the end, and the aim point, as far as they are on this half; close: with numbers."""
     x, y = ground.line(*np.concatenate([places, end]).T)
     axes.plot(x, y, color=LANDER, linewidth=1.4 if is_close else 0.9, zorder=5)
@@ -202,5 +195,5 @@ def _draw_track(axes: Axes, track: JourneyTrack, ground: GroundMap, places: Any,
     if len(end):
         axes.plot(x[-1], y[-1], color=END_COLOURS[track.end], markersize=size + 2, label=track.end.label, **dots)
     if ground.facing(*(np.array([one]) for one in track.aim))[0] > 0.0 and is_close:
-        mark_site(axes, *(float(one[0]) for one in ground.places(*(np.array([one]) for one in track.aim))))
-    axes.plot([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 12})
+        ground_map.mark_site(axes, *(float(one[0]) for one in ground.places(*(np.array([one]) for one in track.aim))))
+    axes.plot([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 12})

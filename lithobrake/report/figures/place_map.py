@@ -12,24 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from lithobrake.report.figures.ground_map import (
-    MANY,
-    SITE_STYLE,
-    SOIL_STYLE,
-    GroundMap,
-    MapPanel,
-    Outlines,
-    cell_counts,
-    density_colours,
-    density_norm,
-    draw_cells,
-    draw_edges,
-    draw_soils,
-    fill_regions,
-    mark_site,
-    panel_around,
-    region_style,
-)
+from lithobrake.report.figures import ground_map
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
 from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import QUIET
@@ -55,7 +38,7 @@ class Places:
     @property
     def are_many(self) -> bool:
         """Whether they are drawn as counts in cells, not as dots."""
-        return len(self.latitude) >= MANY
+        return len(self.latitude) >= ground_map.MANY
 
 
 @dataclass(frozen=True)
@@ -79,19 +62,19 @@ class PlaceMap:
     regions: Sequence[Regions]
     aim: tuple[float, float]
     radius: float
-    soils: Mapping[str, Outlines] = field(default_factory=dict)
+    soils: Mapping[str, ground_map.Outlines] = field(default_factory=dict)
 
     @property
-    def ground(self) -> GroundMap:
+    def ground(self) -> ground_map.GroundMap:
         """The map about the aim point."""
-        return GroundMap(*self.aim, self.radius)
+        return ground_map.GroundMap(*self.aim, self.radius)
 
-    def panel(self) -> MapPanel | None:
+    def panel(self) -> ground_map.MapPanel | None:
         """The part of it that holds the regions, or the landers where there are none; None where they lie apart."""
         lines = [np.array(line).T for one in self.regions for region in one.found for line in region.outlines]
         if not (self.regions and self.regions[0].found):
             lines += [np.array([one.latitude, one.longitude]) for one in self.places]
-        return panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
+        return ground_map.panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
 
     @property
     def leaves_out(self) -> bool:
@@ -115,7 +98,7 @@ def local_figure(shown: PlaceMap) -> Figure:
         axes = figure.add_axes((LEFT / WIDTH, (rows + BELOW) / height, MAP / WIDTH, MAP / height))
         draw_local(axes, shown, panel, norm)
     if many:
-        width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
+        width = ground_map.cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
         bar = figure.add_axes((LEFT / WIDTH, (rows - 0.14) / height, 0.7, 0.1 / height))
         scale = draw_scale(figure, many, norm, width, cax=bar, orientation="horizontal")
         scale.ax.xaxis.label.set_fontsize(8)
@@ -145,18 +128,18 @@ def outcomes_figure(shown: PlaceMap, shares: list[ShareBar], whole: str) -> Figu
     return figure
 
 
-def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> None:
+def draw_local(axes: Axes, shown: PlaceMap, panel: ground_map.MapPanel, norm: LogNorm) -> None:
     """Draw a part of the map about the aim point with its frame."""
     ground, outside = shown.ground, 0
     for place, one in enumerate(shown.regions):
         if place == 0 and not any(places.are_many for places in shown.places):
-            fill_regions(axes, one.found, ground, one.colour)
-        draw_edges(axes, one.found, ground, one.colour)
-    draw_soils(axes, shown.soils, ground)
+            ground_map.fill_regions(axes, one.found, ground, one.colour)
+        ground_map.draw_edges(axes, one.found, ground, one.colour)
+    ground_map.draw_soils(axes, shown.soils, ground)
     for places in shown.places:
         _draw_places(axes, places, ground, panel, norm)
         outside += _outside(places, ground, panel)
-    mark_site(axes, 0.0, 0.0)
+    ground_map.mark_site(axes, 0.0, 0.0)
     frame_local(axes, ground, panel)
     if outside:
         style: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 8, "color": QUIET, "zorder": 7}
@@ -166,32 +149,35 @@ def draw_local(axes: Axes, shown: PlaceMap, panel: MapPanel, norm: LogNorm) -> N
 def draw_scale(figure: Any, many: Places, norm: LogNorm, width: float, **place: Any) -> Any:
     """The colour bar of counts in cells of a width [m], at a place as of Figure.colorbar."""
     words = f"{many.words} in a cell {width:.2g} m wide"
-    bar: Any = figure.colorbar(ScalarMappable(norm, density_colours(many.colour)), format="%g", label=words, **place)
+    bar: Any = figure.colorbar(
+        ScalarMappable(norm, ground_map.density_colours(many.colour)), format="%g", label=words, **place
+    )
     return bar
 
 
-def _norm(shown: PlaceMap, grounds: Sequence[GroundMap], panel: MapPanel | None) -> LogNorm:
+def _norm(shown: PlaceMap, grounds: Sequence[ground_map.GroundMap], panel: ground_map.MapPanel | None) -> LogNorm:
     """One scale for the counts of all maps of a figure."""
-    return density_norm([
-        cell_counts(ground, (one.latitude, one.longitude), panel)[0] for ground in grounds for one in shown.places
-    ])  # fmt: skip
+    places = [(ground, (one.latitude, one.longitude)) for ground in grounds for one in shown.places]
+    return ground_map.density_norm([ground_map.cell_counts(ground, place, panel)[0] for ground, place in places])
 
 
-def _outside(places: Places, ground: GroundMap, panel: MapPanel) -> int:
+def _outside(places: Places, ground: ground_map.GroundMap, panel: ground_map.MapPanel) -> int:
     """How many places lie outside of a panel."""
     return len(places.latitude) - int(panel.holds(*_seen(places, ground)).sum())
 
 
-def _seen(places: Places, ground: GroundMap) -> tuple[Array, Array]:
+def _seen(places: Places, ground: ground_map.GroundMap) -> tuple[Array, Array]:
     """Metres east and north of those on the half of the body around the middle of the map."""
     seen = ground.facing(places.latitude, places.longitude) >= 0.0
     return ground.places(places.latitude[seen], places.longitude[seen])
 
 
-def _draw_places(axes: Axes, places: Places, ground: GroundMap, panel: MapPanel | None, norm: LogNorm) -> None:
+def _draw_places(
+    axes: Axes, places: Places, ground: ground_map.GroundMap, panel: ground_map.MapPanel | None, norm: LogNorm
+) -> None:
     """Draw places as dots, or many of them as counts in cells."""
     if places.are_many:
-        draw_cells(axes, ground, (places.latitude, places.longitude), panel, norm, places.colour)
+        ground_map.draw_cells(axes, ground, (places.latitude, places.longitude), panel, norm, places.colour)
     else:
         size = 16.0 if panel else 9.0
         axes.scatter(*_seen(places, ground), s=size, color=places.colour, linewidths=0.4, edgecolors="white", zorder=5)
@@ -206,15 +192,15 @@ def _halves(figure: Figure, shown: PlaceMap, norm: LogNorm, place: tuple[float, 
         axes = figure.add_axes((left + 0.5 * width * side, bottom, 0.5 * width, 0.91 * height))
         _draw_half(axes, shown, ground, norm, title)
         if side == 0:
-            mark_site(axes, 0.0, 0.0)
+            ground_map.mark_site(axes, 0.0, 0.0)
             draw_bar(axes, 2.12 * ground.edge)
 
 
-def _draw_half(axes: Axes, shown: PlaceMap, ground: GroundMap, norm: LogNorm, title: str) -> None:
+def _draw_half(axes: Axes, shown: PlaceMap, ground: ground_map.GroundMap, norm: LogNorm, title: str) -> None:
     disc = frame_half(axes, ground, title)
     for one in shown.regions:
-        draw_edges(axes, one.found, ground, one.colour)
-    draw_soils(axes, shown.soils, ground)
+        ground_map.draw_edges(axes, one.found, ground, one.colour)
+    ground_map.draw_soils(axes, shown.soils, ground)
     for places in shown.places:
         _draw_places(axes, places, ground, None, norm)
     for line in axes.lines:
@@ -227,13 +213,13 @@ def draw_map(axes: Axes, shown: PlaceMap) -> None:
     norm = _norm(shown, (shown.ground,), panel)
     if panel is None:
         _draw_half(axes, shown, shown.ground, norm, "the half around the aim point")
-        mark_site(axes, 0.0, 0.0)
+        ground_map.mark_site(axes, 0.0, 0.0)
         draw_bar(axes, 2.12 * shown.ground.edge)
     else:
         draw_local(axes, shown, panel, norm)
     many = next((one for one in shown.places if one.are_many), None)
     if many:
-        width = cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
+        width = ground_map.cell_counts(shown.ground, (many.latitude, many.longitude), panel)[2]
         draw_scale(axes.figure, many, norm, width, ax=axes, shrink=0.7)
     axes.legend(handles=_handles(shown), loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
 
@@ -248,12 +234,12 @@ def _handles(shown: PlaceMap) -> list[Line2D]:
     ]
     for one in shown.regions:
         for region in one.found:
-            words, style = f"smallest region with {percent(region.share)} of {one.of}", region_style(region)
+            words, style = f"smallest region with {percent(region.share)} of {one.of}", ground_map.region_style(region)
             handles.append(Line2D([], [], linestyle=style, color=one.colour, linewidth=1.3, label=words))
     if any(shown.soils.values()):
         named = ", ".join(name for name, lines in shown.soils.items() if lines)
-        handles.append(Line2D([], [], label=f"edges of soils ({named})", **SOIL_STYLE))
-    handles.append(Line2D([], [], linestyle="none", label="aim point", **{**SITE_STYLE, "markersize": 11}))
+        handles.append(Line2D([], [], label=f"edges of soils ({named})", **ground_map.SOIL_STYLE))
+    handles.append(Line2D([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 11}))
     return handles
 
 
@@ -300,7 +286,7 @@ def rest_figure(maps: Sequence[RestMap], aim: tuple[float, float], radius: float
         if panel:
             axes = figure.add_axes((0.07 + 0.5 * side, 1.0 - 3.85 / height, 0.38, 3.5 / height))
             places = (one.places.latitude, one.places.longitude)
-            norm = density_norm([cell_counts(together.ground, places, panel)[0]])
+            norm = ground_map.density_norm([ground_map.cell_counts(together.ground, places, panel)[0]])
             draw_local(axes, replace(together, places=[one.places], regions=[one.regions]), panel, norm)
         share = row_height * len(one.shares) / height
         bars = figure.add_axes((0.135 + 0.5 * side, 1.0 - maps_height / height - share, 0.18, share))

@@ -5,19 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import PageSection, Plot
+from lithobrake.report.figures import place_map
 from lithobrake.report.figures.body_figures import body_figure
 from lithobrake.report.figures.expansion_figures import scatter_figure
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import bed_figure, landing_figure
-from lithobrake.report.figures.place_map import (
-    PlaceMap,
-    Places,
-    Regions,
-    RestMap,
-    local_figure,
-    outcomes_figure,
-    rest_figure,
-)
 from lithobrake.report.figures.share_figures import ShareBar
 from lithobrake.report.live.views import body_views
 from lithobrake.report.tables.dispersion_tables import followed, parts, place_tables, site_tables
@@ -68,11 +60,11 @@ def draw_landing(data: PageData) -> "Figure | None":
 
 
 def draw_impacts(data: SampledPage) -> "Figure":
-    return local_figure(impacts(data))
+    return place_map.local_figure(impacts(data))
 
 
 def draw_outcomes(data: SampledPage) -> "Figure":
-    return outcomes_figure(impacts(data), impact_shares(data), whole_words(data))
+    return place_map.outcomes_figure(impacts(data), impact_shares(data), whole_words(data))
 
 
 def impact_shares(data: SampledPage) -> list[ShareBar]:
@@ -82,11 +74,11 @@ def impact_shares(data: SampledPage) -> list[ShareBar]:
     return [_share(data, key, short, table.outcomes[key]) for key, short in words.items()]
 
 
-def impacts(data: SampledPage) -> PlaceMap:
+def impacts(data: SampledPage) -> place_map.PlaceMap:
     """Where the landers come down after the first bounce, with the regions of these places."""
     colour = FATE_COLOURS[FlightStatus.IMPACT]
-    places, regions = Places("impacts", colour, data.latitude, data.longitude), data.results.regions
-    return PlaceMap([places], [Regions("the impacts", colour, regions)], *_aim(data))
+    places, regions = place_map.Places("impacts", colour, data.latitude, data.longitude), data.results.regions
+    return place_map.PlaceMap([places], [place_map.Regions("the impacts", colour, regions)], *_aim(data))
 
 
 def _aim(data: PageData) -> tuple[tuple[float, float], float]:
@@ -138,8 +130,8 @@ def draw_rest(data: SampledPage) -> "Figure | None":
         if table is None:
             continue
         shares = [_share(data, key, words.format(limit=limit), table.outcomes[key]) for key, words in met.items()]
-        places = Places("at rest", AT_REST, latitude, longitude)
-        regions = Regions("those at rest", AT_REST, table.regions)
+        places = place_map.Places("at rest", AT_REST, latitude, longitude)
+        regions = place_map.Regions("those at rest", AT_REST, table.regions)
         whole = f"the {table.sample_count} followed"
-        maps.append(RestMap(f"On {GROUND_WORDS[ground]}", places, regions, shares, whole))
-    return rest_figure(maps, *_aim(data)) if maps else None
+        maps.append(place_map.RestMap(f"On {GROUND_WORDS[ground]}", places, regions, shares, whole))
+    return place_map.rest_figure(maps, *_aim(data)) if maps else None

@@ -9,20 +9,9 @@ from lithobrake.report.tables.dispersion_tables import limit_state_tables, rare_
 from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
 from lithobrake.results.page_data import DrawnPage, RunsPage
 from lithobrake.results.run_results import SideRuns, VarianceParts
-from lithobrake.statements import notes
+from lithobrake.statements import labels, notes
 from lithobrake.statements.answers import action
 from lithobrake.statements.captions import has_interval
-from lithobrake.statements.labels import (
-    PART_WORDS,
-    RETURNS,
-    RUN_WORDS,
-    bracket,
-    input_words,
-    long_part_words,
-    output,
-    output_words,
-    quantile,
-)
 from lithobrake.statements.touchdowns import BAND, drawn_things, left_out, run_outcomes
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
@@ -96,7 +85,7 @@ def _outputs(data: RunsPage) -> PageTable:
     columns = ["output", "unit", "mean", "standard deviation", *QUANTILE_WORDS.values()]
     rows = []
     for name, table in data.results.spreads.items():
-        shown = output(name)
+        shown = labels.output(name)
         cells = [_estimate(table.mean, shown.factor), table_cell(table.standard_deviation * shown.factor)]
         cells += [_estimate(table.quantiles[level], shown.factor) for level in QUANTILE_WORDS]
         rows.append([shown.words.replace("_", " "), shown.unit, *cells])
@@ -108,7 +97,7 @@ def _directions(data: RunsPage) -> PageTable:
     columns = ["output", "mean direction [deg]", "resultant length"]
     rows = [
         [
-            output(name).words.replace("_", " "),
+            labels.output(name).words.replace("_", " "),
             _estimate(table.mean_direction, math.degrees(1.0)),
             _estimate(table.resultant_length, 1.0),
         ]
@@ -122,7 +111,7 @@ def _estimate(entry: Estimate | None, factor: float) -> str:
     if entry is None:
         return ""
     shown = entry.on_scale(lambda value: value * factor)
-    return f"{table_cell(shown.value)}{bracket(shown.lower, shown.upper)}"
+    return f"{table_cell(shown.value)}{labels.bracket(shown.lower, shown.upper)}"
 
 
 def _variance(data: RunsPage) -> PageTable:
@@ -130,12 +119,12 @@ def _variance(data: RunsPage) -> PageTable:
     records = data.results.variance_shares
     known = [record for record in records.values() if record]
     inputs = list(dict.fromkeys(name for record in known for name in record.soil_by_input))
-    names = [name for name in PART_WORDS if name != "soil" and any(name in one.parts for one in known)]
+    names = [name for name in labels.PART_WORDS if name != "soil" and any(name in one.parts for one in known)]
     heads = ["soil, at least", "with ranges twice as wide, at least"]
-    heads += [f"of this, {input_words(name)} alone" for name in inputs]
-    heads += [long_part_words(known[0], name) for name in names]
+    heads += [f"of this, {labels.input_words(name)} alone" for name in inputs]
+    heads += [labels.long_part_words(known[0], name) for name in names]
     rows = list(map(list, zip(heads, *(_parts(one, inputs, names) for one in records.values()), strict=True)))
-    columns = ["part", *map(output_words, records)]
+    columns = ["part", *map(labels.output_words, records)]
     return PageTable(
         "Parts of the variance", columns, rows if known else [], notes.variance(data, known), frozenset(columns[1:])
     )
@@ -145,7 +134,7 @@ def _sides(data: RunsPage) -> PageTable:
     """What becomes of the landers by the side that faces the ground; of journeys the first touchdown."""
     columns = ["side toward the ground", "landings", "median rebound speed over impact speed", "return fraction"]
     rows = [
-        [one.words, str(one.landings), quantile(one.speed_ratio), with_interval(one.returns.share)]
+        [one.words, str(one.landings), labels.quantile(one.speed_ratio), with_interval(one.returns.share)]
         for one in data.results.sides.values()
     ]
     note = notes.sides(data.level)
@@ -163,7 +152,9 @@ def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[
 def _runs(data: RunsPage) -> PageTable:
     runs = data.results.runs
     total = max(sum(runs.outcomes.values()), 1)
-    rows = [[RUN_WORDS.get(word, word), str(count), percent(count / total)] for word, count in runs.outcomes.items()]
+    rows = [
+        [labels.RUN_WORDS.get(word, word), str(count), percent(count / total)] for word, count in runs.outcomes.items()
+    ]
     far = runs.farther_than_period
     aside, count = (
         ("left the surface across the edge of the bed", runs.over_rim)
@@ -179,11 +170,11 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     """What pairs of runs tell of soil and chaos."""
     effects, chaos, rows = side.soil_total_effect, side.chaos_deviation, []
     for name in dict.fromkeys([*effects, *chaos]):
-        shown = output(name)
-        unit, factor = ("", 1.0) if name == RETURNS else (shown.unit, shown.factor)
+        shown = labels.output(name)
+        unit, factor = ("", 1.0) if name == labels.RETURNS else (shown.unit, shown.factor)
         rows.append(
             [
-                output_words(name),
+                labels.output_words(name),
                 part(effects[name]) if name in effects else "",
                 _estimate(chaos.get(name), factor),
                 unit,
@@ -199,7 +190,7 @@ def _emulator(data: DrawnPage) -> PageTable:
     columns = ["output", "skill", f"within the {percent(BAND)} band"]
     rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
     for name, score in emulator.scores.outputs.items():
-        rows.append([output(name).words, percent(score.crps_skill), percent(score.band_90)])
+        rows.append([labels.output(name).words, percent(score.crps_skill), percent(score.band_90)])
     title = f"The emulator on {left_out(data.results.runs.beds)}"
     return PageTable(title, columns, rows, notes.emulator_scores(data), frozenset(columns[1:]))
 
