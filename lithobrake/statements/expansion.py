@@ -236,6 +236,6 @@ def samples(data: "PaperPage") -> str:
     low, high = (number(touchdowns.CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
     least, most = (number(output("elevation_out").factor * angle[level]) for level in (QUANTILES[0], QUANTILES[2]))
     return (
-        f"{touchdowns.leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at {low} "
-        f"to {high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
+        f"{touchdowns.leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at "
+        f"{low} to {high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
     )
