@@ -11,12 +11,6 @@ from lithobrake.view.motion_files import (
 )
 
 __all__ = [
-    "contact_sheet",
-    "film",
-    "journey_film",
-    "refuse_other_kinds",
-    "show",
-    "write_journey",
-    "write_motion",
+    "contact_sheet", "film", "journey_film", "refuse_other_kinds", "show", "write_journey", "write_motion",
     "write_vtkhdf",
-]
+]  # fmt: skip
