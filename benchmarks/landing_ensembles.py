@@ -21,7 +21,7 @@ from harness import Row, command_line, origin, table, timed, write_document
 from scipy.stats import ks_2samp
 
 from lithobrake.chaos import sobol_sequence
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables

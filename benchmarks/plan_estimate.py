@@ -20,7 +20,7 @@ from pathlib import Path
 from harness import SCENARIOS, VALIDATION_STUDIES, Row, command_line, origin, read_document, timed, write_document
 
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import REFERENCE, landing_time, mean_journey_time, pour_time, probe
 from lithobrake.pipeline.site import with_site_gravity

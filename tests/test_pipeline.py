@@ -13,7 +13,7 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
 from lithobrake.pipeline.answer.run_answers import scope
 from lithobrake.pipeline.answer.study_summary import study_tables
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
 from lithobrake.pipeline.paper.expansions import kept_inputs, points

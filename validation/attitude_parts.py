@@ -17,7 +17,7 @@ import numpy as np
 from lithobrake.analysis import variance_shares
 from lithobrake.pipeline.answer.journey_ends import first_sides
 from lithobrake.pipeline.answer.run_estimates import SOIL
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder

@@ -21,7 +21,7 @@ import numpy as np
 from sphere_beds import SphereBed, pour_spheres
 
 from lithobrake.dem import Box, Material
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.smallbody import didymos, fly
 from lithobrake.study import read_study
 from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, Outcome, land, pour_bed

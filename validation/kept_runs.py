@@ -19,7 +19,7 @@ from pathlib import Path
 from lithobrake.campaign import Ledger
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.design.dependencies import touchdown_keys
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.paper.expansions import points
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity

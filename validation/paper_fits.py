@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos import fit
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import read_study
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))

@@ -46,7 +46,7 @@ from lithobrake.analysis import half_width_range
 from lithobrake.analysis.confidence import answered_runs, bed_components
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_estimates import return_fraction
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_width import expected_correlation, expected_width, law_of_runs
 from lithobrake.pipeline.run_flights import RunFlights

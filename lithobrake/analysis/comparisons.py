@@ -11,7 +11,7 @@ from lithobrake.analysis.confidence import LEVEL, Bounds, answers, numbered_beds
 from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number

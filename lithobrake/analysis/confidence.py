@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import LEVEL as LEVEL
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, labels, numbers_or_nan, whole_number

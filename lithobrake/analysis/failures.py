@@ -12,7 +12,7 @@ from lithobrake.analysis.outcome_model import refit_interval, unseen_limit
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import numbers_or_nan, random_numbers, whole_number
 from lithobrake.vocabulary.landing_fraction import LandingFraction

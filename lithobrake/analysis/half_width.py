@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, answered_runs, answers, bed_components, numbered_beds, t_quantile
 from lithobrake.analysis.share_estimate import plain_interval, share_estimate
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, whole_number
 
 # Standard deviation of a run's share of flights that return, as measured on studies in which some do and some do not

@@ -15,7 +15,7 @@ from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.training import one_thread
 from lithobrake.emulator.density import BedEffect, observed_density
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number

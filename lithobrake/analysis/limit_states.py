@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import t_quantile
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import labels, numbers, random_numbers, whole_number
 from lithobrake.vocabulary.limit_state import COMPARED, Comparison, Condition, Junction, LimitState, Negation, Word

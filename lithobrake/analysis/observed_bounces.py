@@ -10,7 +10,7 @@ from scipy.special import logsumexp
 from lithobrake.analysis.inference import Bounds, Posterior, posterior_of
 from lithobrake.analysis.posterior import Observation
 from lithobrake.chaos.design import sample_inputs
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
 
 if TYPE_CHECKING:

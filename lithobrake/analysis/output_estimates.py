@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, Bounds, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
-from lithobrake.vocabulary.arrays import Array, Labels
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_TAIL
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import QUANTILES

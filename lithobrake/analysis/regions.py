@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Places whose directions cancel more than this have no middle that means anything.

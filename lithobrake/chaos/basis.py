@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import Recurrence
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 
 Indices = NDArray[np.int64]

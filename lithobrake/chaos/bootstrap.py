@@ -14,7 +14,7 @@ from lithobrake.chaos.least_squares import best_terms, with_low_degrees
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import Training, checked_training, one_thread
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from lithobrake.chaos.basis import Indices
 from lithobrake.chaos.distributions import Distribution
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Nodes of the quadrature that projects a bump on polynomials.
 RULE_NODES = 160

@@ -13,7 +13,7 @@ from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training import one_thread
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.polynomials import Recurrence, hermite, jacobi, laguerre, legendre
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 Support = tuple[float, float]
 NO_CHOICES = "discrete choices are not supported: fit one expansion for each choice"

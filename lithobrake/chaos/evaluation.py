@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lithobrake.chaos.basis import Indices, germs_of, recurrences_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import Recurrence
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 Loop = Callable[..., None]
 

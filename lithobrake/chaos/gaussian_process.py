@@ -10,7 +10,7 @@ from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training import Training
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)
 # Parameters are learnt from at most so many points: a step costs their number cubed, and they are few.

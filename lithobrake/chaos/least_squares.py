@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import Indices, basis_matrix, condition_number, multi_index_set
 from lithobrake.chaos.training import Training
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Singular values below this times the largest are rank loss: far below any usable condition number,
 # far above the rounding of an exactly deficient system.

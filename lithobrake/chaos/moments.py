@@ -11,7 +11,7 @@ from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import evaluate, make_plan
 from lithobrake.chaos.training import one_thread
-from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.array_types import Array, Integers
 
 # Products of two terms that are worked on at once.
 BLOCK_ROWS = 400_000

@@ -11,7 +11,7 @@ from scipy import special
 
 from lithobrake.chaos import distributions
 from lithobrake.chaos.polynomials import Recurrence, discretised
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Densities below exp(-350) of the largest cannot be felt by polynomials of the degrees in use.
 NEGLIGIBLE_LOG_DENSITY = 350.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import one_thread
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, whole_number
 
 

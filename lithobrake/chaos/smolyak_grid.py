@@ -8,7 +8,7 @@ import numpy as np
 from lithobrake.chaos.counts import check_level, smolyak_count
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 MOST_NODES = 10_000_000
 

@@ -12,7 +12,7 @@ import numpy as np
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.least_squares import Solution, solve_ols, terms_to_try
 from lithobrake.chaos.training import Training
-from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.array_types import Array, Integers
 
 FOLDS = 10
 NORMS = (1.0, 0.75, 0.5)

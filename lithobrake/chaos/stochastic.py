@@ -15,7 +15,7 @@ from lithobrake.chaos.scores import equal_rows, replicates
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training import checked_training
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers
 
 FORMAT = "lithobrake stochastic surrogate"

@@ -14,7 +14,7 @@ from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import distribution
 from lithobrake.files.atomic import write_whole
 from lithobrake.files.reading import UNREADABLE
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 Kept = TypeVar("Kept")
 

@@ -16,7 +16,7 @@ from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training import one_thread
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
 FORMAT = "lithobrake expansion"

@@ -13,7 +13,7 @@ from lithobrake.chaos.basis import checked_weights, outside_count, points_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.scores import equal_rows
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
 
 

@@ -13,8 +13,8 @@ from typing import Annotated, Any, NoReturn, TextIO
 import typer
 
 from lithobrake import __version__
+from lithobrake.vocabulary.callbacks import Progress
 from lithobrake.vocabulary.plain_text import plain, wrapped
-from lithobrake.vocabulary.progress import Progress
 
 # 2 is the exit code of Click for wrong arguments, and 130 that of shells for a command ended by SIGINT (128 + 2).
 BAD_INPUT, INTERRUPTED = 2, 130

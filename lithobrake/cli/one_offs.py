@@ -81,7 +81,7 @@ def serve(
     folder = arguments.study_folder(study, out)
     with arguments.one_sentence():
         # Refused before the imports below, which take seconds.
-        from lithobrake.serve.clients import refuse_empty_host
+        from lithobrake.serve.server import refuse_empty_host
 
         refuse_empty_host(host)
         # What follows brings NumPy and the compiler, and for some studies the shape of the body.

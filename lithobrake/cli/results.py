@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lithobrake.cli import arguments
-from lithobrake.vocabulary.progress import Progress, silent
-from lithobrake.vocabulary.study_files import STUDY_FILE
+from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.file_names import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.pipeline import OneJourney

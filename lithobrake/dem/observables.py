@@ -12,7 +12,7 @@ from lithobrake.dem.bodies.vectors import NO_PERIOD
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.time_step_stability import largest_step, shortest_contact
 from lithobrake.dem.world_state import WorldState
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 CONTACT = np.dtype(
     [

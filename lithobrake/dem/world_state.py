@@ -28,7 +28,7 @@ from lithobrake.dem.stepping.engine import (
 from lithobrake.dem.stepping.neighbours import no_pairs
 from lithobrake.dem.stepping.time_loop import new_record
 from lithobrake.files.atomic import atomic_path
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.material import Material
 
 NOTHING_WATCHED = -1

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.emulator.law import log_row_weights, smoothing
 from lithobrake.emulator.storage import Parts
 from lithobrake.emulator.training import with_slope
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number
 
 # Rows times points that are looked at together: bounds the memory.

@@ -16,7 +16,7 @@ from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
 from lithobrake.emulator.validation import choices_by_groups, folds_of, mean_by_groups
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Of a normal law without bounds, the share that may lie beyond them.
 MOST_BEYOND = 0.02

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import Indices
 from lithobrake.emulator.ridge_ladder import Ladder, Rung, Smoother, TermTable, best_ladder, fading_rung
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Added to a residual's size, as a share of the mean size: one that happens to be near zero says little of the scale,
 # but its logarithm would weigh more than all others. Only where the search for the scale begins.

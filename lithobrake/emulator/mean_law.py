@@ -11,7 +11,7 @@ from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.emulator.ridge_ladder import Ladder
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers
 
 # Of few inputs the total degree is as high as this many terms allow, of many it is two; powers of one input alone go to

@@ -17,7 +17,7 @@ from lithobrake.emulator.law import drawn_rows, fit_classes, fit_law, row_weight
 from lithobrake.emulator.mean_law import MeanLaw, found_inputs, mean_law
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
 from lithobrake.vocabulary.number_words import LEVEL, percent
 from lithobrake.vocabulary.plain_text import html_table

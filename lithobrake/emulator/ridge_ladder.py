@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import linalg, optimize
 
 from lithobrake.chaos.basis import Indices
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Logarithms of amplitudes, fades and penalty in units of the number of runs: first values and bounds. The likelihood of
 # a smooth law and that of one that bends have peaks of their own, so fades start at two.

@@ -22,7 +22,7 @@ from lithobrake.emulator.mean_law import candidate_terms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
 from lithobrake.emulator.validation import folds_of, mean_by_groups
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
 
 FORMAT = "lithobrake stochastic expansion"

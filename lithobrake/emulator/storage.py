@@ -16,7 +16,7 @@ from lithobrake.emulator.mean_law import Terms
 from lithobrake.emulator.ridge_ladder import Ladder, Rung
 from lithobrake.emulator.training import TrainingRuns
 from lithobrake.emulator.validation import Scores
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 FORMAT = "lithobrake emulator"
 # JSON has no infinity: no bound and no kernel are null.

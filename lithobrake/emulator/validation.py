@@ -10,7 +10,7 @@ from lithobrake.chaos.basis import Indices
 from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, kernels, row_weights, rows_alone
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.training import TrainingRuns
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import HIGH, LOW
 
 # Groups beyond this many are left out several at a time: the time grows with the folds, the answer hardly changes.

@@ -16,9 +16,9 @@ from lithobrake.export.flown import Flown, has_journeys
 from lithobrake.export.oem import RESOLUTION, Frame, Segment, epoch_texts
 from lithobrake.files.atomic import write_json
 from lithobrake.results import StudyResults
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
-from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 
 # So many landers where none are chosen; the film lasts so long [s]; landers at rest are shown on for a part of it.

@@ -14,10 +14,10 @@ from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path, write_whole
 from lithobrake.geometry.naif_kernels import NUMBERS, spice
 from lithobrake.results import StudyResults
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
-from lithobrake.vocabulary.progress import Progress, silent
 
 STEPS = 100
 log = logging.getLogger(__name__)

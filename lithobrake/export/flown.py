@@ -17,8 +17,8 @@ from lithobrake.results import StudyResults, Table
 from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
-from lithobrake.vocabulary.arrays import Array
-from lithobrake.vocabulary.study_files import ARCS_FILE
+from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.file_names import ARCS_FILE
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (

@@ -13,8 +13,8 @@ from lithobrake.export.shape_tables import write_facet_csv, write_facet_fits, wr
 from lithobrake.files.atomic import refuse_existing
 from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
-from lithobrake.vocabulary.progress import Progress, silent
-from lithobrake.vocabulary.study_files import JOURNEYS_FILE, REST_FILE
+from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE, REST_FILE
 
 IMPACTS, REST, CZML = "impacts.geojson", "rest.geojson", "landers.czml"
 

@@ -13,7 +13,7 @@ from lithobrake.export.flown import Flown, body_name, has_journeys, study_body
 from lithobrake.files.atomic import write_whole
 from lithobrake.geometry.attitude import axes_in_icrf
 from lithobrake.results import StudyResults, Table
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.

@@ -12,9 +12,9 @@ from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import content_hash, hashed_seed
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, Shape
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE
 from lithobrake.vocabulary.given_numbers import finite_number, whole_number
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.study_files import JOURNEYS_FILE
 
 TITLES = (
     "time_s", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "q_w", "q_x", "q_y", "q_z",

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
-from lithobrake.geometry.limits import alike
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.geometry.bed_limits import alike
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.quantities import ORIENTATION, ORIENTATION_OUT, SPIN, SPIN_OUT
 
 UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"

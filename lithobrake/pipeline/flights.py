@@ -16,7 +16,7 @@ from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.units import input_units
-from lithobrake.vocabulary import study_files
+from lithobrake.vocabulary import file_names
 from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import ARC, FIXED, FLIGHT, Quantity, quantity
@@ -79,9 +79,9 @@ class Ways:
     def of_journeys(cls, folder: "StudyFolder") -> "Ways":
         ends = {
             row["journey"]: row["end"]
-            for row in read_rows(folder / study_files.JOURNEYS_FILE, ("journey", "end"), AGAIN)
+            for row in read_rows(folder / file_names.JOURNEYS_FILE, ("journey", "end"), AGAIN)
         }
-        rows = read_rows(folder / study_files.ARCS_FILE, tuple(ARC), AGAIN)
+        rows = read_rows(folder / file_names.ARCS_FILE, tuple(ARC), AGAIN)
         rows = [row for row in rows if int(row["sample"]) < PATHS][:MOST_ARCS]
 
         def column(name: str) -> np.ndarray:
@@ -193,11 +193,11 @@ def fly_samples(job: Job) -> None:
     for words in (job.site.warning, job.site.rotation_words):
         if words:
             job.say(words)
-    job.folder.write_json(study_files.FLIGHT_CHECKS_FILE, _checks(job, start))
+    job.folder.write_json(file_names.FLIGHT_CHECKS_FILE, _checks(job, start))
     write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
     write_flight_paths(job, body, Ways.of_samples(flown, start.sample))
-    write_table(job.folder, study_files.SAMPLE_FLIGHTS_FILE, COLUMNS, flight_rows(start, flown))
+    write_table(job.folder, file_names.SAMPLE_FLIGHTS_FILE, COLUMNS, flight_rows(start, flown))
 
 
 def write_table(
@@ -262,7 +262,7 @@ def write_shape(body: "Body", folder: StudyFolder) -> None:
     # repr has all digits, so that who reads the file has the same body; OBJ counts vertices from 1.
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.shape.vertices.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (body.shape.faces + 1).tolist()]
-    with atomic_path(folder / study_files.BODY_FILE) as draft:
+    with atomic_path(folder / file_names.BODY_FILE) as draft:
         draft.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lithobrake.files.reading import content_hash
 from lithobrake.pipeline.study_folder import NAME, FileState, Notes, file_state
-from lithobrake.vocabulary.study_files import STUDY_FILE
+from lithobrake.vocabulary.file_names import STUDY_FILE
 
 
 @dataclass(frozen=True)

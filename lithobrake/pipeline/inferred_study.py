@@ -13,7 +13,7 @@ from lithobrake import analysis
 from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
@@ -21,10 +21,10 @@ from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
 from lithobrake.study import Study, StudySource
 from lithobrake.study.units import conversion, input_units, run_units
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
-from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator

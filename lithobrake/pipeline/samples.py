@@ -12,9 +12,9 @@ from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.quantity import median
 from lithobrake.study.units import input_units
+from lithobrake.vocabulary.file_names import SAMPLES_FILE
 from lithobrake.vocabulary.outcomes import SampleOutcome
 from lithobrake.vocabulary.quantities import RUN, TOUCHDOWN, VELOCITY_OUT, quantity
-from lithobrake.vocabulary.study_files import SAMPLES_FILE
 
 VELOCITY = VELOCITY_OUT
 FORMAT_VERSION = 2

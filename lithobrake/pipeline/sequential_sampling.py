@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
@@ -19,8 +19,8 @@ from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.stages import FOLLOW_JOURNEYS
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE
 from lithobrake.vocabulary.limit_state import LimitState
-from lithobrake.vocabulary.study_files import JOURNEYS_FILE
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:

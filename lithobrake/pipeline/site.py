@@ -17,8 +17,8 @@ from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
 from lithobrake.vocabulary.constants import DAY, HOUR
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import duration
-from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

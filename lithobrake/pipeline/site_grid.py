@@ -19,16 +19,16 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN
 from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arrivals, TouchdownEmulator
-from lithobrake.pipeline.sky import Days, views, where_it_stands
+from lithobrake.pipeline.sky_at_rest import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
-from lithobrake.vocabulary.study_files import TOUCHDOWNS_FILE
 
 # Places of each cell that are looked at.
 PLACES = 24

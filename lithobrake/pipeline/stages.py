@@ -9,7 +9,7 @@ from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, estimate
 from lithobrake.pipeline.answer.study_summary import summary_dependencies, write_drawn_summary, write_journey_summary
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
-from lithobrake.pipeline.design.design import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.first_bounces import bounces_to_rest, emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job, Stage, same_files
@@ -23,10 +23,10 @@ from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs,
 from lithobrake.pipeline.runs import landings
 from lithobrake.pipeline.runs.beds import pour_beds
 from lithobrake.pipeline.runs.run_table import file_of
-from lithobrake.pipeline.sky import look_up, sky_dependencies, sky_files
+from lithobrake.pipeline.sky_at_rest import look_up, sky_dependencies, sky_files
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import OWN_KEYS
-from lithobrake.vocabulary import study_files
+from lithobrake.vocabulary import file_names
 
 # Beds and landings are known by the hash of the engine and of all that they follow from; this is how they are chosen
 # and written down.
@@ -42,7 +42,7 @@ FIRST_LANDING = Stage(
 TELLING_LANDING = Stage(
     "telling_landing", "representative landing", landings.telling_files, landings.land_tellingly, ("runs",)
 )
-FLIGHT_FILES = (study_files.SAMPLE_FLIGHTS_FILE, study_files.FLIGHT_CHECKS_FILE, study_files.BODY_FILE, PATHS_FILE)
+FLIGHT_FILES = (file_names.SAMPLE_FLIGHTS_FILE, file_names.FLIGHT_CHECKS_FILE, file_names.BODY_FILE, PATHS_FILE)
 FLIGHT_PARTS = (
     "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
     "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
@@ -61,7 +61,7 @@ FLY_RUNS = Stage(
 FLY = Stage("fly", "flights", same_files(*FLIGHT_FILES), fly_samples, ("sample",), flight_dependencies, FLIGHT_PARTS)
 EMULATOR_PARTS = (
     "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
-    "analysis", "results/explorer_tables.py", "vocabulary/quantities.py",
+    "analysis", "results/table.py", "vocabulary/quantities.py",
 )  # fmt: skip
 EMULATOR = Stage(
     "emulator",
@@ -112,7 +112,7 @@ OPTIONS = Stage(
     emulated_journeys.option_dependencies,
     EMULATED_PARTS,
 )
-SKY_PARTS = ("pipeline/sky.py", "pipeline/site.py", *FLIGHT_PARTS)
+SKY_PARTS = ("pipeline/sky_at_rest.py", "pipeline/site.py", *FLIGHT_PARTS)
 SKY = Stage("sky", "sky over the landers at rest", sky_files, look_up, ("runs",), sky_dependencies, SKY_PARTS)
 ANSWER_PARTS = (
     *("pipeline/answer", "pipeline/site.py", "pipeline/journeys"),
@@ -122,7 +122,7 @@ ESTIMATE = Stage("estimate", "estimates", same_files(ESTIMATES_FILE), estimate, 
 JOURNEY_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(study_files.SUMMARY_FILE),
+    same_files(file_names.SUMMARY_FILE),
     write_journey_summary,
     ("landing", "telling_landing", "estimate", "emulated", "aim", "sky"),
     summary_dependencies,
@@ -131,7 +131,7 @@ JOURNEY_SUMMARY = Stage(
 SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(study_files.SUMMARY_FILE),
+    same_files(file_names.SUMMARY_FILE),
     write_drawn_summary,
     ("landing", "telling_landing", "estimate", "rest", "aim"),
     summary_dependencies,
@@ -144,7 +144,7 @@ MEDIAN_LANDING = Stage(
 REFINE = Stage(
     "refine",
     "refinement",
-    same_files(study_files.REFINED_FILE),
+    same_files(file_names.REFINED_FILE),
     expansions.fit_refined,
     ("refined_runs",),
     parts=PAPER_PARTS,
@@ -152,7 +152,7 @@ REFINE = Stage(
 TEST = Stage(
     "test",
     "scores",
-    same_files(study_files.SCORES_FILE),
+    same_files(file_names.SCORES_FILE),
     expansions.score_all,
     ("refine", "test_runs"),
     parts=PAPER_PARTS,
@@ -178,7 +178,7 @@ FOLLOW_EXPANSION_SAMPLES = Stage(
 PAPER_SUMMARY = Stage(
     "summary",
     "summary",
-    same_files(study_files.SUMMARY_FILE),
+    same_files(file_names.SUMMARY_FILE),
     write_summary,
     ("landing", "rest"),
     summary_dependencies,
@@ -216,7 +216,7 @@ def sample_dependencies(study: Study) -> Any:
 SAMPLE = Stage(
     "sample",
     "samples",
-    same_files(study_files.SAMPLES_FILE),
+    same_files(file_names.SAMPLES_FILE),
     emulator.draw_emulator_samples,
     ("emulator",),
     sample_dependencies,
@@ -245,7 +245,7 @@ def _delivery(study: Study) -> list[Any]:
 FOLLOW_JOURNEYS = Stage(
     "runs",
     "journeys",
-    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, study_files.BODY_FILE, PATHS_FILE),
+    same_files(file_of("drawn"), file_of("touchdowns"), *JOURNEY_FILES, file_names.BODY_FILE, PATHS_FILE),
     make_journeys,
     ("bed",),
     journey_dependencies,
@@ -275,7 +275,7 @@ SCREENING_RUNS = Stage(
 SCREEN = Stage(
     "screen",
     "screening",
-    same_files(study_files.SCREENING_FILE),
+    same_files(file_names.SCREENING_FILE),
     expansions.fit_screening,
     ("screening_runs",),
     _design("fit"),
@@ -302,7 +302,7 @@ TEST_RUNS = Stage(
 SAMPLE_EXPANSION = Stage(
     "sample",
     "samples",
-    same_files(study_files.SAMPLES_FILE, emulator.EXPLORER_FILE),
+    same_files(file_names.SAMPLES_FILE, emulator.EXPLORER_FILE),
     sample_expansion,
     ("refine", "test"),
     sample_dependencies,

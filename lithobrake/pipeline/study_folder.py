@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.files.atomic import locked, write_json, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK
-from lithobrake.vocabulary.study_files import STUDY_FILE
+from lithobrake.vocabulary.file_names import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.study import StudySource

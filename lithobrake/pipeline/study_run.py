@@ -11,7 +11,7 @@ from lithobrake.campaign.external_model import PREFIX
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training import one_thread
 from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.folder_state import grouped, read_state
 from lithobrake.pipeline.job import Job, Silent, StudyProgress

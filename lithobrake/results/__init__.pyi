@@ -1,4 +1,3 @@
-from .explorer_tables import ExplorerTables as ExplorerTables
 from .journey_track import JourneyMotion as JourneyMotion
 from .journey_track import JourneyTrack as JourneyTrack
 from .journey_track import StudyJourney as StudyJourney
@@ -8,4 +7,5 @@ from .named_emulator import NamedEmulator as NamedEmulator
 from .study_results import StudyResults as StudyResults
 from .study_results import open_study as open_study
 from .table import Column as Column
+from .table import ExplorerTables as ExplorerTables
 from .table import Table as Table

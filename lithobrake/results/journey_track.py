@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.geometry.attitude import angles, directions
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.number_words import counted, duration
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import in_lines, short_repr
-from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 
 if TYPE_CHECKING:

@@ -12,14 +12,14 @@ import numpy as np
 from lithobrake.files.reading import read_json, reading
 from lithobrake.study import Study, check_tables, load_tables
 from lithobrake.study.touchdown_model import TouchdownModel, engine_hash, lander, landing, stored_bed, touchdown_version
+from lithobrake.vocabulary.callbacks import Progress
+from lithobrake.vocabulary.file_names import LANDING_FILE, STUDY_FILE
 from lithobrake.vocabulary.plain_text import short_repr
-from lithobrake.vocabulary.progress import Progress
-from lithobrake.vocabulary.study_files import LANDING_FILE, STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.campaign import Record
     from lithobrake.touchdown import Bed, Lander, Landing, Outcome
-    from lithobrake.vocabulary.arrays import Array, Integers
+    from lithobrake.vocabulary.array_types import Array, Integers
 
 # Keys of [site] that name the body and its files.
 OF_FILES = ("body", "name", "unit", "gravity_facets", "partner", "kernels", "kernel_body", "epoch")

@@ -16,7 +16,7 @@ from lithobrake.vocabulary.quantities import IMPACT_SPEED, OUTPUTS, RUN, SPIN_OU
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
-    from lithobrake.results.explorer_tables import ExplorerAttitude
+    from lithobrake.results.table import ExplorerAttitude
 
     Value = float | np.ndarray
     from lithobrake.chaos import Surrogate

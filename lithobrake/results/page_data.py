@@ -16,28 +16,28 @@ from lithobrake.results.questions import RareLimitState
 from lithobrake.results.run_results import CountedShare
 from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import DrawnResults, PaperResults, Provenance
-from lithobrake.vocabulary import study_files
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary import file_names
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
 
-FILES = (study_files.SUMMARY_FILE, study_files.STUDY_FILE)
+FILES = (file_names.SUMMARY_FILE, file_names.STUDY_FILE)
 # What the last stages of either method write before the report.
-OF_ANY_STUDY = ("flight_paths.h5", study_files.BODY_FILE)
+OF_ANY_STUDY = ("flight_paths.h5", file_names.BODY_FILE)
 OF_SAMPLES = (
-    study_files.SAMPLES_FILE,
-    study_files.EXPLORER_FILE,
-    study_files.SAMPLE_FLIGHTS_FILE,
-    study_files.REST_FILE,
+    file_names.SAMPLES_FILE,
+    file_names.EXPLORER_FILE,
+    file_names.SAMPLE_FLIGHTS_FILE,
+    file_names.REST_FILE,
 )
-PAPER_FILES = (*FILES, study_files.SCORES_FILE, *OF_SAMPLES, *OF_ANY_STUDY)
+PAPER_FILES = (*FILES, file_names.SCORES_FILE, *OF_SAMPLES, *OF_ANY_STUDY)
 DRAWN_FILES = (*FILES, "designs/drawn.csv", *OF_SAMPLES, *OF_ANY_STUDY)
 JOURNEY_FILES = (
     *FILES,
     "designs/drawn.csv",
-    study_files.JOURNEYS_FILE,
-    study_files.TOUCHDOWNS_FILE,
-    study_files.TOUCHDOWN_EXPLORER_FILE,
+    file_names.JOURNEYS_FILE,
+    file_names.TOUCHDOWNS_FILE,
+    file_names.TOUCHDOWN_EXPLORER_FILE,
     *OF_ANY_STUDY,
 )
 GROUNDS = ("soil", "hard")
@@ -214,7 +214,7 @@ def _of_any_study(found: StudyResults) -> dict[str, Any]:
     # A program or function of the user's own has neither beds nor pictures.
     has_scenes = bool(found.results.beds)
     if has_scenes:
-        _refuse_without(found.folder, (study_files.LANDING_FILE, "beds/bed_0.h5"))
+        _refuse_without(found.folder, (file_names.LANDING_FILE, "beds/bed_0.h5"))
     vertices, faces = found.body_shape
     return {
         "study": found.study,
@@ -253,7 +253,7 @@ def _refuse_without(folder: Path, needed: tuple[str, ...]) -> None:
 
 def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
     """Latitude, longitude [deg] and facet of each impact."""
-    path = found.folder / study_files.SAMPLE_FLIGHTS_FILE
+    path = found.folder / file_names.SAMPLE_FLIGHTS_FILE
     impacts = found.flights.where(found.flights["status"] == FlightStatus.IMPACT)
     return *_places(path, impacts, found.remedy), impacts["facet"].astype(np.int64)
 
@@ -261,7 +261,7 @@ def _impacts(found: StudyResults) -> tuple[Array, Array, NDArray[np.int64]]:
 def _resting(found: StudyResults, ground: str) -> tuple[Array, Array]:
     """Where the landers lie that rest on a ground."""
     chosen = (found.rest["status"] == JourneyStatus.SETTLED) & (found.rest["ground"] == ground)
-    return _places(found.folder / study_files.REST_FILE, found.rest.where(chosen), found.remedy)
+    return _places(found.folder / file_names.REST_FILE, found.rest.where(chosen), found.remedy)
 
 
 def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
@@ -274,7 +274,7 @@ def _places(path: Path, table: Table, remedy: str) -> tuple[Array, Array]:
 
 def _scores(found: StudyResults) -> dict[str, dict[str, OutputErrors]]:
     """Errors by set of runs and output."""
-    with reading(found.folder / study_files.SCORES_FILE, found.remedy):
+    with reading(found.folder / file_names.SCORES_FILE, found.remedy):
         return {
             stage: {name: results_in(OutputErrors, errors, f"{stage}.{name}") for name, errors in table.items()}
             for stage, table in found.scores.items()

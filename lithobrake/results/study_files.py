@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import DamagedFileError, content_hash, read_json, read_rows, reading
-from lithobrake.vocabulary import study_files
+from lithobrake.vocabulary import file_names
 from lithobrake.vocabulary.quantities import JOURNEY, TOUCHDOWN_COST, Quantity, quantity
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # What the folder notes about its files, what is held while a study is at work there, and the copy of its file.
 KEYS, LOCK = "keys.json", ".lock"
-JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = study_files.JOURNEYS_FILE, study_files.TOUCHDOWNS_FILE, "designs/touchdowns.csv"
+JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = file_names.JOURNEYS_FILE, file_names.TOUCHDOWNS_FILE, "designs/touchdowns.csv"
 # Columns that every table of journeys has; one of an earlier version lacks attitudes.
 NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
 # Columns of the runs that the table of touchdowns has already.
@@ -30,11 +30,11 @@ SUMMARY_FORMAT = 4
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
 # Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
 OF_SAMPLES = (
-    study_files.SAMPLES_FILE,
-    study_files.SAMPLE_FLIGHTS_FILE,
-    study_files.REST_FILE,
-    study_files.EMULATOR_FILE,
-    study_files.EXPLORER_FILE,
+    file_names.SAMPLES_FILE,
+    file_names.SAMPLE_FLIGHTS_FILE,
+    file_names.REST_FILE,
+    file_names.EMULATOR_FILE,
+    file_names.EXPLORER_FILE,
 )
 T = TypeVar("T")
 
@@ -54,7 +54,7 @@ def intact_file(folder: Path, name: str, remedy: str) -> Path:
         return path
     notes = read_json(keys, dict, remedy)
     with reading(keys, remedy):
-        noted = notes.get("study", {}) if name == study_files.STUDY_FILE else notes.get("files", {}).get(name, {})
+        noted = notes.get("study", {}) if name == file_names.STUDY_FILE else notes.get("files", {}).get(name, {})
         sha256 = noted.get("sha256")
     if sha256 and content_hash(path) != sha256:
         raise DamagedFileError(f"{path} changed after it was made, as its hash in {KEYS} tells; {remedy}")
@@ -89,13 +89,13 @@ class StudyFiles:
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         """Look at a study's folder. Raises ValueError when it is none."""
         self.folder = Path(folder)
-        if not any((self.folder / name).is_file() for name in (study_files.SUMMARY_FILE, KEYS, study_files.RUNS_FILE)):
+        if not any((self.folder / name).is_file() for name in (file_names.SUMMARY_FILE, KEYS, file_names.RUNS_FILE)):
             raise ValueError(f"{self.folder} holds no results of a study; name the folder of one that ran")
         self.remedy = f"make it again with: lithobrake run STUDY.toml --out {shlex.quote(str(self.folder))}"
 
     @cached_property
     def _content(self) -> dict[str, Any]:
-        path, tables = self._file(study_files.SUMMARY_FILE), dict.fromkeys(("study", "results", "provenance"), dict)
+        path, tables = self._file(file_names.SUMMARY_FILE), dict.fromkeys(("study", "results", "provenance"), dict)
         content: dict[str, Any] = read_json(path, {"format_version": int, **tables}, self.remedy)
         if content["format_version"] != SUMMARY_FORMAT:
             raise DamagedFileError(
@@ -112,7 +112,7 @@ class StudyFiles:
     @cached_property
     def study_text(self) -> str:
         """The study file as it was written."""
-        path = self._file(study_files.STUDY_FILE)
+        path = self._file(file_names.STUDY_FILE)
         with reading(path, self.remedy):
             return path.read_text(encoding="utf-8")
 

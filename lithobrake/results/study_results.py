@@ -8,38 +8,38 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.files.reading import NUMBER, read_json, reading
 from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
 from lithobrake.results.study_tables import StudyTables
-from lithobrake.vocabulary import study_files
+from lithobrake.vocabulary import file_names
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.plain_text import in_lines
-from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from lithobrake.campaign import Record
-    from lithobrake.results.explorer_tables import ExplorerTables
     from lithobrake.results.journey_track import StudyJourney
     from lithobrake.results.motions import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator, NamedSurrogate
     from lithobrake.results.questions import RareLimitState
     from lithobrake.results.summary import DrawnResults, PaperResults, Summary
+    from lithobrake.results.table import ExplorerTables
     from lithobrake.touchdown import Outcome
 
 _SCORE = {"ape": [NUMBER | None], "mape": NUMBER | None, "q2": NUMBER | None, "rmse": NUMBER, "std": NUMBER}
 
 # What a notebook says can be asked for: the file that it takes, and what comes.
 _ASKED = {
-    "summary": (study_files.SUMMARY_FILE, "every number of the report"),
-    "runs": (study_files.RUNS_FILE, "every touchdown: inputs, outcome, outputs"),
-    "samples": (study_files.SAMPLES_FILE, "samples of the Monte Carlo"),
-    "flights": (study_files.SAMPLE_FLIGHTS_FILE, "flights of the samples to their next impact"),
+    "summary": (file_names.SUMMARY_FILE, "every number of the report"),
+    "runs": (file_names.RUNS_FILE, "every touchdown: inputs, outcome, outputs"),
+    "samples": (file_names.SAMPLES_FILE, "samples of the Monte Carlo"),
+    "flights": (file_names.SAMPLE_FLIGHTS_FILE, "flights of the samples to their next impact"),
     "journeys": (JOURNEYS, "each lander from delivery to rest: end, time, place, contacts, side down"),
     "touchdowns": (TOUCHDOWNS, "every landing of the journeys: state in, state out, bed, soil, cost"),
-    "rest": (study_files.REST_FILE, "where samples end after all bounces"),
-    "arcs": (study_files.ARCS_FILE, "each flight between impacts"),
+    "rest": (file_names.REST_FILE, "where samples end after all bounces"),
+    "arcs": (file_names.ARCS_FILE, "each flight between impacts"),
     "emulator": ("*emulator.json", "samples of landings, at any inputs by their names"),
-    "surrogate": (study_files.REFINED_FILE, "the refined expansion, by the names of its inputs"),
-    "median_landing": (study_files.LANDING_FILE, "a landing with its frames"),
+    "surrogate": (file_names.REFINED_FILE, "the refined expansion, by the names of its inputs"),
+    "median_landing": (file_names.LANDING_FILE, "a landing with its frames"),
     "bed_bodies()": ("beds/bed_0.h5", "the grains of a bed, and how they settled"),
 }
 
@@ -59,7 +59,7 @@ class StudyResults(StudyTables):
         """summary.json by attribute: `study`, `results` and `provenance` (docs/summary.md has every key)."""
         from lithobrake.results.summary import Summary
 
-        with reading(self.folder / study_files.SUMMARY_FILE, self.remedy):
+        with reading(self.folder / file_names.SUMMARY_FILE, self.remedy):
             return Summary.of_json(self._content)
 
     @property
@@ -69,7 +69,7 @@ class StudyResults(StudyTables):
     @property
     def headline(self) -> list[str]:
         """The answer, and the most telling numbers behind it, each in a sentence."""
-        with reading(self.folder / study_files.SUMMARY_FILE, self.remedy):
+        with reading(self.folder / file_names.SUMMARY_FILE, self.remedy):
             return [str(sentence) for sentence in self._content["results"]["headline"]]
 
     @cached_property
@@ -79,7 +79,7 @@ class StudyResults(StudyTables):
         A drawn study has those of its emulator in `emulator.model.scores`.
         """
         self._refuse_drawn("scores", "errors of expansions")
-        content: dict[str, Any] = read_json(self._file(study_files.SCORES_FILE), {str: {str: _SCORE}}, self.remedy)
+        content: dict[str, Any] = read_json(self._file(file_names.SCORES_FILE), {str: {str: _SCORE}}, self.remedy)
         return content
 
     @cached_property
@@ -121,8 +121,8 @@ class StudyResults(StudyTables):
 
         Until all runs of a drawn study have ended, its first. Grains and, as the last body, the lander.
         """
-        told = (self.folder / study_files.TELLING_LANDING_FILE).is_file()
-        return self._bodies(study_files.TELLING_LANDING_FILE if told else study_files.LANDING_FILE)
+        told = (self.folder / file_names.TELLING_LANDING_FILE).is_file()
+        return self._bodies(file_names.TELLING_LANDING_FILE if told else file_names.LANDING_FILE)
 
     def landing(
         self,
@@ -167,7 +167,7 @@ class StudyResults(StudyTables):
         """Vertices of the body [m], shape [vertex_count, 3], body-fixed, and its faces, from 0, [face_count, 3]."""
         import numpy as np
 
-        path = self._file(study_files.BODY_FILE)
+        path = self._file(file_names.BODY_FILE)
         with reading(path, self.remedy):
             lines = [words for line in path.read_text(encoding="utf-8").splitlines() if (words := line.split())]
             vertices = np.array([[float(word) for word in words[1:4]] for words in lines if words[0] == "v"])
@@ -182,7 +182,7 @@ class StudyResults(StudyTables):
         from lithobrake.results.named_emulator import NamedSurrogate
 
         self._refuse_drawn("surrogate", "an expansion")
-        path = self._file(study_files.REFINED_FILE)
+        path = self._file(file_names.REFINED_FILE)
         with reading(path, self.remedy):
             return NamedSurrogate.read(path)
 
@@ -196,7 +196,7 @@ class StudyResults(StudyTables):
         from lithobrake.results.named_emulator import NamedEmulator
 
         is_of_journeys = (self.folder / JOURNEYS).is_file()
-        path = self._file(study_files.TOUCHDOWN_EMULATOR_FILE if is_of_journeys else study_files.EMULATOR_FILE)
+        path = self._file(file_names.TOUCHDOWN_EMULATOR_FILE if is_of_journeys else file_names.EMULATOR_FILE)
         explorer = self.touchdown_explorer if is_of_journeys else None
         if is_of_journeys and explorer is None:
             raise ValueError(f"{self.folder} has no emulator: {self._content['results']['emulated']['why']}")
@@ -208,26 +208,24 @@ class StudyResults(StudyTables):
     @cached_property
     def explorer(self) -> "ExplorerTables":
         """The refits of the emulator or expansion as plain tables, for programs in other languages."""
-        from lithobrake.results.explorer_tables import ExplorerTables
+        from lithobrake.results.table import ExplorerTables
 
-        return ExplorerTables.read(self._file(study_files.EXPLORER_FILE), self.remedy)
+        return ExplorerTables.read(self._file(file_names.EXPLORER_FILE), self.remedy)
 
     @cached_property
     def touchdown_explorer(self) -> "ExplorerTables | None":
         """The same of the emulator of all touchdowns of journeys; None where they have none (results.emulated.why)."""
-        from lithobrake.results.explorer_tables import ExplorerTables
         from lithobrake.results.summary import DrawnResults
+        from lithobrake.results.table import ExplorerTables
 
         emulated = self.results.emulated if isinstance(self.results, DrawnResults) else None
         if emulated is not None and emulated.why is not None:
             return None
-        return ExplorerTables.read(self._file(study_files.TOUCHDOWN_EXPLORER_FILE), self.remedy)
+        return ExplorerTables.read(self._file(file_names.TOUCHDOWN_EXPLORER_FILE), self.remedy)
 
     def _refuse_drawn(self, name: str, what: str) -> None:
         """Say that a study whose runs were drawn has no such thing, where this is one."""
-        if (self.folder / study_files.EMULATOR_FILE).is_file() and not (
-            self.folder / study_files.REFINED_FILE
-        ).is_file():
+        if (self.folder / file_names.EMULATOR_FILE).is_file() and not (self.folder / file_names.REFINED_FILE).is_file():
             raise ValueError(f"{self.folder} is of a drawn study, without {what}: ask for emulator, not {name}")
 
     def _key(self, run: str | int) -> str:
@@ -258,7 +256,7 @@ class StudyResults(StudyTables):
     def __repr__(self) -> str:
         """Say where they are, and the answer."""
         answer = "not at its end"
-        if (self.folder / study_files.SUMMARY_FILE).is_file():
+        if (self.folder / file_names.SUMMARY_FILE).is_file():
             # A notebook shows this unasked, whatever has become of the summary.
             given = self._content.get("results")
             sentences = given.get("answer") if isinstance(given, dict) else None
@@ -278,7 +276,7 @@ def _html(results: StudyResults) -> str:
 
     rows = [(name, what) for name, (file, what) in _ASKED.items() if any(results.folder.glob(file))]
     table = html_table(f"Results of {results.folder}", ("ask for", "and get"), rows)
-    if not (results.folder / study_files.SUMMARY_FILE).is_file():
+    if not (results.folder / file_names.SUMMARY_FILE).is_file():
         return f"{table}<p>Not at its end: lithobrake status {escape(shlex.quote(str(results.folder)))}</p>"
     sentences = "".join(f"<li>{escape(sentence)}</li>" for sentence in results.headline)
     return f"<ul>{sentences}</ul>{table}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.reading import reading
 from lithobrake.results.study_files import JOURNEYS, NEEDED, TOUCHDOWN_RUNS, TOUCHDOWNS, StudyFiles, joined_touchdowns
-from lithobrake.vocabulary import study_files
+from lithobrake.vocabulary import file_names
 from lithobrake.vocabulary.quantities import (
     ARC,
     BEDS,
@@ -42,7 +42,7 @@ class StudyTables(StudyFiles):
         """Every run that was ever made or asked for, those of earlier settings among them, as it stands now."""
         from lithobrake.campaign import read_records
 
-        return read_records(self.folder / study_files.RUNS_FILE)
+        return read_records(self.folder / file_names.RUNS_FILE)
 
     @cached_property
     def runs(self) -> "Table":
@@ -59,7 +59,7 @@ class StudyTables(StudyFiles):
         import h5py
         import numpy as np
 
-        path = self._file(study_files.SAMPLES_FILE)
+        path = self._file(file_names.SAMPLES_FILE)
         with reading(path, self.remedy), h5py.File(path, "r") as file:
             names = [str(name) for name in file.attrs["outcomes"]]
             outcome = np.array(names)[file["outcome"][:]]
@@ -73,7 +73,7 @@ class StudyTables(StudyFiles):
     def flights(self) -> "Table":
         """The flights of the samples that leave, to the next impact (docs/flights.md)."""
         columns = (*_PLACES, "facet")
-        return self._table("flight", self._rows(study_files.SAMPLE_FLIGHTS_FILE, columns), columns, FLIGHT)
+        return self._table("flight", self._rows(file_names.SAMPLE_FLIGHTS_FILE, columns), columns, FLIGHT)
 
     @cached_property
     def flight_paths(self) -> "tuple[NDArray[np.float64], tuple[str, ...]]":
@@ -98,7 +98,7 @@ class StudyTables(StudyFiles):
     def rest(self) -> "Table":
         """Where samples end after all bounces, on each ground (docs/flights.md)."""
         columns = ("ground", *_PLACES)
-        return self._table("journey", self._rows(study_files.REST_FILE, columns), columns, FLIGHT)
+        return self._table("journey", self._rows(file_names.REST_FILE, columns), columns, FLIGHT)
 
     @cached_property
     def run_flights(self) -> "Table":
@@ -124,12 +124,12 @@ class StudyTables(StudyFiles):
     @cached_property
     def arcs(self) -> "Table":
         """Each flight between impacts: of every journey of landings, or of the first samples that were followed."""
-        return self._table("arc", self._rows(study_files.ARCS_FILE, tuple(ARC)), tuple(ARC), ARC)
+        return self._table("arc", self._rows(file_names.ARCS_FILE, tuple(ARC)), tuple(ARC), ARC)
 
     @cached_property
     def beds(self) -> "Table":
         """Numbers of each bed; a study whose touchdowns are made by its own program has none."""
-        with reading(self.folder / study_files.SUMMARY_FILE, self.remedy):
+        with reading(self.folder / file_names.SUMMARY_FILE, self.remedy):
             beds: list[dict[str, Any]] = self._content["results"]["beds"]
             columns = {name: [bed[name] for bed in beds] for name in (beds[0] if beds else ())}
         return self._described("bed", columns, BEDS)

@@ -10,7 +10,7 @@ from lithobrake.smallbody.attraction import Gravity, Workspace, attract
 from lithobrake.smallbody.polyhedron_gravity import PULL_X
 from lithobrake.smallbody.rotation import Turning, block_into_body, into_body, pull_out_of_body
 from lithobrake.smallbody.simd import LANES
-from lithobrake.vocabulary.arrays import Floats, Integers
+from lithobrake.vocabulary.array_types import Floats, Integers
 
 Entry = TypeVar("Entry", float, Floats)
 

@@ -10,7 +10,7 @@ from lithobrake.smallbody.gravity_table import GravityTable, level_of, read_tabl
 from lithobrake.smallbody.multipole import SCRATCH, Multipole, series_block
 from lithobrake.smallbody.polyhedron_gravity import ROWS, PolyhedronTerms, field_block
 from lithobrake.smallbody.simd import LANES, WIDTH, angle, log_ratio
-from lithobrake.vocabulary.arrays import Floats, Integers
+from lithobrake.vocabulary.array_types import Floats, Integers
 
 # Place of xx, yy, zz, xy, xz, yz in a 3 x 3 matrix.
 MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lithobrake.files.atomic import write_rows
 from lithobrake.files.reading import read_rows
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.outcomes import CAPTURED
 
 # Levels of the quantiles of each cell; the outermost are the smallest and largest value.

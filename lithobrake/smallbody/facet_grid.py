@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt
 
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
-from lithobrake.vocabulary.arrays import Floats, Integers, ShortIntegers
+from lithobrake.vocabulary.array_types import Floats, Integers, ShortIntegers
 
 LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side

@@ -17,7 +17,7 @@ from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
 from lithobrake.smallbody.rotation import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Edge of the cells and reach of each grid in radii of the body; the first reaches MARGIN cells beyond the bounding box.
 # Of 1920 facets the table takes 8 s of CPU time to build and 37 MB; that of a partner, without the two finest grids,

@@ -18,7 +18,7 @@ from lithobrake.smallbody.facet_grid import Grid, near_heights, pseudonormals
 from lithobrake.smallbody.gravity_table import CORE, MARGIN, RIM, GravityTable, point_mass, spline_coefficients
 from lithobrake.smallbody.multipole import Multipole
 from lithobrake.smallbody.polyhedron_gravity import PolyhedronTerms
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 SKIN = 6  # cells below the surface over which the continued field goes over into the one inside
 PIECE = 8192  # points that a thread takes at a time

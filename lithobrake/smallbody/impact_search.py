@@ -8,7 +8,7 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.smallbody.acceleration import Motion, into_ground
 from lithobrake.smallbody.facet_grid import Grid, clearance, first_entry, height_near
 from lithobrake.smallbody.rotation import Turning
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 STAGES = 7
 NODES = np.array([0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1, 1])

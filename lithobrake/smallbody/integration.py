@@ -24,7 +24,7 @@ from lithobrake.smallbody.impact_search import (
 )
 from lithobrake.smallbody.polyhedron_gravity import ROWS
 from lithobrake.smallbody.simd import LANES
-from lithobrake.vocabulary.arrays import Floats, Integers
+from lithobrake.vocabulary.array_types import Floats, Integers
 
 FLYING, IMPACT, ESCAPED, PARTNER, FAILED = range(5)  # the first four in the order of FlightStatus
 # Of a flight: some 40 000 circuits near the surface at the default tolerance, years about a body of a kilometre.

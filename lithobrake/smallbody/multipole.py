@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lithobrake.compilation.compiled import compiled
 from lithobrake.smallbody.polyhedron_gravity import POTENTIAL, PULL_X, PULL_Y, PULL_Z, PolyhedronTerms
 from lithobrake.smallbody.simd import LANES
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 DEGREE = 20
 # Flights need 1e-9, but a user who compares codes at two or three radii would find that a hundred times the difference

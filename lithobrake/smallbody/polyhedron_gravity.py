@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lithobrake.compilation.compiled import compiled
 from lithobrake.smallbody.simd import LANES, angle, fma, log_ratio
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 # Rows of a block of points: `lane[row * LANES + j]` belongs to point j. The first three are read, the others written.
 X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7

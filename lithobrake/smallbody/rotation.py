@@ -11,7 +11,7 @@ from lithobrake.compilation.compiled import kernel
 from lithobrake.geometry.attitude import quaternion_products, rotation_matrices
 from lithobrake.smallbody.polyhedron_gravity import PULL_X
 from lithobrake.smallbody.simd import LANES
-from lithobrake.vocabulary.arrays import Array, Floats, Vector
+from lithobrake.vocabulary.array_types import Array, Floats, Vector
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Between two states a quaternion is a cubic; the bounds of its rates are those at so many places, and a little more.

@@ -14,7 +14,7 @@ from lithobrake.geometry.attitude import quaternion_products, rotation_matrices
 from lithobrake.geometry.naif_kernels import Reply, read_apart
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.rotation import AttitudeHistory
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 Rates = tuple[float, ...]

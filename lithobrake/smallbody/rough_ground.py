@@ -14,7 +14,7 @@ import numpy as np
 
 from lithobrake.smallbody.bounce import Bounce, Impacts, Rebounds
 from lithobrake.smallbody.hopping import impact_frame
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number
 
 # Standard deviations within which a gradient lies, and halvings of their width down to the last bit.

@@ -11,7 +11,7 @@ from lithobrake.compilation.compiled import compiled
 from lithobrake.geometry.naif_kernels import spice
 from lithobrake.smallbody.facet_grid import intersect_facet
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.given_numbers import numbers

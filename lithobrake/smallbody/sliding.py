@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.rotation import ground_spin
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.array_types import Array, Integers
 
 CROSSINGS = 8  # edges that one way may go over
 # The way across a slope is then right to half a percent.

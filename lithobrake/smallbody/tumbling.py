@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import about_z, quaternion, quaternion_products
 from lithobrake.smallbody.rotation import AttitudeHistory
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.given_numbers import numbers
 
 # Principal moments nearer than this part of the largest differ by the rounding of eigenvalues.

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.geometry.limits import BOULDER_REACH, longest_reach
+from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
 from lithobrake.study.quantity import usual_reach

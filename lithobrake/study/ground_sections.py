@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
-from lithobrake.geometry.limits import LARGEST_COVERAGE
+from lithobrake.geometry.bed_limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES, MaterialProperty

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
-from lithobrake.geometry.limits import alike
+from lithobrake.geometry.bed_limits import alike
 from lithobrake.study import ground_sections
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
 from lithobrake.vocabulary.material import SURFACE_PROPERTIES, MaterialProperty

@@ -14,9 +14,9 @@ from pydantic import BaseModel, ValidationError
 from lithobrake.study.checks import problems
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.study_files import STUDY_FILE
 
 STUDIES, EXAMPLES = "scenarios", "examples"
 # What an example needs beside itself, in the same folder.

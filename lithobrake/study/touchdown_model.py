@@ -15,13 +15,16 @@ from lithobrake.files.reading import source_hash
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
 from lithobrake.study.ground_sections import Constant, PowerLaw
-from lithobrake.study.lander_shapes import given_centre, given_inertia, lander_parts, main_shape
+from lithobrake.study.lander_section import LanderSection, PartSection
 from lithobrake.study.quantity import median
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
-from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
 
 if TYPE_CHECKING:
+    from lithobrake.dem import Box, ConvexHull, Part, Sphere
+
+    Array = np.ndarray
     from lithobrake.dem import Material
     from lithobrake.study.ground_sections import Bell, Between
     from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
@@ -31,6 +34,99 @@ PLACE = ("impact.place.x", "impact.place.y")
 # Height of the lowest hop that leaves the bed, in largest diameters of the lander, where the study says nothing.
 HOP_PER_LANDER = 3.0
 TIME_LEFT = "journey.time_left"
+# What the engine calls things by its own names, and what they are in a study file.
+# Replaced one after the other, so longer names stand before those that they begin with.
+STUDY_WORDS = {
+    "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
+    ": make it smaller": ": raise contact.steps_per_contact",
+    "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
+    "World period is": 'bed.width with bed.sides = "periodic" is',
+    "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
+    "BedRecipe.boulders.": "bed.boulders.",
+    "BedRecipe.": "bed.",
+    "Landing.incidence": "impact.incidence_deg, in radians,",
+    "Landing.azimuth": "impact.azimuth_deg, in radians,",
+    "Landing.gravity": "surface.gravity",
+    "Landing.time_limit": "landing.time_limit",
+    "Landing.": "impact.",
+    "Lander.": "lander.",
+    "add_body ": "lander.",
+    "Sphere radius": "half of lander.diameter",
+    "Box lengths": "lander.edges",
+}
+# Where the code stands that decides what a touchdown gives.
+# Workers of a cluster may have another version, and results of other code are other results: the hash is part of the
+# keys of beds and runs, and each call compares it.
+ENGINE_PARTS = (
+    "dem",
+    "touchdown",
+    "geometry/bed_limits.py",
+    "geometry/mesh.py",
+    "geometry/mesh_files.py",
+    "study/touchdown_model.py",
+    "vocabulary/material.py",
+)
+# In all beds that a process keeps: 1000 take 13 MB. Each run takes another bed, and reading one takes longer than to
+# land on it.
+GRAINS_KEPT = 40_000
+_beds: dict[tuple[Path, int, int], "Bed"] = {}
+
+
+def main_shape(section: LanderSection, values: Mapping[str, float]) -> "Sphere | Box | ConvexHull":
+    """The shape of the lander without its parts; values: of the study by dotted key."""
+    from lithobrake.dem import Box, Sphere
+    from lithobrake.touchdown import read_hull
+
+    if section.edges is not None:
+        return Box(section.edges)
+    if section.file is not None:
+        return read_hull(Path(section.file), section.unit)
+    return Sphere(values["lander.diameter"] / 2)
+
+
+def part_shape(section: PartSection) -> "Sphere | ConvexHull":
+    from lithobrake.dem import Box, ConvexHull, Sphere, rotation_matrices
+    from lithobrake.touchdown import read_hull
+
+    if section.diameter is not None:
+        return Sphere(section.diameter / 2, section.centre)
+    own = Box(section.edges) if section.edges is not None else read_hull(Path(str(section.file)), section.unit)
+    turn = np.array(section.orientation)
+    rotation = rotation_matrices((turn / np.linalg.norm(turn))[None])[0]
+    return ConvexHull(own.vertices @ rotation.T + np.array(section.centre))
+
+
+def lander_parts(
+    section: LanderSection, values: Mapping[str, float], properties: Mapping[str, float]
+) -> "tuple[Part, ...]":
+    """The parts of the lander; properties: of its own material, which a part has unless others are given."""
+    from lithobrake.dem import Material, Part
+
+    parts = []
+    for name, part in section.part.items():
+        shape = part_shape(part)
+        density = part.density if part.mass is None else part.mass / shape.volume
+        own: dict[str, Any] = {key: values.get(f"lander.part.{name}.{key}", value) for key, value in properties.items()}
+        parts.append(Part(shape, Material(density=float(density or 0.0), **own)))
+    return tuple(parts)
+
+
+def given_centre(section: LanderSection, values: Mapping[str, float]) -> "Array | None":
+    """The centre of mass [m], [3], where the study gives it."""
+    if section.centre_of_mass is None:
+        return None
+    return np.array([values[f"lander.centre_of_mass.{axis}"] for axis in "xyz"])
+
+
+def given_inertia(section: LanderSection) -> "Array | None":
+    """The inertia [kg m2], [3, 3], where the study gives it."""
+    if section.inertia is None:
+        return None
+    tensor = np.diag(section.inertia[:3])
+    if len(section.inertia) == 6:
+        for (i, j), element in zip(((0, 1), (0, 2), (1, 2)), section.inertia[3:], strict=True):
+            tensor[i, j] = tensor[j, i] = element
+    return tensor
 
 
 def medians(study: Study) -> dict[str, float]:
@@ -69,28 +165,6 @@ class TouchdownModel:
             return land(bed, lander(self.study, values), landing(self.study, values), frame_count, progress)
 
 
-# What the engine calls things by its own names, and what they are in a study file.
-# Replaced one after the other, so longer names stand before those that they begin with.
-STUDY_WORDS = {
-    "World time_step": "the time step (a contact has contact.steps_per_contact of them)",
-    ": make it smaller": ": raise contact.steps_per_contact",
-    "positions are no longer finite numbers": "positions are no longer finite numbers; raise contact.steps_per_contact",
-    "World period is": 'bed.width with bed.sides = "periodic" is',
-    "BedRecipe.gravity": "surface.gravity with surface.slope_deg",
-    "BedRecipe.boulders.": "bed.boulders.",
-    "BedRecipe.": "bed.",
-    "Landing.incidence": "impact.incidence_deg, in radians,",
-    "Landing.azimuth": "impact.azimuth_deg, in radians,",
-    "Landing.gravity": "surface.gravity",
-    "Landing.time_limit": "landing.time_limit",
-    "Landing.": "impact.",
-    "Lander.": "lander.",
-    "add_body ": "lander.",
-    "Sphere radius": "half of lander.diameter",
-    "Box lengths": "lander.edges",
-}
-
-
 @contextmanager
 def in_words_of_the_study() -> Iterator[None]:
     """Say what the engine refuses by the keys of the study file, which is all that its user has written."""
@@ -102,21 +176,6 @@ def in_words_of_the_study() -> Iterator[None]:
             text = text.replace(engine, study)
         # Either may be a kind of its own that takes no text.
         raise (ValueError if isinstance(error, ValueError) else FloatingPointError)(text) from error
-
-
-# Where the code stands that decides what a touchdown gives.
-# Workers of a cluster may have another version, and results of other code are other results: the hash is part of the
-# keys of beds and runs, and each call compares it.
-ENGINE_PARTS = (
-    "dem",
-    "touchdown",
-    "geometry/limits.py",
-    "geometry/mesh.py",
-    "geometry/mesh_files.py",
-    "study/lander_shapes.py",
-    "study/touchdown_model.py",
-    "vocabulary/material.py",
-)
 
 
 @cache
@@ -136,12 +195,6 @@ def refuse_other_code(engine: str) -> None:
 def touchdown_version() -> str:
     """The version of the package and of the code that decides what a touchdown gives, as the ledger keeps it."""
     return f"{__version__}+{engine_hash()}"
-
-
-# In all beds that a process keeps: 1000 take 13 MB. Each run takes another bed, and reading one takes longer than to
-# land on it.
-GRAINS_KEPT = 40_000
-_beds: dict[tuple[Path, int, int], "Bed"] = {}
 
 
 def stored_bed(path: Path) -> "Bed":

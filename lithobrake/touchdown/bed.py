@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lithobrake.dem import ConvexHull, Material, World, folded, pair_law, period_of, rotation_matrices
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import reading
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.quantities import describe
 
 RAYS_PER_DIAMETER = 4

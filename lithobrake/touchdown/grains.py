@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.dem import ConvexHull, folded, period_of
-from lithobrake.geometry.limits import BOULDER_REACH, LARGEST_COVERAGE
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.geometry.bed_limits import BOULDER_REACH, LARGEST_COVERAGE
+from lithobrake.vocabulary.array_types import Floats
 
 SIZE_DISTRIBUTIONS = ("constant", "uniform", "normal", "power_law")
 

@@ -22,7 +22,7 @@ from lithobrake.dem import (
 )
 from lithobrake.geometry.mesh import refuse_malformed
 from lithobrake.geometry.mesh_files import read_mesh
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 # Points at which a part is looked for above the ground: so many steps from its centroid to each of its vertices.
 FOOTPRINT_STEPS = 4

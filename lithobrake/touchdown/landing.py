@@ -12,7 +12,7 @@ from lithobrake.dem import ConvexHull, Material, Shape, Sphere
 from lithobrake.files.atomic import atomic_path
 from lithobrake.touchdown.bed import Bed, ContactModel, write_hulls
 from lithobrake.touchdown.lander import Lander
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
 

@@ -8,7 +8,7 @@ from lithobrake.dem import BodyMotion, World
 from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander
 from lithobrake.touchdown.landing import LEAVING, Landing, Outcome, outgoing, turned, turned_attitude
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, PERIODS_TRAVELLED, TO_REST
 

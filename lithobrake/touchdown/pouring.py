@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.dem import ConvexHull, Material, Shape, World, folded, period_of
-from lithobrake.geometry.limits import longest_reach
+from lithobrake.geometry.bed_limits import longest_reach
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_world, height_map
 from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation
-from lithobrake.vocabulary.arrays import Vector
-from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.array_types import Vector
+from lithobrake.vocabulary.callbacks import Progress, silent
 
 RAIN_PLACES = 100  # tried for each grain
 RAIN_DEPTH = 4.0  # of the largest bounding radius, below which no place is looked for at first

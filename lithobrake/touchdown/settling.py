@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 
 from lithobrake.dem import Material, StepTooLargeError, World
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 CONTACT_DAMPING = 0.1  # damping ratio of a grain's small oscillation while a bed takes on another gravity or material
 FREE_FALL_DAMPING = 0.5  # drag while a bed comes to rest, in units of sqrt(gravity / diameter)

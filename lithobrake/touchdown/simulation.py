@@ -13,7 +13,7 @@ from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander, smallest_bed
 from lithobrake.touchdown.landing import Landing, Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift, rest_time
-from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.callbacks import Progress, silent
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact

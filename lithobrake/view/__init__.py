@@ -1,6 +1,6 @@
 """Moving bodies to look at outside the report: a file for ParaView, a window, a film, a contact sheet."""
 
-from lithobrake.view.motion import show, write_vtkhdf
+from lithobrake.view.drawn_motion import show, write_vtkhdf
 from lithobrake.view.motion_files import (
     contact_sheet,
     film,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path, write_whole
-from lithobrake.view.motion import DrawnMotion, write_vtkhdf
+from lithobrake.view.drawn_motion import DrawnMotion, write_vtkhdf
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.extra_library import extra_library
-from lithobrake.vocabulary.progress import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.results import JourneyMotion, JourneyTrack

@@ -9,7 +9,7 @@ import pytest
 
 import lithobrake
 from lithobrake.pipeline import StudyFolder, write_report_again
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.flights import Starts, fly_starts
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.run_flights import run_sites

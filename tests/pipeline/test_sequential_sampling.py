@@ -10,7 +10,7 @@ import pytest
 from lithobrake.analysis import half_width_of
 from lithobrake.pipeline import StudyFolder, plan_lines, study_status
 from lithobrake.pipeline.answer.run_answers import answers_of, read_shares
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.run_table import DesignRuns

@@ -12,7 +12,7 @@ from lithobrake.analysis import share_estimate
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import summary_dependencies
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.flights import Starts, flight_dependencies, fly_starts
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.run_flights import FLIGHT_COUNT, run_sites

@@ -33,12 +33,12 @@ ELSEWHERE = (
     *("study", "vocabulary"),  # by their values, which each stage reads; words
     *("pipeline/runs/beds.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     # inputs of the first touchdowns of journeys, which the keys of runs hold
-    *("pipeline/design/arrivals.py", "pipeline/design/descents.py", "pipeline/design/design.py"),
+    *("pipeline/design/arrivals.py", "pipeline/design/descents.py", "pipeline/design/drawn_design.py"),
     "__init__.py",
 )
 # The site that a design holds: its runs take of it the same inputs of first touchdowns alone. What else reads the site
 # imports it by itself.
-BY_KEYS_OF_RUNS = {PACKAGE / "pipeline/design/design.py": {PACKAGE / "pipeline/site.py"}}
+BY_KEYS_OF_RUNS = {PACKAGE / "pipeline/design/drawn_design.py": {PACKAGE / "pipeline/site.py"}}
 
 
 @cache

@@ -17,7 +17,7 @@ from lithobrake.dem import ConvexHull
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.study_summary import write_drawn_summary
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.paper_summary import write_summary
 from lithobrake.study import check_tables

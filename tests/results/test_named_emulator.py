@@ -9,7 +9,7 @@ import pytest
 from lithobrake import emulator
 from lithobrake.chaos import LogUniform, Uniform
 from lithobrake.results import NamedEmulator
-from lithobrake.results.explorer_tables import ExplorerAttitude
+from lithobrake.results.table import ExplorerAttitude
 
 from ..quick_studies import quick_studies
 

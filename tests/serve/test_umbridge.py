@@ -197,7 +197,7 @@ def test_an_evaluation_whose_process_dies_is_told_and_the_next_is_made(tmp_path:
 
 
 def test_a_study_solved_by_a_server_is_that_of_its_program(study_address: str, tmp_path: Path) -> None:
-    from lithobrake.pipeline.design.design import DrawnDesign
+    from lithobrake.pipeline.design.drawn_design import DrawnDesign
     from lithobrake.pipeline.runs.landings import drawn_rows, model_of
     from lithobrake.study import StudySource
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Sphere, World
-from lithobrake.geometry.limits import BOULDER_REACH
+from lithobrake.geometry.bed_limits import BOULDER_REACH
 from lithobrake.touchdown import (
     Bed,
     Boulders,

@@ -23,7 +23,7 @@ from lithobrake.dem import (
     period_of,
     rotation_matrices,
 )
-from lithobrake.geometry.limits import longest_reach
+from lithobrake.geometry.bed_limits import longest_reach
 from lithobrake.touchdown import OUTPUTS, Bed, BedRecipe, ContactModel, Lander, Landing, land, pour_bed, settling
 from lithobrake.touchdown.bed import boxed_world, height_map
 from lithobrake.touchdown.grains import make_grain, make_grain_within

@@ -12,7 +12,7 @@ from lithobrake.report.figures.map_frames import track_map
 from lithobrake.report.figures.style import figure_style
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 from lithobrake.view import contact_sheet, film, journey_film, write_journey, write_motion, write_vtkhdf
-from lithobrake.view.motion import body_speeds, placed
+from lithobrake.view.drawn_motion import body_speeds, placed
 from lithobrake.view.motion_files import SIZE, map_picture
 
 from ..report.browser import browser_page, needs_browser

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.dem import Material
-from lithobrake.geometry.limits import BOULDER_REACH
+from lithobrake.geometry.bed_limits import BOULDER_REACH
 from lithobrake.touchdown import Bed, BedRecipe, GrainSizes, pour_bed, stored_or_poured
 from lithobrake.touchdown.bed import heights_at
 from lithobrake.touchdown.grains import Boulders

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
-from lithobrake.vocabulary.arrays import Flags, Floats, Integers
+from lithobrake.vocabulary.array_types import Flags, Floats, Integers
 
 # Columns of `lost`.
 DAMPING, FRICTION, ROLLING = 0, 1, 2

@@ -3,7 +3,7 @@
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Step
 from lithobrake.dem.bodies.vectors import add, cross, dot, plus, put, row, scaled, times, transposed_times
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 Quaternion = tuple[float, float, float, float]
 # Evaluations of the mid-step spin; the error left after three is of the sixth order in spin times step.

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.material import Material
 
 Offset = tuple[float, ...]

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Period
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 NO_PERIOD = Period(0.0, 0.0, 0.0, 0.0)
 # Over which bounding radii and skins of the two largest bodies a period extends at least.

@@ -18,7 +18,7 @@ from lithobrake.dem.law.tangential_spring import stored
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact
 from lithobrake.dem.narrow_phase.patch_energy import patch_tilt_stiffness
 from lithobrake.dem.narrow_phase.scratch import System
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 
 @kernel

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, curvature_of
 from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, row, scaled, times
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 
 @kernel

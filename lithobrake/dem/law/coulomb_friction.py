@@ -16,7 +16,7 @@ from lithobrake.dem.law.tangential_spring import spring_force, stored, turned_sp
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import spin_radii
 from lithobrake.dem.narrow_phase.scratch import Patch
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 
 @kernel

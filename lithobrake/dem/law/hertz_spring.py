@@ -15,7 +15,7 @@ from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.narrow_phase.contact_patch import Contact
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_EDGES
 from lithobrake.dem.narrow_phase.scratch import Patch
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 
 class ContactSprings(NamedTuple):

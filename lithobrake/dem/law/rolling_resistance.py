@@ -7,7 +7,7 @@ from lithobrake.dem.law.contact_motion import RelativeMotion, inverse_inertia_ac
 from lithobrake.dem.law.hertz_spring import ContactSprings
 from lithobrake.dem.law.restitution import PairLaw
 from lithobrake.dem.law.tangential_spring import spring_force, turned_spring
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 # Stiffness of rolling over that of the normal contact times the lever squared.
 ROLLING_STIFFNESS = 2.25

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, scaled
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 
 class SpringForce(NamedTuple):

@@ -18,7 +18,7 @@ from lithobrake.dem.local_stepping.free_motion import (
     time_to_close,
     weight,
 )
-from lithobrake.vocabulary.arrays import Floats, Integers, Vector
+from lithobrake.vocabulary.array_types import Floats, Integers, Vector
 
 # A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
 # Half takes the least time: with a fifth, bodies are planned anew 2.7 times as often; with all of it, pairs are looked

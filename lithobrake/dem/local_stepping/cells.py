@@ -11,7 +11,7 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies
 from lithobrake.dem.bodies.vectors import minus, plus, row
-from lithobrake.vocabulary.arrays import Floats, Integers, Vector
+from lithobrake.vocabulary.array_types import Floats, Integers, Vector
 
 Place = tuple[int, int, int]  # numbers of a cell along the axes
 

@@ -11,7 +11,7 @@ from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row
 from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
 from lithobrake.dem.narrow_phase.feature_distance import SPHERES, feature_indices, feature_kind, listed_feature
 from lithobrake.dem.narrow_phase.feature_list import travelled
-from lithobrake.vocabulary.arrays import Flags, Floats, Integers, Vector
+from lithobrake.vocabulary.array_types import Flags, Floats, Integers, Vector
 
 # Largest angle [rad] by which a body turns freely at once.
 LARGEST_TURN = 0.2

@@ -12,7 +12,7 @@ from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions
 from lithobrake.dem.bodies.vectors import add, dot, plus, put, row, scaled, times, way_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules, surface_speed
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 # A body is held when it is slower than this part of the speed at which it would be let go again.
 CALM = 0.5

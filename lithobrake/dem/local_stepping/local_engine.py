@@ -15,7 +15,7 @@ from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, ente
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.neighbours import free_slots, new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.stepping.time_loop import new_reactions, new_record
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 # Slots for pairs at the start, for each body.
 # A poured bed has some 5 pairs of neighbours a grain.

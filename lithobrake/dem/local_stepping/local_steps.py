@@ -39,7 +39,7 @@ from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_L
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_loop import add_wrench, contact_force, record_touch
 from lithobrake.dem.stepping.time_step_stability import pair_step
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Why a run stops: besides what neighbour_search.py says.
 NO_ROOM = 3

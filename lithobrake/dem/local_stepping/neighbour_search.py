@@ -16,7 +16,7 @@ from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, pla
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
 from lithobrake.dem.stepping.time_step_stability import HERTZ_DURATION
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
 
 LISTED, NO_SLOT, LOST = 0, 1, 2
 

@@ -35,7 +35,7 @@ from lithobrake.dem.narrow_phase.patch_energy import (
 )
 from lithobrake.dem.narrow_phase.penetration import add_penetration_point
 from lithobrake.dem.narrow_phase.scratch import Patch, Scratch
-from lithobrake.vocabulary.arrays import Vector
+from lithobrake.vocabulary.array_types import Vector
 
 
 class Contact(NamedTuple):

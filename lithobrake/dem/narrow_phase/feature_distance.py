@@ -3,7 +3,7 @@
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Cores, Pairs
 from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, row, scaled
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Two edges whose directions differ by less than this angle (squared) have no single closest point.
 PARALLEL = 1e-12

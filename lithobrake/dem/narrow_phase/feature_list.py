@@ -33,7 +33,7 @@ from lithobrake.dem.narrow_phase.gjk import APART, CLOSE, PENETRATING, weighted
 from lithobrake.dem.narrow_phase.patch_energy import DEEP_TO
 from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch, Simplex, TurnedFeatures
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # The margin is this part of the rounding radii, which themselves count for at most this part of the contact radii.
 MARGIN_OF_ROUNDING, ROUNDING_OF_RADIUS = 0.1, 0.04

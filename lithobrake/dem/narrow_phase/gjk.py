@@ -4,7 +4,7 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Cores
 from lithobrake.dem.bodies.vectors import cross, dot, minus, plus, put, row, scaled, times, transposed_times
 from lithobrake.dem.narrow_phase.scratch import Simplex
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 Weights = tuple[float, float, float, float]
 # Squared distance still to be gained, over the squared distance, at which the search ends.

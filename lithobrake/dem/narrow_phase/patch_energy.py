@@ -18,7 +18,7 @@ from lithobrake.dem.bodies.vectors import (
 )
 from lithobrake.dem.narrow_phase.feature_distance import closest_fractions, edge_of, lowest_height, point_to_core
 from lithobrake.dem.narrow_phase.scratch import Patch
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Families of points: corners, pairs of edges apart, deep pairs of edges (deep_edges.py), and the
 # penetration vector of cores.

@@ -9,7 +9,7 @@ from lithobrake.dem.narrow_phase.feature_distance import edge_of, lowest_height,
 from lithobrake.dem.narrow_phase.gjk import APART, CLOSE, PENETRATING, UNSURE, closest_simplex, weighted
 from lithobrake.dem.narrow_phase.patch_energy import PENETRATION, add_point
 from lithobrake.dem.narrow_phase.scratch import Scratch, Simplex, TurnedFeatures
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Two edges at a smaller angle (squared) part nowhere farther, to rounding, than faces beside them.
 PARALLEL = 1e-24

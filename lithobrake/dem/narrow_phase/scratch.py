@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, Reactions
-from lithobrake.vocabulary.arrays import Floats, Integers
+from lithobrake.vocabulary.array_types import Floats, Integers
 
 
 class Simplex(NamedTuple):

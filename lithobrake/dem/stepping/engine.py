@@ -7,9 +7,8 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Laws, Pairs, Period, Planes, Reactions, Step
 from lithobrake.dem.bodies.motion import write_matrices, write_rotations
-from lithobrake.dem.bodies.polyhedron import Polyhedron
 from lithobrake.dem.bodies.rigid_body import AT_CENTRE, Offset, PlacedPart, Plane, RigidBody
-from lithobrake.dem.bodies.shape import Shape
+from lithobrake.dem.bodies.shape import Polyhedron, Shape
 from lithobrake.dem.bodies.vectors import refuse_short_period
 from lithobrake.dem.law.restitution import pair_law
 from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
@@ -25,7 +24,7 @@ from lithobrake.dem.stepping.time_loop import (
     new_reactions,
     partitions_of,
 )
-from lithobrake.vocabulary.arrays import Floats, Integers
+from lithobrake.vocabulary.array_types import Floats, Integers
 from lithobrake.vocabulary.material import Material
 
 # A shape and where its centroid stands from the centre of mass [m], frame of the shape.

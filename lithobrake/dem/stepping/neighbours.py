@@ -14,7 +14,7 @@ from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.gjk import APART
 from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import Scratch
-from lithobrake.vocabulary.arrays import Flags, Floats, Integers, Vector
+from lithobrake.vocabulary.array_types import Flags, Floats, Integers, Vector
 
 
 @kernel

@@ -14,7 +14,7 @@ from lithobrake.dem.law.contact_law import add_wrench, contact_force
 from lithobrake.dem.narrow_phase.feature_list import update_feature_lists
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_step_stability import step_is_too_large
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Where it stands in a record: largest force [N]; first and last instant of touch (NaN: none) by the clock of the
 # stepping, steps taken or seconds (World.watched gives seconds); whether anything touches it, 1 or 0; steps taken.

@@ -13,7 +13,7 @@ from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
-from lithobrake.vocabulary.arrays import Floats, Vector
+from lithobrake.vocabulary.array_types import Floats, Vector
 from lithobrake.vocabulary.material import Material
 
 # Steps in the shortest contact when a world chooses its own step.

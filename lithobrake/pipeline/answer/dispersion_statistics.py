@@ -25,10 +25,10 @@ from lithobrake.statements.touchdowns import followed
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
-from lithobrake.vocabulary.study_files import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 
 # In the order of the summary.
 FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)

@@ -18,10 +18,10 @@ from lithobrake.statements.ends import journeys_at_rest
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words, sides_down
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE, SKY_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, SIDES, SOIL
-from lithobrake.vocabulary.study_files import JOURNEYS_FILE, SKY_FILE, TOUCHDOWNS_FILE
 
 Sides = dict[str, SideResults]
 

@@ -11,7 +11,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -27,9 +27,9 @@ from lithobrake.study.lander_section import side_words
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary import outcomes
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import AIM_FILE
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
-from lithobrake.vocabulary.study_files import AIM_FILE
 
 # The outcome of these landers is unknown.
 UNKNOWN = (outcomes.JourneyStatus.OUTSIDE, outcomes.JourneyStatus.BOUNCING, UNKNOWN_END)

@@ -9,7 +9,7 @@ from lithobrake.analysis.limit_states import limit_state_met
 from lithobrake.analysis.regions import HighestDensity
 from lithobrake.campaign import Record
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.run_flights import FATES as RUN_FATES
 from lithobrake.pipeline.run_flights import RETURNS as RETURNING
 from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE

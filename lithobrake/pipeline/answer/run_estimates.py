@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake import analysis
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
-from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
+from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
@@ -22,6 +22,7 @@ from lithobrake.results.summary import Estimates
 from lithobrake.statements.ends import journeys_at_rest
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import ESTIMATES_FILE
 from lithobrake.vocabulary.landing_fraction import LandingFraction
 from lithobrake.vocabulary.material import SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import QUANTILES
@@ -34,7 +35,6 @@ from lithobrake.vocabulary.outcomes import (
     TouchdownOutcome,
 )
 from lithobrake.vocabulary.quantities import ARRIVAL, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
-from lithobrake.vocabulary.study_files import ESTIMATES_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -50,9 +50,9 @@ from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Pr
 from lithobrake.statements.answers import landing_answer, landing_headline
 from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
+from lithobrake.vocabulary.file_names import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
-from lithobrake.vocabulary.study_files import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 
 # Adds what came of the landings to what they say.
 Completed = Callable[[Job, DrawnResults, DesignRuns, Estimates], DrawnResults]

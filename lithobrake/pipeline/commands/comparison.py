@@ -25,10 +25,10 @@ from lithobrake.results.study_files import intact_file, json_values
 from lithobrake.statements.comparison import other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
-from lithobrake.vocabulary.study_files import STUDY_FILE
 
 # What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
 COMMON = {

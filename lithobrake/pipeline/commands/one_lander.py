@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from lithobrake.campaign import Record, RunStatus, run_key
 from lithobrake.pipeline.design.arrivals import on_local_ground
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
-from lithobrake.pipeline.design.design import GRAIN, DrawnDesign
+from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.campaign import begin, begun_aloft, journey_row
 from lithobrake.pipeline.journeys.journey import Journey, JourneyModel
@@ -21,8 +21,8 @@ from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.progress import Progress, silent
 from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TOUCHDOWN
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.pipeline.runs.run_table import DesignRuns

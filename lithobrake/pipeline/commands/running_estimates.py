@@ -14,9 +14,9 @@ from lithobrake.results.study_files import JOURNEYS, TOUCHDOWNS
 from lithobrake.statements.journeys import journey_ends_so_far
 from lithobrake.statements.touchdowns import NO_FLIGHTS, so_far
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OVER_RIM
-from lithobrake.vocabulary.study_files import STUDY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.vocabulary.landing_fraction import LandingFraction

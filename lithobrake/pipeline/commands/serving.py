@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
@@ -28,10 +28,10 @@ from lithobrake.serve import ClientGoneError, ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
 from lithobrake.study.touchdown_model import draw
+from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import OUTPUTS
-from lithobrake.vocabulary.study_files import EMULATOR_FILE
 
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
 RUN_KEYS = ("seed", "inputs", "setting")

@@ -11,7 +11,7 @@ from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.run_answers import why_no_interval
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator

@@ -19,8 +19,8 @@ from lithobrake.pipeline.folder_state import FolderState, StageState, grouped, r
 from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, StudyFolder
 from lithobrake.results import open_study
 from lithobrake.results.study_files import JOURNEYS
+from lithobrake.vocabulary.file_names import RUNS_FILE, STUDY_FILE
 from lithobrake.vocabulary.quantities import OUTPUTS
-from lithobrake.vocabulary.study_files import RUNS_FILE, STUDY_FILE
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from lithobrake.study import Study
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.touchdown_model import grain, grain_sizes, lander, medians
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.quantities import GROUND, IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION, SPIN
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.delivered_states import DeliveredStates, states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH

@@ -7,11 +7,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, seen_from_lander
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_toward
 from lithobrake.study.touchdown_model import lander, medians
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, SIDES
 
 # Names of the terms among the inputs of a touchdown.

@@ -10,7 +10,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import angles, directions
 from lithobrake.pipeline.design.arrivals import roughness
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.first_bounces.bounce_laws import (
     RESTITUTION_FILE,
@@ -27,9 +27,9 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CAPTURED, VELOCITY, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
+from lithobrake.vocabulary.file_names import AIM_FILE, ARCS_FILE, REST_FILE, REST_NOTES_FILE
 from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, ARC, SPIN_OUT
-from lithobrake.vocabulary.study_files import AIM_FILE, ARCS_FILE, REST_FILE, REST_NOTES_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Arcs, Body, Bounce, HardSurface, Impacts, Journeys, Rebounds

@@ -17,10 +17,10 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, bound_numbers, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
-from lithobrake.results.explorer_tables import FORMAT_VERSION, NAMES, ExplorerTables
+from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
+from lithobrake.vocabulary.file_names import EMULATOR_FILE, EXPLORER_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
-from lithobrake.vocabulary.study_files import EMULATOR_FILE, EXPLORER_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -16,10 +16,10 @@ from lithobrake.pipeline.journeys.journey import ENDS, Journey, JourneyModel, fl
 from lithobrake.pipeline.runs.landings import account, campaign_setting, model_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.vocabulary.file_names import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import out_of, percent
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
-from lithobrake.vocabulary.study_files import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 
 JOURNEY_FILES: tuple[str, ...] = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
 # Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.

@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms, directions
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, with_side_down
 from lithobrake.pipeline.first_bounces.bounces_to_rest import ways_from_aims
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, save_explorer, tables_of_refits
@@ -19,11 +19,12 @@ from lithobrake.pipeline.journeys import touchdown_emulator
 from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.explorer_tables import ExplorerAttitude
+from lithobrake.results.table import ExplorerAttitude
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
 from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides, side_words
+from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EXPLORER_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import (
     AIM_COLUMNS,
@@ -35,7 +36,6 @@ from lithobrake.vocabulary.quantities import (
     SPIN,
     UNKNOWN_END,
 )
-from lithobrake.vocabulary.study_files import AIM_FILE, TOUCHDOWN_EXPLORER_FILE
 
 EMULATED_FILES: tuple[str, ...] = (touchdown_emulator.TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
 # Landers that the study has not followed, and those of its journeys.

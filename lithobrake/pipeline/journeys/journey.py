@@ -12,7 +12,7 @@ from lithobrake.campaign import Record, RunStatus
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import attitude_of, from_frame, spin_of
 from lithobrake.pipeline.design import arrivals
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.design.soils import Soils, felt
 from lithobrake.pipeline.site import Site

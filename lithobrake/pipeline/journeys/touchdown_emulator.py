@@ -9,7 +9,7 @@ import numpy as np
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.arrivals import first_axes
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, RIDERS, DrawnLandings, fitted, outputs_of_runs
 from lithobrake.pipeline.job import Job
@@ -18,6 +18,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
+from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     GROUND,
@@ -29,7 +30,6 @@ from lithobrake.vocabulary.quantities import (
     TO_REST,
     UNKNOWN_END,
 )
-from lithobrake.vocabulary.study_files import TOUCHDOWN_EMULATOR_FILE
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation

@@ -11,7 +11,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, outgoing, rolling_spin
-from lithobrake.vocabulary.study_files import REFINED_FILE
+from lithobrake.vocabulary.file_names import REFINED_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel

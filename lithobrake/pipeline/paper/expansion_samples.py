@@ -11,11 +11,11 @@ from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, REFIT_COUN
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CLEAR, Samples, sampling_seed, touchdown_values
-from lithobrake.results.explorer_tables import ExplorerTables
+from lithobrake.results.table import ExplorerTables
 from lithobrake.study.quantity import median
+from lithobrake.vocabulary.file_names import REFINED_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, PAPER_DESIGNS
-from lithobrake.vocabulary.study_files import REFINED_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lithobrake.files.reading import hashed_seed
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.landings import drawn_rows, make_rows, say_gravity
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
+from lithobrake.vocabulary.file_names import REFINED_FILE, SCORES_FILE, SCREENING_FILE
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS
-from lithobrake.vocabulary.study_files import REFINED_FILE, SCORES_FILE, SCREENING_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate

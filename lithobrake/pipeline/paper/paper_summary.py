@@ -25,10 +25,10 @@ from lithobrake.results.summary import PaperResults
 from lithobrake.statements.answers import sample_answer, sample_headline
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import REFINED_FILE, SAMPLE_FLIGHTS_FILE, SCORES_FILE, SCREENING_FILE
 from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS, TOUCHDOWN
-from lithobrake.vocabulary.study_files import REFINED_FILE, SAMPLE_FLIGHTS_FILE, SCORES_FILE, SCREENING_FILE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Surrogate

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.campaign import Record, available_cores
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns
 from lithobrake.pipeline.runs.landings import landing_files, telling_files
 from lithobrake.pipeline.site import Site

@@ -11,7 +11,7 @@ import numpy as np
 
 from lithobrake.campaign import Record
 from lithobrake.pipeline.answer.run_answers import answer_words, answers_of
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import journey_time, machine_pace, pour_time, run_time
 from lithobrake.pipeline.planning.study_warnings import expected_loss

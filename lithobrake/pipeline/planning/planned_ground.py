@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, friction_of, smallest_width
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.runs.beds import bed_recipe

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.design.descents import descents_in_words
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.design.arrivals import smallest_width
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.bounce_laws import hard_ground_only, why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.study import Study

@@ -11,10 +11,10 @@ import numpy as np
 
 from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.study import Study, touchdown_model
-from lithobrake.vocabulary.progress import Progress, silent
+from lithobrake.vocabulary.callbacks import Progress, silent
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import BedRecipe

@@ -11,7 +11,7 @@ from lithobrake import campaign
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.pipeline.design import dependencies
-from lithobrake.pipeline.design.design import SIDE_DESIGNS, DrawnDesign, inputs_of
+from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign, inputs_of
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.beds import compile_kernels
 from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
@@ -20,9 +20,9 @@ from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, S
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study, touchdown_model
 from lithobrake.study.quantity import uncertain
+from lithobrake.vocabulary.file_names import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
-from lithobrake.vocabulary.study_files import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 
 SNAPSHOT_FRAMES = 120
 FIRST, TELLING = LANDING_FILE, TELLING_LANDING_FILE

@@ -21,7 +21,7 @@ from lithobrake.report.figures.hulls import Camera, frame_axes
 from lithobrake.report.figures.map_frames import degrees, draw_bar
 from lithobrake.report.figures.style import INK, QUIET, RULE, SITE, TRAINING
 from lithobrake.results.site_results import SiteAgreement, SiteCell, SiteEnds, SiteMap
-from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.constants import HOUR
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import at_level

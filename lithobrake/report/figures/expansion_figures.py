@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.ground_map import density_colours
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
 from lithobrake.statements.labels import PAPER_OUTPUTS, input_label, output
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import number, percent
 
 Counts = NDArray[np.float64]

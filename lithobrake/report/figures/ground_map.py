@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK
 from lithobrake.results.dispersion import RestRegion
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 
 # Lines of the graticule: so many points each, and round steps between them [deg].
 LINE_POINTS = 361

@@ -14,7 +14,7 @@ from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.report.figures.style import GRAIN, LANDER, shade
 from lithobrake.results import MovingBodies
 from lithobrake.results.motions import with_images
-from lithobrake.vocabulary.arrays import Array, Integers
+from lithobrake.vocabulary.array_types import Array, Integers
 
 # Directions as the viewer has them: to the right, towards the viewer, up. The sun stands at the upper left, whatever
 # the camera's azimuth; a weak light from the lower right keeps the form of what the sun does not reach.

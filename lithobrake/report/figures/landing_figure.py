@@ -12,7 +12,7 @@ from lithobrake.report.figures.hulls import Camera, Scene, draw_box, frame_axes,
 from lithobrake.report.figures.map_frames import SIZE, track_map
 from lithobrake.report.figures.style import GRAIN, INK, LANDER, QUIET, SITE, figure_style
 from lithobrake.results import JourneyMotion
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.plain_text import wrapped
 
 # Of each touchdown.

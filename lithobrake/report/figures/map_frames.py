@@ -12,7 +12,7 @@ from matplotlib.patheffects import Normal, Stroke
 from lithobrake.report.figures import ground_map
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE, WASH
 from lithobrake.results import JourneyTrack
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.outcomes import END_COLOURS
 
 # The bar of lengths is at most this part of the width.

@@ -17,7 +17,7 @@ from lithobrake.results.model_results import OutputErrors, OutputScore
 from lithobrake.statements.expansion import q2
 from lithobrake.statements.labels import PAPER_OUTPUTS, Output, input_label, output
 from lithobrake.statements.touchdowns import BAND, band_luck, luck, unlucky
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import number, percent
 
 LUCK = "#e3e7eb"

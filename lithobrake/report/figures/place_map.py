@@ -17,7 +17,7 @@ from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_loc
 from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import percent
 
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lithobrake.report.figures.style import INK, INTERACTIONS, QUIET, SITE, TRAINING, input_colours
 from lithobrake.results.run_results import VarianceParts
 from lithobrake.statements.labels import input_label, long_part_words, output, part_words
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import QUANTILE_WORDS, intervals, part
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 

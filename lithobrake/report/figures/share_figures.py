@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures.style import INK, QUIET, TRAINING
 from lithobrake.results.journey_results import RestQuantiles
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import at_level, percent, with_interval
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd

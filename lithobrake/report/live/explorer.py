@@ -10,8 +10,8 @@ import numpy as np
 
 from lithobrake.report.content import LiveSection, in_html, raised_units
 from lithobrake.results import ExplorerTables, Table
-from lithobrake.results.explorer_tables import ExplorerAttitude
 from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage
+from lithobrake.results.table import ExplorerAttitude
 from lithobrake.statements.answers import action
 from lithobrake.statements.captions import has_interval
 from lithobrake.statements.labels import input_words, output

@@ -16,7 +16,7 @@ from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE
 from lithobrake.report.live.explorer import deflated, script_data
 from lithobrake.results.page_data import JourneyPage, PageData, SampledPage
-from lithobrake.vocabulary.arrays import Array
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd

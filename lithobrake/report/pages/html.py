@@ -10,8 +10,8 @@ from urllib.parse import quote
 
 from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, in_html
 from lithobrake.statements.answers import Tile
+from lithobrake.vocabulary.file_names import CONTENTS
 from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS
-from lithobrake.vocabulary.study_files import CONTENTS
 
 # More rows or lines than this do not fit on a screen of a phone.
 LONG = 15

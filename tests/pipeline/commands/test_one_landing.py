@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from lithobrake.campaign import Record, read_records
 from lithobrake.cli import app
 from lithobrake.pipeline import OneJourney, follow_one, land_one, landing_inputs, rare_failure, run_study
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import with_site_gravity

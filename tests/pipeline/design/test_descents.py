@@ -17,7 +17,7 @@ from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
-from lithobrake.pipeline.design.design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble

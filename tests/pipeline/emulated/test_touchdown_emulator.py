@@ -17,7 +17,7 @@ from lithobrake.campaign import read_records
 from lithobrake.cli import app
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import plan_lines, plan_study, served_models
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces

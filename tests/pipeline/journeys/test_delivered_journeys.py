@@ -16,13 +16,13 @@ import lithobrake
 from lithobrake.cli import app
 from lithobrake.export import Push, write_push
 from lithobrake.pipeline.commands.status import study_status
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning.expected_width import law_before
 from lithobrake.pipeline.planning.plan import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sky import Days, rows_of, sky_dependencies, where_it_stands
+from lithobrake.pipeline.sky_at_rest import Days, rows_of, sky_dependencies, where_it_stands
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly

@@ -20,7 +20,7 @@ from lithobrake.export.flown import Flown
 from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, journey_rest
 from lithobrake.pipeline.answer.run_estimates import parts_of_journeys
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.journeys.touchdown_emulator import OF_TOUCHDOWN, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound

@@ -12,7 +12,7 @@ import lithobrake
 from lithobrake.campaign import read_records
 from lithobrake.geometry.attitude import about_z, attitude_of, from_frame, quaternion
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.first_bounces.bounces_to_rest import hard_surface, on_rough
 from lithobrake.pipeline.site import Site, with_site_gravity

@@ -17,7 +17,7 @@ from lithobrake.export import write_site_cells
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
 from lithobrake.pipeline.answer.emulated_ends import Refits
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator

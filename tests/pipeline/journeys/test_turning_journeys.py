@@ -15,7 +15,7 @@ import lithobrake
 from lithobrake.export import Push, export_study, write_push
 from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, ground_inputs, turned_in_flight
 from lithobrake.pipeline.design.descents import Descents
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.pipeline.stages import journey_dependencies

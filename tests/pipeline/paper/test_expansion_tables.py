@@ -14,7 +14,7 @@ import lithobrake
 from lithobrake.chaos import coefficient_changes, load
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import StudyFolder, stage_keys
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.paper.expansions import points

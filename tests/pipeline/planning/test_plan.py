@@ -20,7 +20,7 @@ from lithobrake.campaign import Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
 from lithobrake.pipeline.design.dependencies import pour_seed
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns

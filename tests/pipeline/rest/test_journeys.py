@@ -14,7 +14,7 @@ from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, proportion, rest_results
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.bounce_laws import (
     FRICTIONS,
     INTERCEPT,

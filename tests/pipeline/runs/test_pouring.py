@@ -17,7 +17,7 @@ import pytest
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs import beds as module
 from lithobrake.pipeline.runs.beds import pour_beds

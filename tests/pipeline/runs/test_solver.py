@@ -9,7 +9,7 @@ import pytest
 
 from lithobrake.campaign import Record, Runs, RunStatus
 from lithobrake.pipeline import StudyFolder, run_study
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms
 from lithobrake.pipeline.runs.energy_bound import energy_bound, energy_warning, gyrations
 from lithobrake.pipeline.runs.run_table import DesignRuns

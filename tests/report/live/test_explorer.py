@@ -24,7 +24,7 @@ from lithobrake.chaos import (
 )  # fmt: skip
 from lithobrake.emulator import Emulator, law_tables
 from lithobrake.geometry.attitude import AttitudeTerms
-from lithobrake.pipeline.design.design import DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.live.explorer import packed, script_data

@@ -18,10 +18,10 @@ from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.lander_section import OUTWARD
 from lithobrake.study.quantity import Scalar, Uncertain
 from lithobrake.study.question_checks import utc
-from lithobrake.vocabulary.arrays import Floats
+from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE, SKY_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import SIDES, SKY
-from lithobrake.vocabulary.study_files import JOURNEYS_FILE, SKY_FILE
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Body, Screen

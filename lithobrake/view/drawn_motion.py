@@ -13,7 +13,7 @@ from lithobrake.vocabulary.extra_library import extra_library
 
 if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
-    from lithobrake.vocabulary.arrays import Floats, Integers
+    from lithobrake.vocabulary.array_types import Floats, Integers
 
 # Colours of slow to fast: one that colour-blind people read, and that turns to grey in print.
 COLOURS = "YlGnBu"
