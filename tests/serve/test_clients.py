@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lithobrake.campaign import ModelServer
-from lithobrake.serve import ClientGoneError, ServedModel, model_server, server
+from lithobrake.serve import ClientGoneError, ServedModel, model_server
 from lithobrake.serve.server import ClientServer
 
 SUM = ServedModel("sum", ("x", "y"), ("z",), lambda point, config: [sum(point)])
@@ -133,7 +133,7 @@ def test_an_evaluation_ends_when_its_client_leaves() -> None:
 
 
 def test_a_request_that_is_sent_too_slowly_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "REQUEST_TIME", 0.05)
+    monkeypatch.setattr("lithobrake.serve.server.REQUEST_TIME", 0.05)
     with running() as server:
         assert asked(server, b"POST /Evaluate HTTP/1.0\r\nContent-Le") == b""
         assert asked(server, REQUEST[:-1]) == b""
@@ -141,7 +141,7 @@ def test_a_request_that_is_sent_too_slowly_is_ended(monkeypatch: pytest.MonkeyPa
 
 
 def test_more_clients_than_there_is_room_for_are_turned_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "MOST_CLIENTS", 2)
+    monkeypatch.setattr("lithobrake.serve.server.MOST_CLIENTS", 2)
     with running() as server:
         waiting = [socket.create_connection(server.server_address[:2]) for _ in range(2)]
         assert b"503 Service Unavailable" in asked(server, b"")
