@@ -13,7 +13,7 @@ from lithobrake.chaos import Uniform, fit, smolyak, sobol_sequence
 from lithobrake.chaos.basis import germs_of
 from lithobrake.chaos.covariance import RadialMatern
 from lithobrake.chaos.gaussian_process import fit_process
-from lithobrake.chaos.training import checked_training
+from lithobrake.chaos.training_data import checked_training
 
 INPUTS = {f"x{k}": Uniform(0.0, 1.0) for k in range(1, 6)}
 NOISE_SHARE = 0.15

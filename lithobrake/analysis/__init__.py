@@ -1,5 +1,6 @@
 """What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
+from lithobrake.analysis.bayesian_inference import LearntInput, Posterior, infer
 from lithobrake.analysis.comparisons import (
     BestChoice,
     PairedDifference,
@@ -11,7 +12,7 @@ from lithobrake.analysis.comparisons import (
 from lithobrake.analysis.confidence import LEVEL, wilson_interval
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms, soil_total_effect
 from lithobrake.analysis.equal_area import EqualAreaCells
-from lithobrake.analysis.failures import (
+from lithobrake.analysis.failure_probability import (
     FailureInput,
     FailureProbability,
     drawn_counts,
@@ -30,9 +31,7 @@ from lithobrake.analysis.half_width import (
     runs_for_half_width,
     scatter_of,
 )
-from lithobrake.analysis.inference import LearntInput, Posterior, infer
-from lithobrake.analysis.limit_states import SubsetResult, subset_simulation
-from lithobrake.analysis.observed_bounces import Identifiability, identifiability, predictive_p_value
+from lithobrake.analysis.identifiability import Identifiability, identifiability, predictive_p_value
 from lithobrake.analysis.outcome_model import OutcomeModel, refit_interval, unseen_limit, upper_limit
 from lithobrake.analysis.output_estimates import (
     DirectionEstimate,
@@ -44,6 +43,7 @@ from lithobrake.analysis.output_estimates import (
 from lithobrake.analysis.posterior import Observation, bed_shares, beds_statement
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
 from lithobrake.analysis.share_estimate import share_estimate
+from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.estimate import Estimate

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import control_variate
 from lithobrake.analysis.outcome_model import upper_limit
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import numbers, numbers_or_nan

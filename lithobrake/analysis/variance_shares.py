@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 

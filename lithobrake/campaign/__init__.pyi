@@ -1,3 +1,7 @@
+from .campaign import RunOptions as RunOptions
+from .campaign import Runs as Runs
+from .campaign import run as run
+from .campaign import run_chains as run_chains
 from .executors import DaskExecutor as DaskExecutor
 from .executors import LocalExecutor as LocalExecutor
 from .executors import WorkerDiedError as WorkerDiedError
@@ -17,10 +21,6 @@ from .record import duration as duration
 from .record import ledger_tally as ledger_tally
 from .record import per_time as per_time
 from .record import read_records as read_records
-from .runs import RunOptions as RunOptions
-from .runs import Runs as Runs
-from .runs import run as run
-from .runs import run_chains as run_chains
 from .single_run import Limits as Limits
 from .single_run import run_key as run_key
 from .single_run import run_seed as run_seed

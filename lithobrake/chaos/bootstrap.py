@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos import moments
+from lithobrake.chaos import sobol_indices
 from lithobrake.chaos.basis import Indices, basis_matrix
+from lithobrake.chaos.degree_selection import best_terms, with_low_degrees
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
-from lithobrake.chaos.least_squares import best_terms, with_low_degrees
 from lithobrake.chaos.scores import absolute_percentage_error
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.training import Training, checked_training, one_thread
+from lithobrake.chaos.training_data import Training, checked_training, one_thread
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
@@ -168,7 +168,9 @@ def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tupl
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
     """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
-    return np.stack([moments.first_order(indices, coefficients), moments.total_order(indices, coefficients)])
+    return np.stack(
+        [sobol_indices.first_order(indices, coefficients), sobol_indices.total_order(indices, coefficients)]
+    )
 
 
 def _check_resampling(count: int, level: float) -> None:

@@ -12,7 +12,7 @@ from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos import least_squares
+from lithobrake.chaos import degree_selection
 from lithobrake.chaos.basis import multi_index_set
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.gaussian_process import GaussianProcess, expansion_of, families_for, fit_process, fresh_germs
@@ -15,7 +15,7 @@ from lithobrake.chaos.scores import replicates, with_noise
 from lithobrake.chaos.sparse_regression import is_structured, solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.training import Training, checked_training, one_thread
+from lithobrake.chaos.training_data import Training, checked_training, one_thread
 
 # A process costs the cube of the number of points; with more of them least squares is accurate enough.
 PROCESS_LIMIT = 2000
@@ -28,12 +28,12 @@ CHALLENGER = "gaussian process with nugget, radial Matern 5/2"
 METHODS = ("ols", "lars", "omp", "gaussian_process")
 
 
-def _as_solution(process: GaussianProcess, training: Training) -> least_squares.Solution:
+def _as_solution(process: GaussianProcess, training: Training) -> degree_selection.Solution:
     indices, coefficients, cut = expansion_of(process, training.inputs)
     # The error of cutting the projection adds to that of the process.
     expected = float(np.hypot(process.expected_error(fresh_germs(training.inputs)[1]), cut))
     facts = {"noise_std": process.scale * float(np.sqrt(process.noise)), "covariance": process.covariance.name}
-    return least_squares.Solution(
+    return degree_selection.Solution(
         "gaussian_process", indices, coefficients, expected, "leave-one-out and predicted variance", facts
     )
 
@@ -42,13 +42,13 @@ def _constant(training: Training, output: int) -> bool:
     return bool(np.ptp(training.y[:, output]) == 0.0)
 
 
-def process_solution(training: Training, output: int) -> least_squares.Solution:
+def process_solution(training: Training, output: int) -> degree_selection.Solution:
     if training.count < PROCESS_FROM or training.count > PROCESS_LIMIT:
         raise ValueError(
             f"{training.count} points are given, but gaussian_process takes {PROCESS_FROM} to {PROCESS_LIMIT}: use ols"
         )
     if _constant(training, output):
-        return least_squares.ols_by_degree(training)[0][output]
+        return degree_selection.ols_by_degree(training)[0][output]
     candidates = [
         _as_solution(fit_process(training, output, family), training)
         for family in families_for(list(training.inputs.values()))
@@ -66,7 +66,7 @@ def has_long_tails(entry: Distribution) -> bool:
     return bool(far) or float((table**2).sum(axis=0).max()) > TAIL_GROWTH
 
 
-def _preferred(candidates: list[least_squares.Solution], margin: float) -> least_squares.Solution:
+def _preferred(candidates: list[degree_selection.Solution], margin: float) -> degree_selection.Solution:
     """The smallest expected error; but least squares and the pursuit must beat a process by a margin.
 
     Where scatter makes many candidates nearly equal the smallest estimate is partly luck, and the processes, which
@@ -82,7 +82,7 @@ def _preferred(candidates: list[least_squares.Solution], margin: float) -> least
 
 def best_solutions(
     training: Training, progress: Callable[[int, int], None]
-) -> tuple[list[least_squares.Solution], dict[str, Any]]:
+) -> tuple[list[degree_selection.Solution], dict[str, Any]]:
     """The best solution of each output, and for the report all candidates and the challenger, scored alike.
 
     Candidates are least squares of every degree that the points determine and the projections of the processes, scored
@@ -90,15 +90,15 @@ def best_solutions(
     where no run stands; and orthogonal matching pursuit, scored by folds over its whole path. On a grid, where folds
     extrapolate, the pursuit does not take part.
     """
-    ladder = least_squares.ols_by_degree(training)
+    ladder = degree_selection.ols_by_degree(training)
     grid = is_structured(training.x)
     # The likelihood of a process has no place for weights.
     use_processes = PROCESS_FROM <= training.count <= PROCESS_LIMIT and training.weights is None
     margin = MARGIN_IN_TAILS if any(has_long_tails(entry) for entry in training.inputs.values()) else MARGIN
-    chosen: list[least_squares.Solution] = []
+    chosen: list[degree_selection.Solution] = []
     table: dict[str, dict[str, float]] = {}
     challenger: dict[str, float | None] = {}
-    for output in least_squares.with_progress(range(len(training.output_names)), progress):
+    for output in degree_selection.with_progress(range(len(training.output_names)), progress):
         name = training.output_names[output]
         scores = {f"ols degree {degree}": row[output] for degree, row in enumerate(ladder)}
         challenger[name] = None
@@ -150,17 +150,17 @@ def fit(
         method = "ols"
     _check_request(degree, method, max_degrees, weights)
     training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
-    outputs = least_squares.with_progress(range(training.y.shape[1]), progress)
+    outputs = degree_selection.with_progress(range(training.y.shape[1]), progress)
     extra: dict[str, Any] = {}
     if method is None:
         solutions, extra = best_solutions(training, progress)
     elif method == "ols":
         norm = 1.0 if q_norm is None else q_norm
         if degree is None:
-            indices = least_squares.best_terms(training, norm, max_degrees)
+            indices = degree_selection.best_terms(training, norm, max_degrees)
         else:
             indices = multi_index_set(len(inputs), degree, q_norm=norm, max_degrees=max_degrees)
-        solutions = least_squares.solve_ols(training, indices)
+        solutions = degree_selection.solve_ols(training, indices)
     elif method == "gaussian_process":
         solutions = [process_solution(training, k) for k in outputs]
     else:
@@ -177,9 +177,9 @@ def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: A
         raise ValueError(f"weights and max_degrees are for the method ols, but the method is {method}: leave them out")
 
 
-def _assembled(training: Training, solutions: list[least_squares.Solution], extra: dict[str, Any]) -> Surrogate:
-    indices, coefficients = least_squares.joined(solutions)
-    report = {**least_squares.summary(solutions, training.output_names, training.y), **extra}
+def _assembled(training: Training, solutions: list[degree_selection.Solution], extra: dict[str, Any]) -> Surrogate:
+    indices, coefficients = degree_selection.joined(solutions)
+    report = {**degree_selection.summary(solutions, training.output_names, training.y), **extra}
     # Rounding would give a constant output a variance of 1e-32, and with it meaningless shares.
     constant = np.ptp(training.y, axis=0) == 0.0
     coefficients[:, constant] = np.where(indices.sum(axis=1) == 0, 1.0, 0.0)[:, None] * training.y[0, constant]

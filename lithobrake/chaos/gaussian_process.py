@@ -9,7 +9,7 @@ from lithobrake.chaos.basis import Indices, germs_of, multi_index_set
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
 from lithobrake.chaos.distributions import Distribution
-from lithobrake.chaos.training import Training
+from lithobrake.chaos.training_data import Training
 from lithobrake.vocabulary.array_types import Array
 
 FAMILIES: tuple[type[Covariance], ...] = (PolynomialCovariance, ProductCovariance, RadialMatern)

@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
 from lithobrake.chaos.design import checked_count
-from lithobrake.chaos.moments import SAMPLE_COUNT, skewness_and_kurtosis
+from lithobrake.chaos.sobol_indices import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, whole_number
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
-from lithobrake.chaos.least_squares import Solution, solve_ols, terms_to_try
-from lithobrake.chaos.training import Training
+from lithobrake.chaos.degree_selection import Solution, solve_ols, terms_to_try
+from lithobrake.chaos.training_data import Training
 from lithobrake.vocabulary.array_types import Array, Integers
 
 FOLDS = 10

@@ -14,7 +14,7 @@ from lithobrake.chaos.fitting import PROCESS_FROM, PROCESS_LIMIT, fit
 from lithobrake.chaos.scores import equal_rows, replicates
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
-from lithobrake.chaos.training import checked_training
+from lithobrake.chaos.training_data import checked_training
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers
 

@@ -9,13 +9,13 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.chaos import moments, scores, storage
+from lithobrake.chaos import scores, sobol_indices, storage
 from lithobrake.chaos.basis import Indices, outside_count, points_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
-from lithobrake.chaos.moments import ShapeMoments, skewness_and_kurtosis
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.sobol_indices import ShapeMoments, skewness_and_kurtosis
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
@@ -121,12 +121,12 @@ class Surrogate:
     @property
     def mean(self) -> Any:
         """Mean of each output [output_count], or a number. Source: [Landings-PCE], Eq 18."""
-        return self.shaped(moments.mean_of(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.mean_of(self.multi_indices, self._coefficients))
 
     @property
     def variance(self) -> Any:
         """Variance of each output [output_count], or a number. Source: [Landings-PCE], Eq 21."""
-        return self.shaped(moments.variance_of(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.variance_of(self.multi_indices, self._coefficients))
 
     @cached_property
     def _shape_moments(self) -> ShapeMoments:
@@ -145,20 +145,20 @@ class Surrogate:
     @property
     def sobol_first(self) -> Array:
         """First-order Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(moments.first_order(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.first_order(self.multi_indices, self._coefficients))
 
     @property
     def sobol_total(self) -> Array:
         """Total Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(moments.total_order(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.total_order(self.multi_indices, self._coefficients))
 
     def sobol_group(self, names: Sequence[str]) -> Array:
         """Share of the variance in all terms of these inputs only, [output_count] or a number."""
-        return self.shaped(moments.group_share(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(sobol_indices.group_share(self.multi_indices, self._coefficients, self.columns(names)))
 
     def sobol_interaction(self, names: Sequence[str]) -> Array:
         """Sobol index of exactly this set of inputs (any order), [output_count] or a number."""
-        return self.shaped(moments.interaction(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(sobol_indices.interaction(self.multi_indices, self._coefficients, self.columns(names)))
 
     def columns(self, names: Sequence[str]) -> list[int]:
         """Column of each named input. Raises ValueError for an unknown name."""

@@ -11,7 +11,7 @@ from lithobrake.dem.observables import BodyMotion
 from lithobrake.dem.stepping.engine import rotation_matrices
 from lithobrake.dem.stepping.time_step_stability import contact_duration
 from lithobrake.dem.world import StepTooLargeError, World
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Part", "RigidBody", "Shape", "Sphere", "StepTooLargeError", "World",

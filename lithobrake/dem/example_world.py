@@ -3,7 +3,7 @@
 from lithobrake.dem.bodies.shape import Box
 from lithobrake.dem.world import World
 from lithobrake.dem.world_state import NOTHING_WATCHED
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 
 def two_grains() -> World:

@@ -29,7 +29,7 @@ from lithobrake.dem.stepping.time_loop import (
 from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 
 class StepTooLargeError(ValueError):

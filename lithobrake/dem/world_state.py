@@ -29,7 +29,7 @@ from lithobrake.dem.stepping.neighbours import no_pairs
 from lithobrake.dem.stepping.time_loop import new_record
 from lithobrake.files.atomic import atomic_path
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 NOTHING_WATCHED = -1
 FORMAT_VERSION = 7

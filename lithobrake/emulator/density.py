@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.emulator.law import log_row_weights, smoothing
 from lithobrake.emulator.storage import Parts
-from lithobrake.emulator.training import with_slope
+from lithobrake.emulator.training_runs import with_slope
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number
 

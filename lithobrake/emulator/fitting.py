@@ -9,12 +9,12 @@ from scipy import special
 
 from lithobrake.chaos.basis import Indices
 from lithobrake.chaos.distributions import Distribution
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.law import Choices, ClassChoice, best_choices, best_class_choice, fit_classes, fit_law
 from lithobrake.emulator.mean_law import Terms, candidate_terms
 from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.ridge_ladder import TermTable
-from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
+from lithobrake.emulator.training_runs import TrainingRuns, checked_runs, with_slope
 from lithobrake.emulator.validation import choices_by_groups, folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
 

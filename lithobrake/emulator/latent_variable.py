@@ -10,7 +10,7 @@ from scipy import optimize
 
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.distributions import Distribution, Normal, Uniform
-from lithobrake.emulator.training import TrainingRuns
+from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.vocabulary.array_types import Array
 
 # Distributions that the latent variable may have, and nodes of the Gauss rule that integrates over it: as fine as the

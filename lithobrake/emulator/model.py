@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.chaos.basis import checked_points, input_tables
 from lithobrake.chaos.storage import read, write
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.density import BedEffect, Kernels, kernels_of, observed_density
 from lithobrake.emulator.law import drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
 from lithobrake.emulator.mean_law import MeanLaw, found_inputs, mean_law

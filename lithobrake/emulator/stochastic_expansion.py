@@ -15,12 +15,12 @@ from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator import latent_variable
 from lithobrake.emulator.fitting import with_distant_bounds
 from lithobrake.emulator.mean_law import candidate_terms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
-from lithobrake.emulator.training import TrainingRuns, checked_runs, with_slope
+from lithobrake.emulator.training_runs import TrainingRuns, checked_runs, with_slope
 from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number

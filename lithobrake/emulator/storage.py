@@ -14,7 +14,7 @@ from lithobrake.chaos.basis import multi_index_set
 from lithobrake.emulator.law import Choices, ClassChoice, Law, OutcomeClasses
 from lithobrake.emulator.mean_law import Terms
 from lithobrake.emulator.ridge_ladder import Ladder, Rung
-from lithobrake.emulator.training import TrainingRuns
+from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.emulator.validation import Scores
 from lithobrake.vocabulary.array_types import Array
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lithobrake.chaos.basis import Indices
 from lithobrake.emulator.law import Choices, Law, best_choices, fit_law, kernels, row_weights, rows_alone
 from lithobrake.emulator.ridge_ladder import TermTable
-from lithobrake.emulator.training import TrainingRuns
+from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import HIGH, LOW
 

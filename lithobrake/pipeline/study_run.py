@@ -9,7 +9,7 @@ from typing import Any
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.campaign.worker import refuse_while_importing
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils

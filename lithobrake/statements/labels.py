@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
+from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import at_level, interval_digits, number, percent, span
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.quantities import TOUCHDOWN

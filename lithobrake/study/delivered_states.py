@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.ephemeris_message import MessageState, is_message, message_states
+from lithobrake.files.oem_reader import MessageState, is_message, message_states
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES

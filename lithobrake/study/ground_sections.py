@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from lithobrake.geometry.bed_limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES, MaterialProperty
+from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES, MaterialProperty
 from lithobrake.vocabulary.plain_text import show
 
 Metres = Annotated[float, Number("m", above=0)]

@@ -7,7 +7,7 @@ from pydantic import Field
 from lithobrake.geometry.bed_limits import alike
 from lithobrake.study import ground_sections
 from lithobrake.study.quantity import LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Tensor
-from lithobrake.vocabulary.material import SURFACE_PROPERTIES, MaterialProperty
+from lithobrake.vocabulary.material_properties import SURFACE_PROPERTIES, MaterialProperty
 from lithobrake.vocabulary.quantities import SIDES
 
 if TYPE_CHECKING:

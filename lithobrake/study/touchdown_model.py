@@ -18,7 +18,7 @@ from lithobrake.study.ground_sections import Constant, PowerLaw
 from lithobrake.study.lander_section import LanderSection, PartSection
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.callbacks import Progress, silent
-from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
+from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ ENGINE_PARTS = (
     "geometry/mesh.py",
     "geometry/mesh_files.py",
     "study/touchdown_model.py",
-    "vocabulary/material.py",
+    "vocabulary/material_properties.py",
 )
 # In all beds that a process keeps: 1000 take 13 MB. Each run takes another bed, and reading one takes longer than to
 # land on it.

@@ -75,7 +75,7 @@ def bed_key(recipe: BedRecipe) -> str:
 def _code() -> list[str]:
     # All of both parts: which of their files a pour calls changes more often than anyone would note it here.
     return [
-        source_hash("dem", "touchdown", "vocabulary/material.py"),
+        source_hash("dem", "touchdown", "vocabulary/material_properties.py"),
         platform.machine(),
         *(version(name) for name in _LIBRARIES),
     ]

@@ -1,6 +1,6 @@
 """A limit state: a condition on how a landing ends, in words of the study file, read into a tree of four kinds.
 
-`lithobrake.analysis.limit_states` says which landings meet one.
+`lithobrake.analysis.subset_simulation` says which landings meet one.
 """
 
 import ast

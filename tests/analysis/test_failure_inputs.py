@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from lithobrake.analysis import failure_inputs
-from lithobrake.analysis.failures import OrderedInput
+from lithobrake.analysis.failure_probability import OrderedInput
 from lithobrake.chaos import LogUniform, Uniform, sobol_sequence
 
 INPUTS = {"friction": Uniform(0.2, 0.8), "young_modulus": LogUniform(1e6, 1e8)}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lithobrake.analysis.limit_states import FAR, NEAR, limit_state_margin, limit_state_met
+from lithobrake.analysis.subset_simulation import FAR, NEAR, limit_state_margin, limit_state_met
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.outcomes import FATES
 

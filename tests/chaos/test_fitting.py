@@ -32,8 +32,8 @@ from lithobrake.chaos import (
     sobol_sequence,
     tensor_grid,
 )
-from lithobrake.chaos.moments import _by_grid as moments_by_grid
-from lithobrake.chaos.moments import central_moments
+from lithobrake.chaos.sobol_indices import _by_grid as moments_by_grid
+from lithobrake.chaos.sobol_indices import central_moments
 
 ISHIGAMI = {name: Uniform(-np.pi, np.pi) for name in ("a", "b", "c")}
 ISHIGAMI_VARIANCE = 49.0 / 8.0 + 0.1 * np.pi**4 / 5.0 + 0.01 * np.pi**8 / 18.0 + 0.5
@@ -346,8 +346,8 @@ def test_a_constant_has_no_shape():
 
 
 def test_sampling_takes_over_where_neither_is_affordable(monkeypatch):
-    monkeypatch.setattr("lithobrake.chaos.moments.PRODUCT_LIMIT", 10)
-    monkeypatch.setattr("lithobrake.chaos.moments.NODE_LIMIT", 10)
+    monkeypatch.setattr("lithobrake.chaos.sobol_indices.PRODUCT_LIMIT", 10)
+    monkeypatch.setattr("lithobrake.chaos.sobol_indices.NODE_LIMIT", 10)
     inputs = {"a": Exponential(1.0), "b": Exponential(1.0)}
     x = sobol_sequence(inputs, 40)
     shape = shape_moments(fit(inputs, x, x.sum(axis=1), degree=2), count=200_000)

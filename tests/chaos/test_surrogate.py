@@ -25,7 +25,7 @@ from lithobrake.chaos import (
     sobol_sequence,
 )
 from lithobrake.chaos.storage import FORMAT_VERSION
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 
 INPUTS = {"speed": Uniform(0.1, 0.9), "modulus": LogUniform(1e6, 1e8)}
 

@@ -17,7 +17,7 @@ from lithobrake.emulator.law import (
     smoothing,
 )
 from lithobrake.emulator.mean_law import candidate_terms
-from lithobrake.emulator.training import from_coordinate, to_coordinate, with_slope
+from lithobrake.emulator.training_runs import from_coordinate, to_coordinate, with_slope
 from lithobrake.emulator.validation import crps, energy_scores, pit
 
 LOWER = np.array([0.0, -1.0, -np.inf, -np.inf])

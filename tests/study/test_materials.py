@@ -12,7 +12,7 @@ from lithobrake.statements.labels import INPUT_LABELS
 from lithobrake.study.ground_sections import GrainSection, SoilGrainSection
 from lithobrake.study.lander_section import LanderSection, PartSection
 from lithobrake.study.units import limits
-from lithobrake.vocabulary.material import PROPERTIES, SURFACE_PROPERTIES
+from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 
 DEM = Path(lithobrake.__file__).parent / "dem"
 

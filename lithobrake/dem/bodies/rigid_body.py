@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 Offset = tuple[float, ...]
 AT_CENTRE: Offset = (0.0, 0.0, 0.0)

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes
-from lithobrake.vocabulary.material import SHARED_PROPERTIES, Material
+from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES, Material
 
 SHEAR_MODULUS_RULES = ("mindlin", "paper")
 PAIR_RULES = ("smaller", "mean", "geometric")

@@ -25,7 +25,7 @@ from lithobrake.dem.stepping.time_loop import (
     partitions_of,
 )
 from lithobrake.vocabulary.array_types import Floats, Integers
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 # A shape and where its centroid stands from the centre of mass [m], frame of the shape.
 PlacedShape = tuple[Shape, Offset]

@@ -14,7 +14,7 @@ from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
 from lithobrake.vocabulary.array_types import Floats, Vector
-from lithobrake.vocabulary.material import Material
+from lithobrake.vocabulary.material_properties import Material
 
 # Steps in the shortest contact when a world chooses its own step.
 STEPS_PER_CONTACT = 50.0

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lithobrake import analysis
-from lithobrake.analysis.limit_states import limit_state_met
+from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lithobrake.analysis import highest_density
-from lithobrake.analysis.limit_states import limit_state_met
 from lithobrake.analysis.regions import HighestDensity
+from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.campaign import Record
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.design.drawn_design import DrawnDesign

@@ -24,7 +24,7 @@ from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import ESTIMATES_FILE
 from lithobrake.vocabulary.landing_fraction import LandingFraction
-from lithobrake.vocabulary.material import SURFACE_PROPERTIES
+from lithobrake.vocabulary.material_properties import SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import (
     CAPTURED,

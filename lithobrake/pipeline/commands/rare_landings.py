@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
-from lithobrake.analysis.limit_states import limit_state_margin, limit_state_met
+from lithobrake.analysis.subset_simulation import limit_state_margin, limit_state_met
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval

@@ -37,7 +37,7 @@ MARGIN = 1e-6
 
 
 def fit_emulator(job: Job) -> None:
-    from lithobrake.emulator.training import FEWEST
+    from lithobrake.emulator.training_runs import FEWEST
 
     runs = DesignRuns.load(job.folder, "drawn")
     left = int(runs.has_outputs.sum())

@@ -230,7 +230,7 @@ def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
 
 def _why_none(runs: DesignRuns) -> str | None:
     """Why there is nothing to fit an emulator to; None where there is enough."""
-    from lithobrake.emulator.training import FEWEST
+    from lithobrake.emulator.training_runs import FEWEST
 
     left, outcomes = runs.has_outputs, np.array(runs.outcomes)
     begin = "The study has no emulator of its touchdowns: "

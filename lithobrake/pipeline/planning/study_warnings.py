@@ -14,7 +14,7 @@ from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.material import SHARED_PROPERTIES
+from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES
 from lithobrake.vocabulary.number_words import percent, span
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.special import ndtri
 
-from lithobrake.files.ephemeris_message import message_states
+from lithobrake.files.oem_reader import message_states
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys

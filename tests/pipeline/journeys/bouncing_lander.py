@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import lithobrake
-from lithobrake.emulator import training
+from lithobrake.emulator import training_runs
 from lithobrake.results import StudyResults
 
 from ...paper_tables import with_keys
@@ -87,5 +87,5 @@ def run_without_emulator(
     take most of its time.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(training, "FEWEST", 1_000_000)
+        patch.setattr(training_runs, "FEWEST", 1_000_000)
         return lithobrake.run(tables, folder, workers=1, model=model, report=report)

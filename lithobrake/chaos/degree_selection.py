@@ -1,4 +1,4 @@
-"""Least squares on a set of multi-indices, the choice of the degree, and the solution for one output."""
+"""Least squares on a set of multi-indices, and the choice of the degree by leave-one-out."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.chaos.basis import Indices, basis_matrix, condition_number, multi_index_set
-from lithobrake.chaos.training import Training
+from lithobrake.chaos.training_data import Training
 from lithobrake.vocabulary.array_types import Array
 
 # Singular values below this times the largest are rank loss: far below any usable condition number,

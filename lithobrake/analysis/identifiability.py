@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import logsumexp
 
-from lithobrake.analysis.inference import Bounds, Posterior, posterior_of
+from lithobrake.analysis.bayesian_inference import Bounds, Posterior, posterior_of
 from lithobrake.analysis.posterior import Observation
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.array_types import Array

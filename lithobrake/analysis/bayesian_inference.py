@@ -13,7 +13,7 @@ from lithobrake.analysis import posterior
 from lithobrake.analysis.confidence import LEVEL
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.density import BedEffect, observed_density
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY

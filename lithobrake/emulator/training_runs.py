@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.chaos.training import check_magnitude
+from lithobrake.chaos.training_data import check_magnitude
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 

@@ -10,7 +10,7 @@ from lithobrake.chaos.basis import Indices
 from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import evaluate, make_plan
-from lithobrake.chaos.training import one_thread
+from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Integers
 
 # Products of two terms that are worked on at once.
