@@ -207,7 +207,7 @@ def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_la
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
     assert [table[name].count for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
     assert (table["returns"].count, table["missing"].count) == (2, 3)
-    assert (table["returns"].lower, table["returns"].upper) == (None, None)
+    assert (table["returns"].share.lower, table["returns"].share.upper) == (None, None)
     # Of 51 runs none left sideways or ran out of time: that allows 5.7 % (rule of three).
     assert table["left_sideways"].upper_limit == pytest.approx(1.0 - 0.05 ** (1 / 51))
     assert table["captured"].upper_limit is None
@@ -221,7 +221,7 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
     flown = [{"sample": "0", "status": "impact"}] * 3
     table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, holds=True)
     found = return_fraction(study, table, 40)
-    assert (found.lower, found.upper, found.next_bed, found.level) == (None, None, None, 0.9)
+    assert (found.share.lower, found.share.upper, found.next_bed, found.share.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why
     assert (found.from_, found.missing) == ("4 samples of an expansion fitted to 40 landings on 1 bed", 0.0)
     assert found.if_missing == (1.0, 1.0)
