@@ -227,7 +227,7 @@ def package(tmp_path: Path) -> Path:
     """A copy of what compiles, with kernels in the place of those of smallbody."""
     room = tmp_path / "lithobrake"
     source = Path(lighter_compilation.__file__).parents[1]
-    for name in ("compilation", "files", "__init__.py", "vocabulary"):
+    for name in ("compilation", "files", "__init__.py", "__init__.pyi", "vocabulary"):
         target = room / name
         target.parent.mkdir(parents=True, exist_ok=True)
         target.symlink_to(source / name)
