@@ -43,25 +43,14 @@ ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
         *("site", "study_folder", "folder_state", "design", "job", "runs", "samples", "flights", "run_flights"),
-        *("first_bounces", "journeys", "sky", "answer", "site_grid", "paper", "stages", "outdated_files"),
+        *("first_bounces", "journeys", "sky_at_rest", "answer", "site_grid", "paper", "stages", "outdated_files"),
         *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "statements": (
         *("estimates", "labels", "ends", "captions", "touchdowns", "journeys", "expansion", "limits"),
         *("comparison", "sites", "notes", "answers"),
     ),
-    "report": (
-        "cells",
-        "content",
-        "tables",
-        "figures",
-        "live",
-        "pages",
-        "study_plots",
-        "plotted_study",
-        "study_report",
-        "further_reports",
-    ),
+    "report": ("content", "tables", "figures", "live", "pages", "study_plots", "plotted_study", "reports"),
 }
 # Who uses which part by the names of its __init__ alone.
 THROUGH_THE_FACE = (("touchdown", "dem"),)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lithobrake import emulator
-from lithobrake.analysis import Observation, bayesian_inference, infer, posterior
+from lithobrake.analysis import Observation, infer, posterior
 from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
@@ -62,7 +62,7 @@ def test_too_few_points_are_followed_by_walkers_that_find_the_same(model: Emulat
 
 
 def test_without_emcee_the_sentence_says_what_to_install(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bayesian_inference, "can_walk", lambda: False)
+    monkeypatch.setattr(posterior, "can_walk", lambda: False)
     few = infer(model, SEEN, refit_count=0, point_count=64)
     assert not few.is_reliable
     assert few.statement().endswith(

@@ -286,9 +286,7 @@ def test_every_output_has_its_unit() -> None:
 def test_every_column_of_the_tables_has_words() -> None:
     assert set(PLAIN_COLUMNS) <= set(RUN)
     own = {
-        name
-        for name in (*flights.COLUMNS, *rest.COLUMNS, *bounces_to_rest.COLUMNS_OF_AIMS)
-        if not name.startswith("site_")
+        name for name in (*flights.COLUMNS, *rest.COLUMNS, *bounces_to_rest.AIM_COLUMNS) if not name.startswith("site_")
     }
     assert own == set(FLIGHT)
     assert all(one.long_name for one in (FLIGHT | RUN | BEDS).values())
