@@ -20,7 +20,7 @@ from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
 from inference_calibration import DRAWS, INPUTS, REFITS, SOILS, STEPS, emulated, fitted, observation, random_soils
 from scipy import stats
 
-from lithobrake.analysis import LEVEL, Observation, bayesian_inference, bed_shares, infer
+from lithobrake.analysis import LEVEL, Observation, bed_shares, infer, posterior
 from lithobrake.emulator import Emulator
 
 TABLE = RESULTS / "inference_beds.csv"
@@ -71,7 +71,7 @@ class Case(NamedTuple):
 def cases(given: tuple[Setting, int]) -> tuple[Setting, list[Case]]:
     setting, number = given
     # Of thousands of posteriors some would take minutes each.
-    bayesian_inference.can_walk = lambda: False
+    posterior.can_walk = lambda: False
     random = np.random.default_rng([7, number, round(100 * setting.bed_share), setting.bounces, setting.one_bed])
     model = fitted(replace(SOILS[setting.soil], rho=setting.bed_share), 100 + number)
     found_share = bed_shares(model)["speed_out"]

@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 
 from lithobrake import emulator
-from lithobrake.analysis import LEVEL, Observation, bayesian_inference, identifiability, infer
+from lithobrake.analysis import LEVEL, Observation, identifiability, infer, posterior
 from lithobrake.emulator.training_runs import from_coordinate, to_coordinate
 
 TABLE = RESULTS / "inference_calibration.csv"
@@ -150,7 +150,7 @@ def main() -> None:
     given = parser.parse_args()
     cases, bounce_counts = given.cases, given.bounces
     # Of hundreds of posteriors some would take minutes each.
-    bayesian_inference.can_walk = lambda: False
+    posterior.can_walk = lambda: False
     parts = (
         *(emulator_rows(name, 1, cases) for name in SOILS),
         emulator_rows("strong", 5, cases),

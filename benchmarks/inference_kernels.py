@@ -15,7 +15,7 @@ import numpy as np
 from harness import RESULTS, Row, command_line, rounded, write_made, write_rows
 from inference_calibration import INPUTS, REFITS, WEAK, fitted, observation, random_soils
 
-from lithobrake.analysis import LEVEL, Posterior, bayesian_inference, infer
+from lithobrake.analysis import LEVEL, Posterior, infer, posterior
 from lithobrake.emulator import Emulator, density
 
 TABLE = RESULTS / "inference_kernels.csv"
@@ -58,7 +58,7 @@ def rows(bed_share: float, one_bed: bool, cases: int) -> Iterator[Row]:
 def main() -> None:
     cases = command_line(__doc__, cases=80).parse_args().cases
     # Of hundreds of posteriors some would take minutes each.
-    bayesian_inference.can_walk = lambda: False
+    posterior.can_walk = lambda: False
     write_rows(TABLE, COLUMNS, [*rows(0.0, False, cases), *rows(0.2, True, cases)])
     write_made(TABLE, f"benchmarks/inference_kernels.py --cases {cases}", cases=cases, level=LEVEL)
 
