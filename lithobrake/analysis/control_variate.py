@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, answers
+from lithobrake.chaos.basis import basis_matrix, multi_index_set, points_of
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 
@@ -32,8 +33,6 @@ def regression_terms(inputs: Mapping[str, "Distribution"], x: ArrayLike) -> tupl
     the law of the inputs, so the mean over the law of any sum of them is 0, without sampling.
     Source: [Xiu-2002], section 3 (orthonormal polynomials of the Askey scheme).
     """
-    from lithobrake.chaos.basis import basis_matrix, multi_index_set, points_of
-
     indices = multi_index_set(len(inputs), 2)[1:]
     return basis_matrix(inputs, indices, points_of(inputs, x)), indices
 

@@ -9,6 +9,7 @@ from scipy.special import logsumexp
 
 from lithobrake.analysis.bayesian_inference import Bounds, Posterior, posterior_of
 from lithobrake.analysis.posterior import Observation
+from lithobrake.chaos import sobol_sequence
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
@@ -87,8 +88,6 @@ def identifiability(
     deviation is averaged over soils. own, bounds: as in `infer`. The emulator is taken as exact, so the real number is
     larger.
     """
-    from lithobrake.chaos import sobol_sequence
-
     inputs, random = model.runs.inputs, random_numbers(seed)
     whole_number("truths", truths, 1)
     modelled = [model.output_names[column] for column in model.runs.modelled]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
+from lithobrake.chaos.basis import checked_points
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
@@ -89,8 +90,6 @@ class OutcomeModel:
         return drawn
 
     def _points(self, x: np.ndarray) -> np.ndarray:
-        from lithobrake.chaos.basis import checked_points
-
         return checked_points(self._inputs, x)
 
     def _scaled(self, x: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import ndtri
 
+from lithobrake.chaos import Uniform, sobol_sequence
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.number_words import percent
@@ -49,8 +50,6 @@ class Proposal:
 
     def draw(self, dimension: int, count: int, seed: int) -> tuple[Array, Array]:
         """Normal scores [count, dimension], and the logarithm of the prior's density over that of the draws [count]."""
-        from lithobrake.chaos import Uniform, sobol_sequence
-
         unit = {str(k): Uniform(0.0, 1.0) for k in range(dimension + 1)}
         uniforms = np.clip(sobol_sequence(unit, count, seed=seed), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
         scores = ndtri(uniforms[:, 1:])

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms
+from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
@@ -169,8 +170,6 @@ def _printed(total: float, parts: dict[str, _Part], soil: Collection[str], words
 
 def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
     """Points [run_count, input_count] inside the law of the inputs. Raises ValueError for others, and for no inputs."""
-    from lithobrake.chaos.basis import checked_points
-
     points = checked_points(inputs, x)
     if y.shape != (len(points),):
         raise ValueError(f"y has shape {y.shape}; allowed: one number for each of the {len(points)} runs of x")

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos.basis import Indices, germs_of, multi_index_set
+from lithobrake.chaos.basis import Indices, basis_matrix, germs_of, multi_index_set
 from lithobrake.chaos.counts import term_count
 from lithobrake.chaos.covariance import Covariance, PolynomialCovariance, ProductCovariance, RadialMatern
+from lithobrake.chaos.design import sobol_sequence
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import Training
 from lithobrake.vocabulary.array_types import Array
@@ -177,8 +178,6 @@ def _negative_likelihood(covariance: Covariance, vector: Array, germs: Array, z:
 
 def fresh_germs(inputs: dict[str, Distribution]) -> tuple[Array, Array]:
     """500 fixed Sobol points, in physical units [500, input_count] and as germs [input_count, 500]."""
-    from lithobrake.chaos.design import sobol_sequence
-
     points = sobol_sequence(inputs, 500, seed=1)
     return points, germs_of(inputs, points)
 
@@ -188,8 +187,6 @@ def expansion_of(process: GaussianProcess, inputs: dict[str, Distribution]) -> t
 
     The error is measured against the process itself at 500 Sobol points, in the unit of the output.
     """
-    from lithobrake.chaos.basis import basis_matrix
-
     degrees = process.covariance.degrees
     indices = multi_index_set(len(degrees), max(degrees), max_degrees=degrees)
     coefficients = process.coefficients(indices)

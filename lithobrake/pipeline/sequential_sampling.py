@@ -8,6 +8,7 @@ runs it has by now.
 from collections.abc import Callable
 from dataclasses import replace
 
+from lithobrake.analysis import half_width_of, next_run_count
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -70,8 +71,6 @@ def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
 
 def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
     """The design with as many runs as its half width asks for, as far as the runs that have ended can tell."""
-    from lithobrake.analysis import next_run_count
-
     study, asked = design.study, design.study.design
     if asked.half_width is None:
         return design
@@ -117,8 +116,6 @@ def _end(job: Job) -> str:
 
 
 def _width(job: Job) -> float | None:
-    from lithobrake.analysis import half_width_of
-
     known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
     return half_width_of(*run_answers.answers_of_design(job.design, known, flown))
 

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-from lithobrake.geometry.mesh_units import labelled_mesh
+from lithobrake.geometry.mesh_units import UNITS, labelled_mesh, mesh_unit
 from lithobrake.study.impact_sections import SiteSection, kernel_problems
 from lithobrake.study.quantity import Scalar, usual_reach
 from lithobrake.study.study import Study
@@ -131,7 +131,6 @@ def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
     if study.site.mass is None:
         return
-    from lithobrake.geometry.mesh_units import UNITS, mesh_unit
 
     low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from lithobrake.chaos import smolyak_count, term_count
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
 
@@ -89,8 +90,6 @@ def _half_width_problems(study: Study) -> Iterator[str]:
 
 def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
     """Runs of the paper's two stages that do not fit what is fitted to them."""
-    from lithobrake.chaos import smolyak_count, term_count
-
     design = study.design
     # How many inputs the screening will keep is not known yet, so the refined fit must be possible for any number of
     # them.

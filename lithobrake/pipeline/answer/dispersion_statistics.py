@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.analysis import highest_density
+from lithobrake.analysis import LEVEL, dispersion_ellipses, highest_density, wilson_interval
 from lithobrake.files.reading import read_rows
 from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.pipeline.answer.run_answers import SHARES, place_regions, rest_regions
@@ -134,8 +134,6 @@ def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> d
 
     The axes in metres are the angles times the radius at the middle.
     """
-    from lithobrake.analysis import dispersion_ellipses
-
     found = dispersion_ellipses(latitude, longitude)
     if found is None:
         return None
@@ -165,7 +163,6 @@ def rest_results(job: Job) -> dispersion.RestResults:
 
 def _with_sampling_intervals(found: dispersion.GroundResults) -> dispersion.GroundResults:
     """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
-    from lithobrake.analysis import LEVEL, wilson_interval
 
     def bounded(one: CountedShare) -> CountedShare:
         lower, upper = wilson_interval(one.count, found.sample_count, NORMAL_QUANTILE_90)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake import analysis
+from lithobrake.chaos import Empirical
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
@@ -172,8 +173,6 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
 
     A place that is drawn by a law of its own is a place like any other.
     """
-    from lithobrake.chaos import Empirical
-
     flown = [name for name in ARRIVAL if job.design.is_flown and np.ptp(runs.inputs[name]) > 0.0]
     told = {name: Empirical(runs.inputs[name].tolist()) for name in flown}
     values = dict(runs.inputs)

@@ -50,6 +50,7 @@ from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Pr
 from lithobrake.statements.answers import landing_answer, landing_headline
 from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
+from lithobrake.study.touchdown_model import grain, lander, stored_bed
 from lithobrake.vocabulary.file_names import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
@@ -83,7 +84,6 @@ def _plain(value: Any) -> Any:
 
 def bed_results(job: Job, name: str) -> BedNumbers:
     """A bed of the study, and how large the first impact asks it to be."""
-    from lithobrake.study.touchdown_model import grain, lander, stored_bed
     from lithobrake.touchdown import smallest_bed
 
     bed, values = stored_bed(job.folder / name), job.design.medians

@@ -22,7 +22,7 @@ from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.study_files import intact_file, json_values
-from lithobrake.statements.comparison import other_beds, pairs
+from lithobrake.statements.comparison import lines, other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.file_names import STUDY_FILE
@@ -131,8 +131,6 @@ def write_compared(comparison: StudyComparison, out: Path) -> tuple[Path, Path]:
 
 def comparison_lines(comparison: StudyComparison) -> list[str]:
     """A comparison for a terminal: which studies, and a line for each answer."""
-    from lithobrake.statements.comparison import lines
-
     return lines(comparison)
 
 

@@ -19,6 +19,7 @@ from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS
+from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
@@ -72,8 +73,6 @@ class OneLanding:
 
     def bodies(self) -> "MovingBodies":
         """The hulls and how they moved, the lander last."""
-        from lithobrake.results.motions import MovingBodies
-
         return MovingBodies.of_landing(self.outcome, self.bed, self.lander, self.landing)
 
     def save(self, path: Path) -> None:

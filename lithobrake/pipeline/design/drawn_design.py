@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.chaos import Uniform
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
@@ -178,8 +179,6 @@ class DrawnDesign:
     @property
     def coordinates(self) -> "dict[str, Distribution]":
         """What a run takes from its point, but for its bed: the uncertain inputs, then what it draws."""
-        from lithobrake.chaos import Uniform
-
         release = RELEASE if self.is_flown else ()
         return self.inputs | dict.fromkeys((*DRAWN, *release), Uniform(0.0, 1.0))
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.analysis import OutcomeModel, sample_inputs
+from lithobrake.chaos import basis_matrix, input_tables, sobol_sequence
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, REFIT_COUNT, save_explorer
 from lithobrake.pipeline.job import Job
@@ -63,7 +65,6 @@ class Scatter:
 
 
 def draw_samples(job: Job) -> None:
-    from lithobrake.analysis import sample_inputs
     from lithobrake.chaos import load
 
     study, inputs = job.study, job.design.inputs
@@ -86,8 +87,6 @@ def outcome_model(job: Job) -> "OutcomeModel":
 
     Raises ValueError when no run has ended.
     """
-    from lithobrake.analysis import OutcomeModel
-
     inputs = job.design.inputs
     runs = [DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS]
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
@@ -155,8 +154,6 @@ def expansion_tables(
     of scatter no smoothing; chances of outcomes follow the first terms, all of degree one and two. Beside them grows
     [output_count], 1 where scatter is in proportion to the impact's speed, and scatter_speed [1], of the runs [m/s].
     """
-    from lithobrake.chaos import input_tables
-
     terms = _terms(inputs, refined.input_names, changes[0])
     location = _locations(list(inputs), terms, refined, changes)
     intercepts, slopes = _classes(inputs, terms[: _leading_count(len(inputs))], outcome)
@@ -222,8 +219,6 @@ def _classes(
     inputs: "Mapping[str, Distribution]", leading: np.ndarray, outcome: "OutcomeModel"
 ) -> tuple[np.ndarray, np.ndarray]:
     """Intercepts [class_count] of the outcomes' logits and their slopes [class_count, leading_count]."""
-    from lithobrake.chaos import basis_matrix, sobol_sequence
-
     terms = np.vstack([np.zeros_like(leading[:1]), leading])
     x = sobol_sequence(inputs, POINTS_PER_TERM * len(terms))
     logits, matrix = outcome.logits(x), basis_matrix(inputs, terms, x)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.analysis import upper_limit
+from lithobrake.chaos import smolyak_count, tensor_count
 from lithobrake.pipeline.answer import dispersion_statistics
 from lithobrake.pipeline.answer.run_answers import place_regions, scope
 from lithobrake.pipeline.answer.run_estimates import SPLIT
@@ -92,8 +94,6 @@ def limited_shares(
 
     upper_limit: of an outcome that none of the runs had, which its share of 0 does not say (95 %).
     """
-    from lithobrake.analysis import upper_limit
-
     found = dispersion_statistics.shares(samples, flights, holds=holds)
     outcomes, limit = dict(found.outcomes), upper_limit(sum(run_outcomes.values()))
     for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
@@ -153,8 +153,6 @@ def _monte_carlo(samples: Samples) -> model_results.ExpansionSamples:
 
 def _node_counts(study: Study, input_count: int) -> model_results.NodeCounts:
     """Nodes of the full tensor grid and of the Smolyak grid, by number of inputs and level: what the design saves."""
-    from lithobrake.chaos import smolyak_count, tensor_count
-
     counts = tuple(range(1, max(7, input_count) + 1))
     levels = tuple(range(1, max(5, study.design.screening_level, study.design.refined_level) + 1))
     tensor, smolyak = (

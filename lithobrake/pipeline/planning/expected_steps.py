@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.chaos import smolyak_count
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
 from lithobrake.pipeline.paper.expansions import kept_inputs, points, replicate_count
@@ -148,8 +149,6 @@ def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> Planne
 
 def _point_count(drawn: DrawnDesign, design: str, kept_count: int) -> int:
     """Points of a design, counted without making them."""
-    from lithobrake.chaos import smolyak_count
-
     section = drawn.study.design
     if design.startswith("test"):
         return section.test_count

@@ -9,6 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.analysis import LEVEL, best_runs_a_bed, cost_over_best, scatter_of
+from lithobrake.analysis.confidence import answered_runs
+from lithobrake.analysis.half_width import (
+    CORRELATION,
+    JOURNEY_CORRELATION,
+    SPREAD_RANGE,
+    AllOrNothing,
+    LikeRuns,
+    Shares,
+    half_width_range,
+)
 from lithobrake.campaign import Record
 from lithobrake.pipeline.answer.run_answers import answer_words, answers_of
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -88,8 +99,6 @@ def expected_width(
     study = design.study
     if study.design.method != "drawn" or study.bed_count == 1:
         return None
-    from lithobrake.analysis import LEVEL
-    from lithobrake.analysis.half_width import AllOrNothing, half_width_range
 
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
@@ -124,8 +133,6 @@ def expected_width(
 
 
 def expected_correlation(study: Study) -> float:
-    from lithobrake.analysis.half_width import CORRELATION, JOURNEY_CORRELATION
-
     return CORRELATION if study.journey is None else JOURNEY_CORRELATION
 
 
@@ -134,8 +141,6 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
 
     reach: fraction of the landers that reach the ground.
     """
-    from lithobrake.analysis.half_width import SPREAD_RANGE, AllOrNothing, Shares
-
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
     if study.journey is not None:
         who = "the landers" if reach == 1.0 else "those that reach the ground"
@@ -150,10 +155,6 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
 
 def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
     """The same by the runs that have ended."""
-    from lithobrake.analysis import scatter_of
-    from lithobrake.analysis.confidence import answered_runs
-    from lithobrake.analysis.half_width import LikeRuns
-
     known, beds = answered_runs(values, bed)
     scatter = scatter_of(values, bed)
     shown = (
@@ -223,8 +224,6 @@ class RunsABed:
 
 def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
     """Those of a drawn study on several beds of its own; None for any other. ended: runs of this study that have."""
-    from lithobrake.analysis import best_runs_a_bed, cost_over_best
-
     if study.design.method != "drawn" or study.bed_count == 1 or soil is None:
         return None
     pace = machine_pace() or 1.0

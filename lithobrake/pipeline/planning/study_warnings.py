@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.analysis.confidence import t_quantile
+from lithobrake.chaos import smolyak_count, term_count
 from lithobrake.pipeline.design.arrivals import smallest_width
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.bounce_laws import hard_ground_only, why_no_soil
@@ -152,8 +154,6 @@ def _wide(study: Study) -> Iterator[str]:
 
 def _terms(drawn: DrawnDesign) -> Iterator[str]:
     """Fits with hardly more runs than terms."""
-    from lithobrake.chaos import smolyak_count, term_count
-
     design, count = drawn.study.design, len(drawn.inputs)
     if design.method != "paper" or design.fit != "ols":
         return
@@ -189,7 +189,6 @@ def _few_beds(study: Study) -> Iterator[str]:
     """Beds that give no interval, or a wide one."""
     if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS_OF_INTERVAL:
         return
-    from lithobrake.analysis.confidence import t_quantile
 
     enough = FEWEST_BEDS_OF_INTERVAL
     if study.bed_count == 1:
