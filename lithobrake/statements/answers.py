@@ -23,6 +23,7 @@ from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
 from lithobrake.statements.expansion import error_words, noise, telling_sentences
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
 from lithobrake.statements.limits import rare_warnings
+from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.number_words import LEVEL, fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus, SampleOutcome
 
@@ -142,7 +143,7 @@ def landing_tiles(data: "DrawnPage") -> list[Tile]:
     found = _at_rest(data)
     if "speed_out" in results.spreads:
         median = results.spreads["speed_out"].quantiles["0.5"]
-        shown = median.on_scale(lambda value: touchdowns.CENTIMETRES * value)
+        shown = median.on_scale(lambda value: CENTIMETRES * value)
         words = f"rebound speed, median of those that leave{labels.bracket(shown.lower, shown.upper, level=data.level)}"
         found.append(Tile(number(shown.value), "cm/s", words))
     parts = results.variance_shares["speed_out"]
@@ -194,9 +195,7 @@ def sample_tiles(data: "PaperPage", telling: "TellingNumbers") -> list[Tile]:
     ]
     if not speed:
         return found
-    low, middle, high = (
-        number(touchdowns.CENTIMETRES * speed[f"quantile_{level}"]) for level in ("0.05", "0.5", "0.95")
-    )
+    low, middle, high = (number(CENTIMETRES * speed[f"quantile_{level}"]) for level in ("0.05", "0.5", "0.95"))
     return [Tile(middle, "cm/s", f"rebound speed, median; 5th to 95th percentile {low} to {high}"), *found]
 
 

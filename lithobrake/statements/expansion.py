@@ -9,6 +9,7 @@ from lithobrake.results.model_results import ExpansionResults, OutputErrors
 from lithobrake.results.summary import PaperResults
 from lithobrake.statements import touchdowns
 from lithobrake.statements.labels import PAPER_OUTPUTS, bracket, input_words, output
+from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.number_words import (
     as_sentence,
     at_level,
@@ -138,7 +139,7 @@ def _accuracy(score: "OutputErrors") -> str:
 
 def error_words(score: "OutputErrors") -> str:
     """The error of the rebound speed on new runs."""
-    error, spread = (number(touchdowns.CENTIMETRES * one, 2) for one in (score.rmse, score.std))
+    error, spread = (number(CENTIMETRES * one, 2) for one in (score.rmse, score.std))
     return f"error {error} cm/s at a spread of {spread} cm/s"
 
 
@@ -233,7 +234,7 @@ def samples(data: "PaperPage") -> str:
     if not leaving:
         return touchdowns.none_leaves(total)
     speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
-    low, high = (number(touchdowns.CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
+    low, high = (number(CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
     least, most = (number(output("elevation_out").factor * angle[level]) for level in (QUANTILES[0], QUANTILES[2]))
     return (
         f"{touchdowns.leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at "

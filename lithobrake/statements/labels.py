@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import at_level, interval_digits, number, percent, span
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import (
+    RETURNS,
+    FlightStatus,
+    JourneyEnd,
+    JourneyStatus,
+    SampleOutcome,
+    TouchdownOutcome,
+)
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
 if TYPE_CHECKING:
@@ -17,7 +24,6 @@ if TYPE_CHECKING:
     from lithobrake.results.run_results import VarianceParts
 
 FAILED = "failed"
-RETURNS = "returns"
 
 # In a figure.
 SYMBOLS = {

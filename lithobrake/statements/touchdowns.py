@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements import labels
 from lithobrake.statements.ends import missing_landings
+from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
     counted,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from lithobrake.results.run_results import OutputEstimate, ReturnFraction, VarianceParts
     from lithobrake.vocabulary.landing_fraction import LandingFraction
 
-CENTIMETRES = 100.0
 ELEVATION = "elevation_out"
 # An input with more than this part of what the soil does is named.
 MAIN = 0.5

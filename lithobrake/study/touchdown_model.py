@@ -22,12 +22,10 @@ from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPER
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
 
 if TYPE_CHECKING:
-    from lithobrake.dem import Box, ConvexHull, Part, Sphere
-
-    Array = np.ndarray
-    from lithobrake.dem import Material
+    from lithobrake.dem import Box, ConvexHull, Material, Part, Sphere
     from lithobrake.study.ground_sections import Bell, Between
     from lithobrake.touchdown import Bed, Boulders, ContactModel, GrainSizes, Lander, Landing, Outcome
+    from lithobrake.vocabulary.array_types import Array
 
 Values = Mapping[str, float]
 PLACE = ("impact.place.x", "impact.place.y")

@@ -36,9 +36,6 @@ from lithobrake.vocabulary.limit_state import LimitState
 CHAIN, FEWEST = 10, 20
 # A landing is dear, and a probability below 1e-6 is less sure than what a study assumes.
 MOST_LEVELS = 6
-# Probabilities as near to 0 and 1 as a law without ends can take.
-# Landings that meet it descend from so few groups of one size: on a second go they may descend from quite others.
-LEAST = 2.0**-53
 
 
 def rare_failure(
