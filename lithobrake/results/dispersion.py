@@ -26,15 +26,15 @@ class RestRegion:
 
 @dataclass(frozen=True)
 class ImpactNumber(Inlined):
-    """A number of the flights that end on the body: of the runs of a drawn study, or of samples."""
+    """A number of the flights that end on the body: of the drawn landers, or of samples."""
 
     quantiles: Mapping[str, float] = field(metadata=INLINE)
     """by level, as "quantile_0.5" """
     intervals: Mapping[str, tuple[float, float] | None] | None = None
-    """of a drawn study: lower and upper bound (90 %) of each quantile over beds not in the study; null where there is
+    """of drawn landers: lower and upper bound (90 %) of each quantile over beds not in the study; null where there is
     none"""
     of: str | None = None
-    """of a drawn study: which landings it describes, in words"""
+    """of drawn landers: which landings it describes, in words"""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class FlightChecks:
 
 @dataclass(frozen=True)
 class FlightResults(Inlined):
-    """The flights that end on the body, of the runs of a drawn study or of samples, and how exact all flights are."""
+    """The flights that end on the body, of the drawn landers or of samples, and how exact all flights are."""
 
     impacts: ImpactNumbers = field(default=ImpactNumbers(), metadata=INLINE)
     checks: FlightChecks | None = field(default=None, metadata=INLINE)
@@ -129,14 +129,12 @@ class WithoutScatter:
 
 @dataclass(frozen=True, kw_only=True)
 class GroundResults(Inlined):
-    """Ends of the followed samples on one kind of ground (docs/flights.md): settled, lofted, outside, flying, escaped,
-    partner, sliding or bouncing. The kinds are soil, hard ground, and in a drawn study hard ground with the restitution
-    of the soil (equivalent). null if none were followed. Quantiles are of the landers at rest, and absent if there are
-    none.
+    """Ends of landers that were followed on other ground (docs/flights.md): hard, equivalent, expansion. Quantiles are of
+    the landers at rest, and absent if there are none.
     """
 
     sample_count: int
-    """samples followed"""
+    """landers followed"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
     slid: CountedShare
     """samples that slid along the ground, whatever their end"""
@@ -181,23 +179,3 @@ class GroundResults(Inlined):
             "slid_length": self.slid_length, "slid_time_s": self.slid_time_s,
         }  # fmt: skip
         return {key: one for key, one in found.items() if one is not None}
-
-
-@dataclass(frozen=True)
-class RestResults:
-    """Landers followed from bounce to bounce until they are at rest."""
-
-    why_no_soil: str | None
-    """why trajectories on the soil end at the first impact, in a sentence, or null"""
-    trained_ranges: Mapping[str, tuple[float, float]]
-    """smallest and largest value of each input in runs in which all vary, in its unit"""
-    soil: GroundResults | None
-    hard: GroundResults | None
-    equivalent: GroundResults | None
-    __repr__ = short_repr
-
-    @property
-    def grounds(self) -> dict[str, GroundResults]:
-        """The grounds on which samples were followed, by their keys."""
-        found = {"soil": self.soil, "hard": self.hard, "equivalent": self.equivalent}
-        return {name: one for name, one in found.items() if one is not None}

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from lithobrake.results.dispersion import GroundResults, LandingEllipses, RestRegion
+from lithobrake.results.dispersion import LandingEllipses, RestRegion
 from lithobrake.results.run_results import CountedShare
 from lithobrake.vocabulary.estimate import Number, Share
 from lithobrake.vocabulary.plain_text import short_repr
@@ -63,11 +63,6 @@ class JourneyRest:
     """why there are no regions, in a sentence"""
     __repr__ = short_repr
 
-    @property
-    def grounds(self) -> dict[str, GroundResults]:
-        """No samples of the emulator were followed, on any ground."""
-        return {}
-
 
 @dataclass(frozen=True)
 class SideResults:
@@ -82,13 +77,13 @@ class SideResults:
     returns: CountedShare
     """return fraction of these landings; count: landings of which all flights return"""
     at_rest: CountedShare | None = None
-    """with [journey]: fraction of these landers that comes to rest"""
+    """fraction of these landers that comes to rest"""
     time_s: Number | None = None
-    """with [journey]: median time to rest of these landers [s]"""
+    """median time to rest of these landers [s]"""
     touchdowns: int | None = None
-    """with [journey]: all touchdowns in which this side faces the ground"""
+    """all touchdowns in which this side faces the ground"""
     rests: CountedShare | None = None
-    """with [journey]: fraction of these touchdowns in which the lander comes to rest"""
+    """fraction of these touchdowns in which the lander comes to rest"""
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,10 @@
-"""The designs, expansions and scores of a paper study, and how well an emulator predicts."""
+"""Designs, expansions, their errors and samples, and how well an emulator predicts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from lithobrake.results.dispersion import ImpactNumbers, LandingEllipses, RestRegion, WithoutScatter
+from lithobrake.results.run_results import OutputRange, SampleShares
 from lithobrake.vocabulary.estimate import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
@@ -119,8 +121,29 @@ class OutputErrors:
 
 
 @dataclass(frozen=True)
+class ExpansionAnalysis:
+    """The designs of the analysis, its two expansions and their errors ([expansion] of the study file)."""
+
+    node_counts: NodeCounts
+    designs: Mapping[str, DesignCounts]
+    outputs_of_runs: Mapping[str, OutputRange]
+    """other outputs, over the distinct runs of these designs"""
+    screening: ExpansionResults
+    """the expansion in all inputs"""
+    refined: ExpansionResults
+    """the expansion in the kept inputs"""
+    kept_inputs: tuple[str, ...]
+    """inputs that the refined design varies, by dotted key"""
+    kept_share: Mapping[str, float]
+    """by output: share of the variance of the screening expansion that the kept inputs explain together"""
+    scores: Mapping[str, Mapping[str, OutputErrors]]
+    """errors of the expansions by set of runs and output; scores.json also has those of single runs"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
 class SampledOutput(Inlined):
-    """An output over the samples of the refined expansion that leave, in its unit."""
+    """An output over the samples that leave, in its unit."""
 
     mean: float
     """mean"""
@@ -130,22 +153,26 @@ class SampledOutput(Inlined):
     """by level, as "quantile_0.5" """
 
 
-@dataclass(frozen=True)
-class MonteCarlo:
-    """The samples of the emulator; results.outputs has the outputs."""
+@dataclass(frozen=True, kw_only=True)
+class SampleResults:
+    """Samples of the first touchdown by a model that was fitted to the runs, and their flights to the next impact."""
 
+    model: str
+    """what the samples are drawn from: emulator or expansion"""
     sample_count: int
     """samples"""
     leaving_count: int
     """samples that leave the surface"""
-
-
-@dataclass(frozen=True)
-class ExpansionSamples(MonteCarlo):
-    """The samples of the refined expansion."""
-
     outputs: Mapping[str, SampledOutput]
     """by output; empty where no sample leaves"""
+    shares: SampleShares
+    flights: ImpactNumbers
+    ellipses: LandingEllipses | None
+    """of the impacts"""
+    regions: tuple[RestRegion, ...]
+    """smallest regions that contain 50 and 95 % of the next impacts; empty for few"""
+    without_scatter: WithoutScatter | None
+    """null where the samples have no scatter from run to run to leave out"""
     __repr__ = short_repr
 
 
@@ -179,7 +206,7 @@ class EmulatorScores(Inlined):
 
 @dataclass(frozen=True)
 class EmulatorResults:
-    """The emulator of a drawn study, on held-out beds (docs/emulator.md)."""
+    """The emulator of the first touchdown, on held-out beds (docs/emulator.md)."""
 
     of: str
     """which landings it describes, in words"""

@@ -40,7 +40,7 @@ class SideRuns:
 
 @dataclass(frozen=True)
 class RunResults:
-    """The runs of a drawn study, without auxiliary ones."""
+    """The first touchdowns of the drawn landers, without auxiliary runs."""
 
     count: int
     """runs"""
@@ -63,7 +63,7 @@ class RunResults:
 
 @dataclass(frozen=True)
 class OutputEstimate:
-    """An output over the runs of a drawn study that have it, in its unit."""
+    """An output over the first touchdowns that have it, in its unit."""
 
     mean: Number
     """mean"""
@@ -105,9 +105,9 @@ class OutputRange:
 
 @dataclass(frozen=True)
 class VarianceParts:
-    """Parts of the variance of an output of a drawn study (docs/estimates.md).
+    """Parts of the variance of an output (docs/estimates.md).
 
-    null where the runs cannot show it, and in a paper study. returns: the return fraction of each run over its flights.
+    null where the runs cannot show it. returns: the return fraction of each run over its flights.
     Each part lies within [0, 1].
     """
 
@@ -161,10 +161,10 @@ class CountedShare(Inlined):
     count: int
     """number with this outcome"""
     share: Share = field(metadata=INLINE)
-    """fraction of all; landings of a drawn study without an outcome get the mean of those that left in flight across
+    """fraction of all; landings without an outcome get the mean of those that left in flight across
     the edge of the bed"""
     upper_limit: float | None = None
-    """95 % limit of the share of an outcome that no run had, with design.method = "paper" """
+    """95 % limit of the share of an outcome that no run had, in samples of an expansion"""
 
     def within(self, lower: float | None, upper: float | None) -> "CountedShare":
         """The same with other bounds."""
@@ -183,15 +183,15 @@ class Level:
 
 @dataclass(frozen=True)
 class ReturnFraction(LandingFraction):
-    """Return fraction: landings that impact again within flight.duration, or are captured where the site holds them.
+    """Return fraction of the first touchdowns: landings that impact again within flight.duration, or are captured where the site holds them.
 
     Bounds are over beds and impact points not in the study, for all possible ends of the landings without an outcome.
     """
 
     share: Annotated[Estimate, Keyed("share", has_level=True, has_reason=False)] = field(metadata=INLINE)
-    """return fraction over the input distributions of the study file: of the landings of a drawn study, where those
-    without an outcome get the mean of those that left in flight across the edge of the bed; or of the samples of the
-    expansion"""
+    """return fraction over the input distributions of the study file: of the drawn landers, where those without an
+    outcome get the mean of those that left in flight across the edge of the bed; if none was drawn, of the samples of
+    the expansion"""
     emulator: float | None
     """the fraction from the emulator or the expansion, of the samples whose end is known"""
     why: str | None
@@ -205,25 +205,11 @@ class ReturnFraction(LandingFraction):
 
 @dataclass(frozen=True)
 class SampleShares(Inlined):
-    """Outcomes of the samples of a paper study, up to the last whose flight was computed. captured, left_sideways,
-    time_limit, outside (with an impossible elevation or speed), impact, flying (at the end of flight.duration),
-    escaped, partner. returns (impact, plus captured where the site holds the lander) and missing (left_sideways,
-    time_limit, outside) are sums of some of these.
+    """Outcomes of the samples, up to the last whose flight was computed, as fractions of all of them. captured,
+    left_sideways, time_limit, outside (with an impossible elevation or speed), impact, flying (at the end of
+    flight.duration), escaped, partner. returns (impact, plus captured where the site holds the lander) and missing
+    (left_sideways, time_limit, outside) are sums of some of these.
     """
-
-    sample_count: int
-    """samples up to the last that flew"""
-    flight_count: int
-    """of those, samples that flew"""
-    outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-    why: str | None = None
-    """why the shares have no interval, in a sentence"""
-    __repr__ = short_repr
-
-
-@dataclass(frozen=True)
-class EmulatorShares(Inlined):
-    """Outcomes of the samples of the emulator of a drawn study, as fractions of all of them, for comparison."""
 
     sample_count: int
     """samples up to the last that flew"""
@@ -234,11 +220,16 @@ class EmulatorShares(Inlined):
     """probability that the bounds of this table stand for"""
     why: str | None
     """why the shares have no interval, in a sentence; null where they have one"""
+    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
 class RunShares(Inlined):
-    """What became of the landings of a drawn study, by the flights of its runs, as estimates.json holds it."""
+    """Outcomes of the first touchdowns of the drawn landers, from 64 flights of each. impact, flying (at the end of
+    flight.duration), escaped, partner and captured add up to 1. returns: impact, plus captured where the site holds the
+    lander. settled and lofted: captured where gravity and rotation hold the lander, or do not. missing: left_sideways,
+    time_limit, failed.
+    """
 
     sample_count: int
     """flights of all landings, 64 each, computed or not"""
@@ -249,16 +240,4 @@ class RunShares(Inlined):
     why: str | None
     """why the shares have no interval, in a sentence; null where they have one"""
     outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
-
-
-@dataclass(frozen=True)
-class LandingShares(RunShares):
-    """Outcomes of the landings of a drawn study, from the flights of its runs. impact, flying (at the end of
-    flight.duration), escaped, partner and captured add up to 1. returns: impact, plus captured where the site holds the
-    lander. settled and lofted: captured where gravity and rotation hold the lander, or do not. missing: left_sideways,
-    time_limit, failed.
-    """
-
-    emulator: EmulatorShares | None
-    """null for a study of journeys, which has no emulator of single landings"""
     __repr__ = short_repr

@@ -17,7 +17,7 @@ from lithobrake.vocabulary.plain_text import short_repr
 
 @dataclass(frozen=True)
 class Estimates:
-    """What the runs of a drawn study say, as estimates.json holds it."""
+    """What the drawn landers say of their first touchdown, as estimates.json holds it."""
 
     returns: run_results.ReturnFraction
     shares: run_results.RunShares
@@ -30,61 +30,60 @@ class Estimates:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DrawnResults:
-    """Results of a drawn study, equal in two executions of one study."""
+class Results:
+    """Results of a study, equal in two executions of it. What the study does not ask for is null or empty."""
 
-    units: Mapping[str, str]
-    """unit of each output of the emulator"""
-    beds: tuple[BedNumbers, ...]
-    returns: run_results.ReturnFraction
-    shares: run_results.LandingShares
-    flights: dispersion.FlightResults
-    variance_shares: Mapping[str, run_results.VarianceParts | None]
-    outputs: Mapping[str, run_results.OutputEstimate | run_results.OutputDirection]
-    runs: run_results.RunResults
-    outputs_of_runs: Mapping[str, run_results.OutputRange]
-    site: SiteResults
-    monte_carlo: model_results.MonteCarlo | None
-    """samples of the emulator; null with [journey]"""
-    ellipses: dispersion.LandingEllipses | None
-    without_scatter: dispersion.WithoutScatter | None
-    """null: samples of an emulator have no expansion alone"""
-    rest: dispersion.RestResults | journey_results.JourneyRest
-    """with [journey]: where, when and how the landers come to rest; otherwise trajectories of samples of the
-    emulator"""
-    limit_states: Mapping[str, LimitStateResult]
-    """each limit state of the study file; empty if it has none"""
-    aim: AimResults | None
-    """delivery options; null where the study file has none"""
-    emulator: model_results.EmulatorResults | None
-    """null with [journey]"""
     answer: tuple[str, ...]
     """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
     headline: tuple[str, ...]
     """the answer, then the main numbers, in sentences"""
+    units: Mapping[str, str]
+    """unit of each output of a touchdown"""
+    beds: tuple[BedNumbers, ...]
+    site: SiteResults
+    ends: Mapping[str, run_results.CountedShare]
+    """how the landers ended: at_rest, escaped, partner, under_way, failed; empty if none was drawn"""
+    journeys: int
+    """landers that were followed"""
+    touchdowns: int
+    """landings that were simulated for them"""
+    rest: journey_results.JourneyRest | None
+    """where, when and how the landers come to rest; null if none was drawn"""
+    delivery: journey_results.DeliveryResults | None
+    """place and state of the first impacts; null if no lander was drawn"""
+    returns: run_results.ReturnFraction
+    shares: run_results.RunShares
+    flights: dispersion.FlightResults
+    variance_shares: Mapping[str, run_results.VarianceParts | None]
+    """by output of the first touchdown, and `returns`"""
+    end_variance_shares: Mapping[str, run_results.VarianceParts | None]
+    """parts of the variance of the ends by inputs of the first touchdown: at_rest (0 or 1), and time_s and distance_m
+    of the landers at rest; empty with journey.touchdowns"""
+    outputs: Mapping[str, run_results.OutputEstimate | run_results.OutputDirection]
+    runs: run_results.RunResults
+    outputs_of_runs: Mapping[str, run_results.OutputRange]
     sides: Mapping[str, journey_results.SideResults]
     """by the side of the lander that faces the ground at the first touchdown; empty for a sphere, a cube, and if
     attitudes are not known"""
-    end_variance_shares: Mapping[str, run_results.VarianceParts | None]
-    """with [journey]: parts of the variance of the ends by inputs of the first touchdown: at_rest (0 or 1), and time_s
-    and distance_m of the landers at rest; empty without [journey]"""
-    ends: Mapping[str, run_results.CountedShare] | None = None
-    """with [journey]: how the journeys ended: at_rest, escaped, partner, under_way, failed"""
-    delivery: journey_results.DeliveryResults | None = None
-    """with [journey]: place and state of the first impacts"""
-    journeys: int | None = None
-    """with [journey]: how many were followed"""
-    touchdowns: int | None = None
-    """with [journey]: landings that were simulated for them"""
-    sky: Mapping[str, journey_results.SkyResults]
-    """visibility of sun, earth and orbiter for the landers at rest; empty without [sky]"""
-    emulated: journey_results.EmulatedJourneys | None = None
-    """with [journey]: landers that the emulator of the touchdowns followed"""
     soils: Mapping[str, journey_results.SoilResults]
     """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
-    regions: tuple[dispersion.RestRegion, ...] = ()
-    """smallest regions that contain 50 and 95 % of the next impacts of the samples; empty with [journey], and if there
-    are too few"""
+    sky: Mapping[str, journey_results.SkyResults]
+    """visibility of sun, earth and orbiter for the landers at rest; empty without [sky]"""
+    limit_states: Mapping[str, LimitStateResult]
+    """each limit state of the study file; empty if it has none"""
+    emulator: model_results.EmulatorResults | None
+    """the emulator of the first touchdown; null if too few landers leave for one, or none was drawn"""
+    emulated: journey_results.EmulatedJourneys | None
+    """landers that the emulator of all touchdowns followed to rest; null with journey.emulated_count = 0"""
+    hard_ground: Mapping[str, dispersion.GroundResults]
+    """landers that were followed on other ground: hard, equivalent (hard ground with the restitution of the soil) and
+    expansion (the soil by the refined expansion); empty with hard_ground.count = 0"""
+    aim: AimResults | None
+    """delivery options; null where the study file has none"""
+    samples: model_results.SampleResults | None
+    """samples of the first touchdown; null with monte_carlo.sample_count = 0"""
+    expansion: model_results.ExpansionAnalysis | None
+    """expansions of the first touchdown; null without [expansion]"""
     __repr__ = short_repr
 
     @property
@@ -96,46 +95,6 @@ class DrawnResults:
     def directions(self) -> dict[str, run_results.OutputDirection]:
         """The outputs with neither beginning nor end."""
         return {name: one for name, one in self.outputs.items() if isinstance(one, run_results.OutputDirection)}
-
-
-@dataclass(frozen=True)
-class PaperResults:
-    """Results of a paper study, equal in two executions of one study."""
-
-    units: Mapping[str, str]
-    """unit of each output of the expansions"""
-    beds: tuple[BedNumbers, ...]
-    node_counts: model_results.NodeCounts
-    designs: Mapping[str, model_results.DesignCounts]
-    outputs_of_runs: Mapping[str, run_results.OutputRange]
-    screening: model_results.ExpansionResults
-    """the expansion in all inputs"""
-    refined: model_results.ExpansionResults
-    """the expansion in the kept inputs"""
-    kept_inputs: tuple[str, ...]
-    """inputs that the refined design varies, by dotted key"""
-    kept_share: Mapping[str, float]
-    """by output: share of the variance of the screening expansion that the kept inputs explain together"""
-    scores: Mapping[str, Mapping[str, model_results.OutputErrors]]
-    """errors of the expansions by set of runs and output; scores.json also has those of single runs"""
-    monte_carlo: model_results.ExpansionSamples
-    site: SiteResults
-    variance_shares: Mapping[str, run_results.VarianceParts | None]
-    """null: one bed, one impact point and one attitude have no parts"""
-    shares: run_results.SampleShares
-    returns: run_results.ReturnFraction
-    flights: dispersion.FlightResults
-    ellipses: dispersion.LandingEllipses | None
-    without_scatter: dispersion.WithoutScatter | None
-    """null where the samples have no scatter from run to run"""
-    rest: dispersion.RestResults
-    answer: tuple[str, ...]
-    """outcome of the landers, the population for which it holds, and what is missing, in sentences"""
-    headline: tuple[str, ...]
-    """the answer, then the main numbers, in sentences"""
-    regions: tuple[dispersion.RestRegion, ...] = ()
-    """smallest regions that hold 50 and 95 % of the next impacts of the samples; empty for few"""
-    __repr__ = short_repr
 
 
 @dataclass(frozen=True)
@@ -186,7 +145,7 @@ class Summary:
     """version of the format; files with different versions have different keys"""
     study: Mapping[str, Any]
     """the study with all defaults, as the tables of its file (every key: lithobrake new)"""
-    results: DrawnResults | PaperResults
+    results: Results
     """the results, equal in two executions of one study"""
     provenance: Provenance
     """origin of the results; everything that may differ between two executions of one study"""
@@ -204,11 +163,6 @@ class Summary:
     @classmethod
     def of_json(cls, content: Mapping[str, Any]) -> "Summary":
         """Read from the JSON values of a file. Raises KeyError and ValueError as `results_in` does."""
-        is_paper = content["study"]["design"]["method"] == "paper"
-        results: DrawnResults | PaperResults = (
-            results_in(PaperResults, content["results"], "results")
-            if is_paper
-            else results_in(DrawnResults, content["results"], "results")
-        )
+        results = results_in(Results, content["results"], "results")
         provenance = results_in(Provenance, content["provenance"], "provenance")
         return cls(content["format_version"], content["study"], results, provenance)

@@ -138,16 +138,10 @@ def _distribution_problems(name: str, sizes: Constant | Between | Bell | PowerLa
 
 
 def _limit_state_problems(study: Study) -> Iterator[str]:
-    """Names that no file or table can show, and a method that has no landings drawn from their law."""
-    names = study.limit_states.conditions()
-    for name in names:
+    """Names that no file or table can show."""
+    for name in study.limit_states.conditions():
         if not re.fullmatch(lander_checks.NAME, name):
             yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
-    if names and study.design.method == "paper":
-        yield (
-            f'limit_states.{next(iter(names))} goes with design.method = "drawn", and it is "paper", whose runs are '
-            "no draws from the laws of the inputs; leave [limit_states] out, or draw the runs"
-        )
 
 
 def _shape_problems(study: Study) -> Iterator[str]:

@@ -73,10 +73,6 @@ def delivery_problems(study: Study) -> Iterator[str]:
     if delivery is None:
         return
     yield from _double_problems(study, delivery)
-    given = [key for key in delivery_sections.OWN_KEYS if getattr(delivery, key) is not None]
-    if given and study.journey is None:
-        yield f"delivery.{given[0]} goes with [journey], and there is none; add it, or leave the key out"
-        return
     yield from _correlation_problems(study, delivery)
     if delivery.is_flown:
         found = list(_flown_problems(study, delivery))
@@ -261,35 +257,36 @@ def drawn_together(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict
 def journey_problems(study: Study) -> Iterator[str]:
     yield from delivery_problems(study)
     yield from sky_problems(study)
-    if study.journey is None:
-        if study.site.roughness_deg and not study.rest.count:
-            yield (
-                f"site.roughness_deg is {study.site.roughness_deg:g}, and no impact of the study reads it: there is no "
-                "[journey] and rest.count is 0; leave it out, or tilt the landings by surface.slope_deg"
-            )
+    design, journey = study.design, study.journey
+    if journey.count is not None and journey.count != design.run_count:
+        yield (
+            f"journey.count is {journey.count} and design.run_count {design.run_count}; both are the number of "
+            "landers: keep one"
+        )
+    if not study.has_local_ground and study.delivery is not None and study.delivery.is_flown:
+        yield (
+            f"surface.gravity is {show(study.surface.gravity)}, and landers that fly to the ground from a state take "
+            "the acceleration of where they touch down; leave it out"
+        )
+    if not study.has_local_ground and study.site.roughness_deg:
+        yield (
+            f"site.roughness_deg is {study.site.roughness_deg:g}, and surface.gravity = {show(study.surface.gravity)} "
+            "gives all touchdowns one ground; leave one of the two out, or tilt the ground by surface.slope_deg"
+        )
+    if study.has_local_ground and study.surface.model_fields_set & {"slope_deg", "slope_azimuth_deg"}:
+        yield (
+            'surface.slope_deg is given; with surface.gravity = "site" every touchdown has the slope of where it is; '
+            "leave it out, or give surface.gravity a number"
+        )
+    if journey.touchdowns == 1:
         return
-    design = study.design
-    if design.method != "drawn":
-        yield f'[journey] follows drawn landings, and design.method is "{design.method}"; leave one of the two out'
-    if study.journey.count is not None and study.journey.count != design.run_count:
+    if not study.has_local_ground:
         yield (
-            f"journey.count is {study.journey.count} and design.run_count {design.run_count}; both are the number of "
-            "journeys: keep one"
+            f"surface.gravity is {show(study.surface.gravity)}; later touchdowns take the acceleration of where they "
+            "are: leave it out, or set journey.touchdowns = 1"
         )
-    if study.surface.gravity != "site":
-        yield (
-            f'surface.gravity is {show(study.surface.gravity)}; allowed with [journey]: "site", as every touchdown '
-            "takes the acceleration of where it is; leave it out"
-        )
-    if study.surface.model_fields_set & {"slope_deg", "slope_azimuth_deg"}:
-        yield "surface.slope_deg is given; with [journey] every touchdown has the slope of where it is; leave it out"
     if study.has_soil and study.bed.sides != "periodic":
-        yield 'bed.sides is "walls"; allowed with [journey]: "periodic", as journeys have no edge; change it'
-    of_emulator = {
-        "rest": study.rest.model_fields_set,
-        "limit_states": study.limit_states.conditions(),
-        "monte_carlo": study.monte_carlo.model_fields_set,
-    }
-    for name, given in of_emulator.items():
-        if given:
-            yield f"[{name}] asks the emulator of single landings, and [journey] has none; leave one of the two out"
+        yield (
+            'bed.sides is "walls", and landers that are followed beyond the first touchdown need ground without an '
+            'edge; set bed.sides = "periodic", or journey.touchdowns = 1'
+        )

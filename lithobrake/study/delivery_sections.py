@@ -22,6 +22,10 @@ ANY_HEADING = quantity.Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
 # Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
 # (docs/decisions/touchdown.md).
 HELD_SPEED = 0.03
+# Of one journey; more would be a lander that moves along for ever.
+MOST_TOUCHDOWNS = 1000
+# What follows for those who look at first touchdowns alone.
+FIRST_TOUCHDOWN_TIME, FIRST_TOUCHDOWN_SAMPLES, EMULATED_LANDERS = 60.0, 100_000, 5000
 
 
 class SquareMatrix:
@@ -144,21 +148,26 @@ SURFACE_KEYS = tuple(key for key in DeliverySection.model_fields if key not in O
 
 
 class JourneySection(quantity.Section):
-    """Each lander is followed to rest, with a simulated landing at every impact. Absent: only the first touchdown is
-    simulated, and the emulator predicts later ones."""
+    """How far each lander is followed, with a landing simulated at every impact."""
 
+    touchdowns: Annotated[int, quantity.Whole("", at_least=1, at_most=MOST_TOUCHDOWNS)] | None = Field(
+        default=None, examples=["1"]
+    )
+    """Most touchdowns of a lander; 1: the first touchdown alone. Absent: landers are followed to rest."""
     count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = Field(
         default=None, examples=["96"]
     )
     """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
     duration: Annotated[float, quantity.Number("s", above=0)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
-    hop_height: Annotated[float, quantity.Number("m", above=0)] | None = None
+    hop_height: Annotated[float, quantity.Number("m", at_least=0)] | None = None
     """A lander that would rise higher above the ground than this leaves the bed and flies in the gravity of the body;
-    lower hops are part of the touchdown. Absent: three times the lander's largest diameter."""
-    emulated_count: Annotated[int, quantity.Whole("", at_least=0, at_most=1_000_000)] = 5000
-    """Number of further landers that the emulator of all touchdowns follows, as a check and to narrow the intervals of
-    the fractions of all ends. 0: none."""
+    lower hops are part of the touchdown. 0: the touchdown ends when the lander first leaves the ground, or has too
+    little energy to leave it. Absent: three times the lander's largest diameter; 0 with touchdowns = 1."""
+    emulated_count: Annotated[int, quantity.Whole("", at_least=0, at_most=1_000_000)] | None = None
+    """Number of further landers that the emulator of all touchdowns follows to rest, as a check and to narrow the
+    intervals of the fractions of all ends. 0: none. Absent: 5000; none with touchdowns = 1, whose emulator knows the
+    first impacts alone."""
 
 
 def arrival_key(name: str) -> str:
@@ -192,16 +201,21 @@ def delivered_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def journey_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a study with what follows from [journey]: the run count, local gravity, and grains held still."""
+    """The tables of a study with what follows from how far landers are followed; all else is left for the checks."""
     journey = tables.get("journey")
     if not isinstance(journey, Mapping):
         return tables
-    filled: dict[str, dict[str, Any]] = {"surface": {"gravity": "site"}, "contact": {"held_speed": HELD_SPEED}}
-    if journey.get("count") is not None:
-        filled["design"] = {"run_count": journey["count"]}
-    # Grains are held in local stepping only: the default must not refuse a study that asks for common steps.
-    if isinstance(contact := tables.get("contact"), Mapping) and contact.get("stepping", "local") != "local":
-        filled.pop("contact")
+    is_first, design, contact = journey.get("touchdowns") == 1, tables.get("design", {}), tables.get("contact", {})
+    is_local = not isinstance(contact, Mapping) or contact.get("stepping", "local") == "local"
+    has_landers = not isinstance(design, Mapping) or design.get("run_count") != 0
+    filled: dict[str, dict[str, Any]] = {
+        "contact": {"held_speed": HELD_SPEED if is_local else 0.0},
+        "journey": {"hop_height": 0.0, "emulated_count": 0} if is_first else {"emulated_count": EMULATED_LANDERS},
+        "design": {} if journey.get("count") is None else {"run_count": journey["count"]},
+        "monte_carlo": {"sample_count": FIRST_TOUCHDOWN_SAMPLES if is_first or not has_landers else 0},
+    }
+    if {**filled["journey"], **journey}.get("hop_height") == 0.0:
+        filled["landing"] = {"time_limit": FIRST_TOUCHDOWN_TIME}
     given = {name: tables.get(name, {}) for name in filled}
     merged = {name: {**filled[name], **part} for name, part in given.items() if isinstance(part, Mapping)}
     return {**tables, **merged}

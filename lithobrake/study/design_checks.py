@@ -1,11 +1,15 @@
-"""What is wrong with the design of a study: keys of the other method, more terms than runs, runs made to no end."""
+"""What is wrong with the design of a study: too few landers, more terms than runs, runs made to no end."""
 
 import math
 from collections.abc import Iterator
 
 from lithobrake.chaos import smolyak_count, term_count
+from lithobrake.study.design_sections import ExpansionSection
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
+
+# Fewer tell no share.
+FEWEST_SAMPLES = 100
 
 
 def design_problems(study: Study) -> Iterator[str]:
@@ -17,41 +21,55 @@ def design_problems(study: Study) -> Iterator[str]:
             'such as young_modulus = { distribution = "log_uniform", lower = 1e6, upper = 1e8 }'
         )
         return
-    yield from _method_problems(study)
-    if study.design.method == "drawn":
-        yield from _bed_count_problems(study)
-        yield from _half_width_problems(study)
+    yield from _count_problems(study)
+    yield from _half_width_problems(study)
+    if study.expansion is None:
+        if study.monte_carlo.scatter:
+            yield (
+                "monte_carlo.scatter is true, and there is no [expansion]: samples of an emulator always have the "
+                "scatter; leave it out"
+            )
         return
-    yield from _unbounded_problems(study)
-    yield from _replicate_problems(study)
-    yield from _stage_problems(study, input_count)
+    yield from _unbounded_problems(study, study.expansion)
+    yield from _replicate_problems(study, study.expansion)
+    yield from _stage_problems(study.expansion, input_count)
 
 
-def _method_problems(study: Study) -> Iterator[str]:
-    """Keys of the method that is not asked for."""
-    method = study.design.method
-    other = "paper" if method == "drawn" else "drawn"
-    if stray := sorted(study.design.model_fields_set & study.design.keys_of_the_other_method):
-        one = len(stray) == 1
+def _count_problems(study: Study) -> Iterator[str]:
+    """Too few landers or samples, and questions to landers that are not drawn."""
+    runs, samples = study.design.run_count, study.sample_count
+    if 0 < samples < FEWEST_SAMPLES:
+        yield f"monte_carlo.sample_count is {samples}; allowed: 0, or at least {FEWEST_SAMPLES}; raise it"
+    if runs == 1 or (runs == 0 and study.expansion is None):
         yield (
-            f'design.{", design.".join(stray)} {"goes" if one else "go"} with design.method = "{other}", and it is '
-            f'"{method}"; leave {"it" if one else "them"} out, or write design.method = "{other}"'
+            f"design.run_count is {runs}; allowed: at least 2, or 0 with [expansion], which is then all of the study; "
+            "raise it"
         )
-    if method == "drawn" and study.monte_carlo.scatter:
+    if runs == 0:
+        yield from _undrawn_problems(study)
+    elif study.bed_count > runs:
         yield (
-            'monte_carlo.scatter is true and goes with design.method = "paper": the samples of a drawn study come from '
-            "its emulator and always have the scatter; leave it out"
-        )
-
-
-def _bed_count_problems(study: Study) -> Iterator[str]:
-    """Beds on which nothing would land."""
-    beds, runs = study.bed_count, study.design.run_count
-    if beds > runs:
-        yield (
-            f"bed.bed_count is {beds}, and design.run_count {runs}; allowed: as many beds as runs at most; "
+            f"bed.bed_count is {study.bed_count}, and design.run_count {runs}; allowed: as many beds as runs at most; "
             "raise the runs, or lower the beds"
         )
+
+
+def _undrawn_problems(study: Study) -> Iterator[str]:
+    """What asks landers that are drawn, of which there are none."""
+    asked = {
+        "[limit_states]": study.limit_states.conditions(),
+        "[aim]": study.aim.names,
+        "[sky]": study.sky.bodies,
+        "[soil]": study.soil,
+        "design.half_width": study.design.half_width,
+        "design.side_runs": study.design.side_runs,
+    }
+    for name, given in asked.items():
+        if given:
+            yield (
+                f"{name} asks landers drawn from the laws of the inputs, and design.run_count is 0; raise it, or leave "
+                f"{name} out"
+            )
 
 
 def _half_width_problems(study: Study) -> Iterator[str]:
@@ -88,19 +106,18 @@ def _half_width_problems(study: Study) -> Iterator[str]:
         )
 
 
-def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
-    """Runs of the paper's two stages that do not fit what is fitted to them."""
-    design = study.design
+def _stage_problems(design: ExpansionSection, input_count: int) -> Iterator[str]:
+    """Runs of the two designs that do not fit what is fitted to them."""
     # How many inputs the screening will keep is not known yet, so the refined fit must be possible for any number of
     # them.
     for stage, counts in (("screening", [input_count]), ("refined", range(1, input_count + 1))):
         level, degree = getattr(design, f"{stage}_level"), getattr(design, f"{stage}_degree")
         point_count, smolyak = getattr(design, f"{stage}_count"), design.points == "smolyak"
-        key = f"design.{stage}_{'level' if smolyak else 'count'}"
+        key = f"expansion.{stage}_{'level' if smolyak else 'count'}"
         if smolyak == (point_count is not None):
             yield (
-                f"design.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
-                f'design.points = "{design.points}"; allowed: "smolyak" takes levels, all others take counts'
+                f"expansion.{stage}_count {'does not go with' if smolyak else 'is missing; it is needed by'} "
+                f'expansion.points = "{design.points}"; allowed: "smolyak" takes levels, all others take counts'
             )
             continue
         for count in counts:
@@ -111,32 +128,32 @@ def _stage_problems(study: Study, input_count: int) -> Iterator[str]:
             if found < terms and (design.fit == "ols" or design.points == "fekete"):
                 where = f"{found} nodes of level {level}" if smolyak else f"{found} points of {key}"
                 yield (
-                    f"design.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
+                    f"expansion.{stage}_degree is {degree}; with {count} inputs it has {terms} terms, more than the "
                     f"{where}; lower the degree or raise {key}"
                 )
                 break
 
 
-def _unbounded_problems(study: Study) -> Iterator[str]:
+def _unbounded_problems(study: Study, design: ExpansionSection) -> Iterator[str]:
     """Inputs that have no end, on a grid that puts nodes at the ends."""
-    if study.design.points != "smolyak":
+    if design.points != "smolyak":
         return
     for name, value in uncertain(study.touchdown_values()).items():
         if not all(map(math.isfinite, reach(value))):
             yield (
-                f'{name} is {value.distribution}, which has no end, and design.points = "smolyak" puts runs at the '
-                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take other design.points"
+                f'{name} is {value.distribution}, which has no end, and expansion.points = "smolyak" puts runs at the '
+                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take other expansion.points"
             )
 
 
-def _replicate_problems(study: Study) -> Iterator[str]:
+def _replicate_problems(study: Study, design: ExpansionSection) -> Iterator[str]:
     """Runs that would be made several times to the same end."""
-    impact, count = study.impact, study.design.replicate_count
-    drawn = study.bed_count > 1 or impact.region or impact.pointing_error_deg
+    impact, count = study.impact, design.replicate_count
+    drawn = study.bed_count > 1 or impact.place is None or impact.pointing_error_deg
     drawn = drawn or "random" in (impact.azimuth_deg, impact.orientation)
     if count > 1 and not drawn and study.has_soil:
         yield (
-            f"design.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
+            f"expansion.replicate_count is {count}, but runs draw nothing by chance, so all {count} would be equal; "
             'give them something to draw (bed.bed_count, impact.region, azimuth_deg or orientation "random", an error '
             "of pointing) or write 1"
         )

@@ -9,47 +9,31 @@ from pydantic import BeforeValidator, ConfigDict, Field, StrictBool, StrictStr
 
 from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section, Whole, refuse
 from lithobrake.vocabulary.limit_state import ALLOWED, COMPARED, EXAMPLE, LimitState, NoLimitStateError
-from lithobrake.vocabulary.outcomes import SETTLED, JourneyEnd
+from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import OUTPUTS, OutputName
 
 Level = Annotated[int, Whole("", at_least=1, at_most=8)]
 Degree = Annotated[int, Whole("", at_least=1, at_most=15)]
 PointCount = Annotated[int, Whole("", at_least=2, at_most=1_000_000)] | None
 
-Method = Literal["drawn", "paper"]
-DEFAULT_METHOD: Method = "drawn"
-# Another name of the drawn method: it is accepted where a study is read, and found nowhere behind that.
-ALIASES = {"sequence": "drawn"}
 # What comes of an aim, and may be limited as the aim itself is.
 AT_REST = JourneyEnd.AT_REST.value
 # The side that faces the ground, among the names of what is chosen.
 SIDE = "aim.sides"
-AIM_RESULTS = ("missing", "distance_p95", "time_p95")
+AIM_RESULTS = (AT_REST, "missing", "distance_p95", "time_p95")
 _LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
 Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
 SkyBody = Literal["sun", "earth", "orbiter"]
 
 
-def method_name(given: Any) -> Any:
-    """The name of a method, also where an alias of it is given; anything else as it is."""
-    return ALIASES.get(given, given) if isinstance(given, str) else given
-
-
-class MethodKey(Section):
-    """Each of the other keys belongs to one of the two methods."""
-
-    method: Annotated[Method, BeforeValidator(method_name)] = DEFAULT_METHOD
-    """How runs are chosen. "drawn": every run has its own soil, impact point, azimuth and attitude, on many beds.
-    "paper": a screening over all inputs, then more runs over those that matter."""
-
-
-class DrawnKeys(MethodKey):
-    """With method = "drawn" only:"""
+class DesignSection(Section):
+    """How many landers are drawn: every one has its own soil, impact point, azimuth and attitude, on many beds."""
 
     # 20 landings on each of 12 beds; with fewer beds Student's t widens the interval (docs/estimates.md).
-    run_count: Annotated[int, Whole("", at_least=2, at_most=1_000_000)] = 240
-    """Number of runs; a larger one keeps the runs of a smaller one, each on its bed."""
+    run_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 240
+    """Number of landers; a larger one keeps those of a smaller one, each on its bed. 0, only with [expansion]: none is
+    drawn, and the expansions are all of the study."""
     half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
     """Requested half-width of the interval of the result, as a fraction of 1. More runs than run_count are made, on
     more beds, until it is reached. Absent: run_count runs, whatever their interval."""
@@ -71,8 +55,9 @@ class DrawnKeys(MethodKey):
         return self.largest_run_count or 10 * self.run_count
 
 
-class PaperKeys(MethodKey):
-    """With method = "paper" only:"""
+class ExpansionSection(Section):
+    """The analysis of the paper: polynomial chaos expansions of the first touchdown. A screening varies all uncertain
+    inputs, a refined design those that matter, and fresh random runs test both. Absent: none is made."""
 
     points: Literal["smolyak", "sobol_sequence", "latin_hypercube", "fekete"] = "smolyak"
     """Design of the runs. "smolyak", a sparse grid, uses the levels, and needs inputs with two limits. "sobol_sequence"
@@ -104,23 +89,14 @@ class PaperKeys(MethodKey):
     """Fresh random runs in each of the two test sets (kept inputs vary; all inputs vary)."""
 
 
-# Keys of the last base stand first.
-class DesignSection(PaperKeys, DrawnKeys):
-    """Which runs are made, and what is fitted to them."""
-
-    @property
-    def keys_of_the_other_method(self) -> set[str]:
-        other = PaperKeys if self.method == "drawn" else DrawnKeys
-        return other.model_fields.keys() - MethodKey.model_fields.keys()
-
-
 class MonteCarloSection(Section):
-    """Samples of the emulator, or, with design.method = "paper", of the refined expansion."""
+    """Samples of the first touchdown, each with its flight to the next impact: by the refined expansion where the study
+    has one, otherwise by the emulator."""
 
-    sample_count: Annotated[int, Whole("", at_least=100, at_most=100_000_000)] = 100_000
-    """Number of samples."""
+    sample_count: Annotated[int, Whole("", at_least=0, at_most=100_000_000)] | None = None
+    """Number of samples. Absent: 100 000 with journey.touchdowns = 1 or design.run_count = 0, otherwise none."""
     scatter: StrictBool = False
-    """With design.method = "paper" only: whether samples include the scatter from run to run. It consists of the
+    """With [expansion] only: whether samples include the scatter from run to run. It consists of the
     residuals of the expansion at the refined runs, sampled jointly for all outputs; samples.h5 then also has the
     samples without it. (Samples of an emulator always include it.)"""
 
@@ -155,10 +131,6 @@ class SolverSection(Section):
     """Numbers that only your program uses, by names of your own."""
 
 
-def aim_results(*, is_journey: bool) -> tuple[str, ...]:
-    return (AT_REST if is_journey else SETTLED, *AIM_RESULTS)
-
-
 def condition_text(given: object) -> str:
     if not isinstance(given, str):
         raise refuse(given, ALLOWED, f"write it in quotation marks, as in {EXAMPLE}")
@@ -172,7 +144,7 @@ class LimitStatesSection(Section):
     """Conditions whose probability the study estimates, by names of your own: fast = "speed_out > 0.1 and not returns".
 
     Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
-    true or false (docs/reliability.md). With design.method = "drawn" only."""
+    true or false (docs/reliability.md)."""
 
     # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
     model_config = ConfigDict(extra="allow")
@@ -186,20 +158,18 @@ class LimitStatesSection(Section):
 class AimSection(Section):
     """Delivery options to compare: speeds, angles and sites, each with landers that are followed to rest.
 
-    See docs/aiming.md. With design.method = "drawn" only; without [journey], impact.speed and impact.incidence_deg must
-    be uncertain."""
+    See docs/aiming.md."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
-    """Keys of the options, and their values in ascending order: one to three uncertain numbers of [impact], or
-    latitude_deg, longitude_deg, heading_deg of [site]; with [journey], keys of [delivery]. All combinations are
-    options. Everything else is sampled."""
+    """Keys of [delivery], one to three, and their values in ascending order: all combinations are options. Everything
+    else is sampled."""
     sides: list[str] = Field(default=[])
     """Sides of the lander that face the ground at the first touchdown, as further options; the lander is turned about
     the vertical at random, without a pointing error. For a box its axes, such as "z", or "x or y" where edges are
-    equal; for a mesh "+x" to "-z". With [journey] only."""
+    equal; for a mesh "+x" to "-z"."""
     within: list[str] = Field(default=[])
     """Conditions that the best option must satisfy, such as "incidence_deg < 45": a name of the grid without its table,
-    or settled (with [journey] at_rest), missing (fractions), distance_p95 [m], time_p95 [s]; compared with a number by
+    or at_rest, missing (fractions), distance_p95 [m], time_p95 [s]; compared with a number by
     <, <=, > or >=."""
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
     """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
@@ -280,8 +250,7 @@ class OrbiterSection(Section):
 
 
 class SkySection(Section):
-    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them; with [journey]
-    only. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
+    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
     season. Either give the latitudes (a distribution represents a year: each lander samples its own), or give `date`,
     from which they follow by site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by
     site.kernels. The shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.

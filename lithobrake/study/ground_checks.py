@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
+from lithobrake.study.delivery_sections import EMULATED_LANDERS
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
 from lithobrake.study.quantity import usual_reach
@@ -48,7 +49,7 @@ def size_problems(study: Study, radius: float) -> Iterator[str]:
 
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
-    if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
+    if (study.contact.held_speed or 0.0) > 0.0 and study.contact.stepping != "local":
         yield (
             f'contact.held_speed is {study.contact.held_speed:g} with contact.stepping = "{study.contact.stepping}"; '
             'allowed above 0: "local" only; change either'
@@ -179,12 +180,6 @@ def soil_problems(study: Study) -> Iterator[str]:
     """One sentence for each thing that is wrong; none where the study has no [soil]."""
     if not study.soil:
         return
-    if study.journey is None:
-        yield (
-            f"soil.{next(iter(study.soil))} is the soil of a region for the touchdowns of journeys, and the study has "
-            "no [journey]: all its landings are on [grain]; add [journey], or leave [soil] out"
-        )
-        return
     if study.design.side_runs:
         yield (
             "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions "
@@ -202,10 +197,9 @@ def soil_problems(study: Study) -> Iterator[str]:
 def _emulator_problems(study: Study) -> Iterator[str]:
     """Questions to the emulator of all touchdowns, which knows one soil for the whole body."""
     asked = ["aim.grid"] if study.aim.names else []
-    journey = study.journey
     # The default asks for nothing: where there is no emulator such a study goes without, and reports that.
-    if journey is not None and "emulated_count" in journey.model_fields_set and journey.emulated_count:
-        asked.append(f"journey.emulated_count = {journey.emulated_count}")
+    if (count := study.journey.emulated_count) not in (None, 0, EMULATED_LANDERS):
+        asked.append(f"journey.emulated_count = {count}")
     for key in asked:
         yield (
             f"{key} asks the emulator of the touchdowns, which has one soil for all of the body, and [soil] gives "

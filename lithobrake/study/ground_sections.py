@@ -94,10 +94,10 @@ class BedSection(Section):
     width: Annotated[tuple[float, float], Numbers("m", count=2, above=0)] = Field(examples=["[0.55, 0.55]"])
     """Width along x and y, between the walls or until the ground repeats. It must be at least twice the largest
     diameter of the lander's main shape, and wider than its parts reach."""
-    sides: Literal["walls", "periodic"] = "walls"
+    sides: Literal["walls", "periodic"] = "periodic"
     """What is beyond the width. "walls": an open box, which a lander may leave across its edge. "periodic": the same
     ground again; no lander leaves it laterally, and one that travels farther meets ground that it has disturbed.
-    "periodic" is the default of design.method = "drawn"."""
+    "walls" only with journey.touchdowns = 1."""
     diameter: Annotated[Constant | Between | Bell | PowerLaw, Field(discriminator="distribution")] = Field(
         examples=['{ distribution = "constant", value = 0.08 }']
     )
@@ -106,8 +106,11 @@ class BedSection(Section):
     diameter D is proportional to D**-exponent, and that of grains larger than D to D**-cumulative_exponent, whose
     exponent is smaller by 1. Both are written positive."""
     bed_count: Annotated[int, Whole("", at_least=1, at_most=MOST_BEDS)] | None = None
-    """Number of beds; with more than one, the bed of each run is sampled. Absent: one; with design.method = "drawn",
-    one bed for every 20 landings, or for every 4 journeys (rounded up), at least 12."""
+    """Number of beds; with more than one, the bed of each run is sampled. Absent: with journey.touchdowns
+    = 1 one bed for every 20 landers, otherwise one for every 4 (rounded up), at least 12; one where none is drawn."""
+    seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] | None = None
+    """Seed of the first bed; the following beds have the following numbers. Absent: it follows from the seed of the
+    study."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
     pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
@@ -119,7 +122,7 @@ class BedSection(Section):
 
 
 def default_bed_count(run_count: int, runs_a_bed: int) -> int:
-    """How many beds a drawn study has of which nothing else is said: by so many runs on each, within limits.
+    """How many beds a study has of which nothing else is said: by so many runs on each, within limits.
 
     Source: [Cochran-1977], section 10.6.
     """

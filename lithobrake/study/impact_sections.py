@@ -42,18 +42,16 @@ class ImpactSection(Section):
     """Speed. A contact may be too deep for the contact law even far below the limit; this is checked too."""
     incidence_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] | None = Field(examples=["30.0"])
     """Angle between the velocity and the mean surface normal; 0 is straight down."""
-    azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = 0.0
-    """Direction of the horizontal velocity in the bed, from +x. "random", the default of design.method = "drawn": it is
-    sampled for each run."""
+    azimuth_deg: Annotated[Scalar | str, MaybeUncertain("deg", at_least=-360, at_most=360, word="random")] = "random"
+    """Direction of the horizontal velocity in the bed, from +x. "random": it is sampled for each run."""
     place: PlaceSection | None = None
-    """Impact point, the same for all runs. Absent: the middle of the bed, or as `region` states."""
+    """Impact point, the same for all runs. Absent: as `region` states."""
     region: RegionSection | None = None
-    """Instead of `place`: the impact point of each run is sampled in this rectangle. With design.method = "drawn" and
-    neither of the two, it is sampled over the whole bed if the ground repeats; between walls, where it is so far from
+    """Instead of `place`: the impact point of each run is sampled in this rectangle. With neither
+    of the two, it is sampled over the whole bed if the ground repeats; between walls, where it is so far from
     the walls that they do not affect the first impact."""
-    orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = (1.0, 0.0, 0.0, 0.0)
-    """Attitude as a quaternion w, x, y, z. "random", the default of design.method = "drawn": it is sampled for each
-    run, uniformly over rotations."""
+    orientation: Annotated[tuple[float, ...] | str, Numbers("", count=4, word="random")] = "random"
+    """Attitude as a quaternion w, x, y, z. "random": it is sampled for each run, uniformly over rotations."""
     pointing_error_deg: Annotated[float, Number("deg", above=0, at_most=180)] | None = None
     """Half the opening angle of a cone about the lander's z axis, as `orientation` turns it. The direction of this axis
     is sampled for each run, uniformly over the cone; the lander turns there by the shortest rotation, without a roll
@@ -69,9 +67,10 @@ class ImpactSection(Section):
 class SurfaceSection(Section):
     """The constant acceleration during the touchdown."""
 
-    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field(examples=["5e-5"])
-    """Acceleration toward the surface. A negative value points outward, as is possible near the equator of a fast
-    rotator. "site": that of gravity and rotation together at the site of [site]."""
+    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = "site"
+    """Acceleration toward the surface. "site": that of gravity and rotation together where each touchdown is, with the
+    slope there. A number, only with journey.touchdowns = 1: the same for all first touchdowns, with slope_deg; a
+    negative value points outward, as is possible near the equator of a fast rotator."""
     slope_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=0, below=90)] = 0.0
     """Angle by which the surface is tilted relative to the acceleration."""
     slope_azimuth_deg: Angle = 0.0
@@ -97,17 +96,18 @@ class ContactSection(Section):
     resolved_speed: Annotated[float, Number("", at_least=0, at_most=1)] = 0.3
     """Collisions slower than this fraction of the lander's speed take fewer steps than steps_per_contact, in proportion
     to their speed, but at least five. 0: all collisions take the same number of steps. Only with stepping = "local"."""
-    held_speed: Annotated[float, Number("", at_least=0, below=1)] = 0.0
+    held_speed: Annotated[float, Number("", at_least=0, below=1)] | None = None
     """Grains in contact are frozen while they are slower than this fraction of the lander's speed and farther from it
     than the walls of the smallest bed would be. An impact that makes them faster releases them. 0: no grain is frozen.
-    Only with stepping = "local"."""
+    Absent: 0.03 with stepping = "local", otherwise 0, its only value there."""
 
 
 class LandingSection(Section):
     """When the simulation of a touchdown stops."""
 
-    time_limit: Annotated[float, Number("s", above=0)] = 60.0
-    """Longest simulated time of one touchdown."""
+    time_limit: Annotated[float, Number("s", above=0)] | None = None
+    """Longest simulated time of one touchdown. Absent: what is left of journey.duration; with journey.hop_height = 0,
+    60 s."""
 
 
 class RotationSection(Section):
@@ -173,8 +173,7 @@ class SiteSection(Section):
     the body's equator on the equator of ICRF."""
     roughness_deg: Annotated[float, Number("deg", at_least=0, at_most=60)] | None = None
     """Rms slope of the ground at the lander's scale relative to the facets of the body's shape: the angle whose tangent
-    is the rms gradient. A gradient in a random direction is sampled for each touchdown of a journey; without [journey],
-    for each impact after the first, and on hard ground for each impact. Absent: the facets are flat."""
+    is the rms gradient. A gradient in a random direction is sampled for each touchdown. Absent: the facets are flat."""
     latitude_deg: Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)] = 0.0
     """Latitude, planetocentric."""
     longitude_deg: Angle = 0.0
@@ -200,33 +199,25 @@ class FlightSection(Section):
     shape, some 30 times faster; its error is reported."""
 
 
-class RestSection(Section):
-    """Landers followed from bounce to bounce until they rest: on the soil, by the emulator or the expansion, and on
-    hard ground for comparison.
+class HardGroundSection(Section):
+    """The same landers on hard ground, for comparison: every impact has the same restitution and friction. The defaults
+    are in the middle of the values in the literature, and are not measured. With an emulator they are also followed on
+    hard ground that is equivalent to the soil, with restitutions and directions sampled from the emulator. A captured
+    lander slides until it rests or leaves the ground again."""
 
-    On the soil, impacts after the first need impact.speed and impact.incidence_deg to be uncertain; an impact outside
-    the range of the runs ends the trajectory. On hard ground every impact has the same restitution and friction; the
-    defaults are in the middle of the values in the literature, and are not measured. On both, a captured lander slides
-    until it rests or leaves the ground again."""
-
-    count: Annotated[int, Whole("", at_least=0)] = Field(default=10_000, examples=["1000"])
-    """Number of samples that are followed, the first ones; 0: none."""
-    duration: Annotated[float, Number("s", above=0)] = 86_400.0
-    """Longest journey, counted from the first impact."""
-    arc_count: Annotated[int, Whole("", at_least=0, at_most=300)] = 100
-    """Number of these samples, the first ones, whose flights on the soil are stored for exports; 0: none."""
+    count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = Field(default=0, examples=["10_000"])
+    """Number of landers that are followed on it; 0: none."""
     normal_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.6
-    """Hard ground: outgoing divided by incoming speed along the normal."""
+    """Outgoing divided by incoming speed along the normal."""
     tangential_restitution: Annotated[float, Number("", at_least=0, at_most=1)] = 0.8
-    """Hard ground: the same along the ground, unless friction limits the change."""
+    """The same along the ground, unless friction limits the change."""
     friction: Annotated[float, Number("", at_least=0)] = 0.6
-    """Hard ground: largest change of the velocity along the ground divided by that along the normal; also the friction
-    of a sliding lander."""
+    """Largest change of the velocity along the ground divided by that along the normal; also the friction of a sliding
+    lander."""
     rest_height: Annotated[float, Number("m", above=0)] = 0.01
-    """Hard ground: a lander stops bouncing when its rebound would rise less than this."""
+    """A lander stops bouncing when its rebound would rise less than this."""
     rolling_friction: Annotated[float, Number("", at_least=0)] | None = None
-    """Every ground: resistance divided by the normal force, for a captured lander that rolls like a sphere. Absent: it
-    slides, on hard ground with the friction above, on soil with one that follows from the friction of its hull."""
+    """Resistance divided by the normal force, for a captured lander that rolls like a sphere. Absent: it slides."""
 
 
 def kernel_spin(site: SiteSection) -> "SpinState | None":

@@ -7,12 +7,11 @@ from datetime import UTC, datetime
 from itertools import pairwise
 
 from lithobrake.study.delivery_sections import arrival_key
-from lithobrake.study.design_sections import AimLimit, aim_results
+from lithobrake.study.design_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.plain_text import closest, show
-from lithobrake.vocabulary.quantities import ARRIVAL
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
@@ -32,16 +31,6 @@ def aim_problems(study: Study) -> Iterator[str]:
             yield "aim.within is given without aim.grid; say there between which values there is to choose"
         return
     inputs = uncertain(study.touchdown_values())
-    if study.design.method == "paper":
-        yield 'aim.grid goes with design.method = "drawn", and it is "paper"; leave [aim] out, or draw the runs'
-    # Landers go on from bounce to bounce, so the emulator has to know other impacts than the first.
-    absent = [name for name in ARRIVAL if name not in inputs and study.journey is None]
-    if absent:
-        yield (
-            f"aim.grid follows landers from bounce to bounce, and {' and '.join(absent)} "
-            f"{'is' if len(absent) == 1 else 'are'} no uncertain input; give a distribution that reaches over the "
-            "impacts to come"
-        )
     if study.delivery is not None and study.delivery.is_flown:
         yield (
             "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
@@ -66,9 +55,8 @@ def _value_problems(
     study: Study, grid: Mapping[str, Sequence[float]], inputs: Mapping[str, Uncertain]
 ) -> Iterator[str]:
     """Names of a grid that nothing has, and values that its runs do not reach over."""
-    known = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
-    if study.journey is not None:
-        known = tuple(f"delivery.{name.partition('.')[2]}" for name in known)
+    arrival = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
+    known = tuple(f"delivery.{name.partition('.')[2]}" for name in arrival)
     for option, values in grid.items():
         name = arrival_key(option)
         if option not in known:
@@ -88,8 +76,6 @@ def _side_problems(study: Study) -> Iterator[str]:
     sides, known = study.aim.sides, tuple(directions_of_sides(study.lander))
     if not sides:
         return
-    if study.journey is None:
-        yield "aim.sides goes with [journey], which the study does not have; add it, or leave the sides out"
     if len(known) < 2:
         yield f"aim.sides is {show(sides)}, and all sides of the lander are alike; leave it out"
     elif not set(sides) <= set(known) or len(set(sides)) < len(sides):
@@ -100,7 +86,7 @@ def _side_problems(study: Study) -> Iterator[str]:
 def _limit_problems(study: Study) -> Iterator[str]:
     """Limits of the best aim that cannot be read, or name nothing."""
     of_grid = (name.partition(".")[2] for name in study.aim.grid)
-    names = [*of_grid, *aim_results(is_journey=study.journey is not None)]
+    names = [*of_grid, *AIM_RESULTS]
     for text in study.aim.within:
         limit = AimLimit.of(text)
         if limit is None or limit.name not in names:
@@ -112,9 +98,6 @@ def _limit_problems(study: Study) -> Iterator[str]:
 
 def sky_problems(study: Study) -> Iterator[str]:
     sky = study.sky
-    if study.journey is None and sky.bodies:
-        yield "[sky] asks what landers at rest see, and there is no [journey]; leave one out or add the other"
-        return
     far = [name for name in sky.bodies if name != "sun"]
     for key, default in (("mask_deg", 0.0), ("beam_deg", 90.0)):
         if getattr(sky, key) != default and not far:

@@ -13,6 +13,25 @@ TYPES = {
     "tuple_type": "a list; write its entries in square brackets",
 }
 
+# Keys of older study files, and what to write in their place.
+TO_REST = (
+    "write touchdowns = 1 in it to simulate the first touchdown alone, or nothing to follow every lander to rest"
+)
+OF_EXPANSION = "write it in [expansion], the analysis of the first touchdown by polynomial chaos"
+REPLACED = {
+    "design.method": "leave it out: journey.touchdowns = 1 simulates the first touchdown alone, and [expansion] with "
+    "design.run_count = 0 is the method of the paper",
+    "rest": "write [hard_ground] for landers on hard ground; journey.duration is the longest journey, and "
+    "journey.emulated_count the number of landers that the emulator follows",
+    **{
+        f"design.{key}": OF_EXPANSION
+        for key in (
+            *("points", "screening_level", "screening_count", "screening_degree", "refined_level", "refined_count"),
+            *("refined_degree", "replicate_count", "fit", "kept_share", "kept_outputs", "test_count"),
+        )
+    },
+}
+
 
 def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tuple[str, ...]]) -> list[str]:
     """One sentence for each error of the schema.
@@ -36,13 +55,14 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
     known = next((known_keys[one] for one in (table, *named) if one in known_keys), ())
     if kind == "quantity":
         return f"{key} {error['msg']}"
+    if kind == "extra_forbidden" and key in REPLACED:
+        return f"{key} is a key of an older version; {REPLACED[key]}"
     if kind == "extra_forbidden":
         return f"{key} is not a known key{closest(place[-1], known)}" + (
             f"; allowed: {', '.join(known)}" if known else ""
         )
-    # [journey] fills this table in (journey_tables), so a missing [journey] is as likely the slip.
-    if kind == "missing" and key == "surface":
-        return "surface is missing, and so is [journey], which needs no surface; add one of the two tables"
+    if kind == "missing" and key == "journey":
+        return f"[journey] is missing, which says how far landers are followed; add it: {TO_REST}"
     if kind == "missing":
         return f"{key} is missing; add {'the table' if key in known_keys else 'the key'} (`lithobrake new` shows all)"
     if kind in {"literal_error", "union_tag_invalid"}:

@@ -28,43 +28,34 @@ class Study(Section):
     lander: LanderSection
     delivery: DeliverySection | None = None
     impact: impact_sections.ImpactSection
-    surface: impact_sections.SurfaceSection
+    surface: impact_sections.SurfaceSection = impact_sections.SurfaceSection()
     contact: impact_sections.ContactSection = impact_sections.ContactSection()
     landing: impact_sections.LandingSection = impact_sections.LandingSection()
-    journey: JourneySection | None = None
+    journey: JourneySection
     solver: design_sections.SolverSection = design_sections.SolverSection()
     campaign: design_sections.CampaignSection = design_sections.CampaignSection()
     design: design_sections.DesignSection = design_sections.DesignSection()
+    expansion: design_sections.ExpansionSection | None = None
     monte_carlo: design_sections.MonteCarloSection = design_sections.MonteCarloSection()
     site: impact_sections.SiteSection = impact_sections.SiteSection()
     flight: impact_sections.FlightSection = impact_sections.FlightSection()
-    rest: impact_sections.RestSection = impact_sections.RestSection()
+    hard_ground: impact_sections.HardGroundSection = impact_sections.HardGroundSection()
     limit_states: design_sections.LimitStatesSection = design_sections.LimitStatesSection()
     aim: design_sections.AimSection = design_sections.AimSection()
     sky: design_sections.SkySection = design_sections.SkySection()
     _function: str | None = PrivateAttr(default=None)
+    _site_gravity: float | None = PrivateAttr(default=None)
 
     @model_validator(mode="before")
     @classmethod
-    def _defaults_of_the_drawn_method(cls, tables: Any) -> Any:
-        """Fill in what a drawn study leaves open; all that is wrong is left for the sections to refuse."""
+    def _filled(cls, tables: Any) -> Any:
+        """Fill in what follows from other tables; all that is wrong is left for the sections to refuse."""
         if not isinstance(tables, Mapping):
             return tables
-        tables = journey_tables(delivered_tables(tables))
-        design = tables.get("design", {})
-        if (
-            not isinstance(design, Mapping)
-            or design_sections.method_name(design.get("method", design_sections.DEFAULT_METHOD)) != "drawn"
-        ):
-            return tables
-        filled, bed, impact = dict(tables), tables.get("bed"), tables.get("impact")
-        if isinstance(bed, Mapping):
-            # Values of the file take precedence over every default.
-            filled["bed"] = {"sides": "periodic", **bed}
-        if isinstance(impact, Mapping):
+        filled = dict(journey_tables(delivered_tables(tables)))
+        if isinstance(impact := filled.get("impact"), Mapping) and impact.get("pointing_error_deg") is not None:
             # An error of pointing is about an attitude that is given, and a random one has none.
-            attitude = {} if "pointing_error_deg" in impact else {"orientation": "random"}
-            filled["impact"] = {"azimuth_deg": "random", **attitude, **impact}
+            filled["impact"] = {"orientation": (1.0, 0.0, 0.0, 0.0), **impact}
         return filled
 
     def with_function(self, identity: str | None) -> "Study":
@@ -73,6 +64,12 @@ class Study(Section):
         # shows it.
         study = self.model_copy()
         study._function = identity
+        return study
+
+    def under_site_gravity(self, gravity: float) -> "Study":
+        """The same study, whose beds and medians have the acceleration [m/s2] of the site, inward."""
+        study = self.model_copy(update={"surface": self.surface.model_copy(update={"gravity": gravity})})
+        study._site_gravity = gravity
         return study
 
     def with_run_count(self, run_count: int) -> "Study":
@@ -97,20 +94,28 @@ class Study(Section):
         return self.solver.command is None and self.function is None
 
     @property
+    def has_local_ground(self) -> bool:
+        """Whether every touchdown has the acceleration and the slope of where it is."""
+        return self._site_gravity is not None or self.surface.gravity == "site"
+
+    @property
     def bed_count(self) -> int:
         """How many beds are landed on."""
         if self.bed.bed_count is not None:
             return self.bed.bed_count
-        return (
-            ground_sections.default_bed_count(self.design.run_count, self.runs_a_bed)
-            if self.design.method == "drawn"
-            else 1
-        )
+        if not self.design.run_count:
+            return 1
+        return ground_sections.default_bed_count(self.design.run_count, self.runs_a_bed)
 
     @property
     def runs_a_bed(self) -> int:
-        """How many runs each bed of a drawn study has where its file does not say how many beds there are."""
-        return ground_sections.LANDINGS_A_BED if self.journey is None else ground_sections.JOURNEYS_A_BED
+        """How many landers each bed of a study has where its file does not say how many beds there are."""
+        is_first = self.journey.touchdowns == 1
+        return ground_sections.LANDINGS_A_BED if is_first else ground_sections.JOURNEYS_A_BED
+
+    @property
+    def sample_count(self) -> int:
+        return self.monte_carlo.sample_count or 0
 
     def touchdown_values(self) -> dict[str, Scalar]:
         """Every scalar that the touchdown reads, by dotted key, in the units of the file; absent ones are left out."""
