@@ -5,20 +5,20 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.files.reading import content_hash
+from lithobrake.pipeline.answer.expansion_results import write_summary
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, estimate
 from lithobrake.pipeline.answer.study_summary import summary_dependencies, write_drawn_summary, write_journey_summary
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.expansion import expansions
+from lithobrake.pipeline.expansion.expansion_journeys import follow_expansion_samples
+from lithobrake.pipeline.expansion.expansion_samples import sample_expansion
 from lithobrake.pipeline.first_bounces import bounces_to_rest, emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_expansion_samples, fly_samples
 from lithobrake.pipeline.job import Job, Stage, same_files
 from lithobrake.pipeline.journeys import emulated_journeys
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
-from lithobrake.pipeline.paper import expansions
-from lithobrake.pipeline.paper.expansion_journeys import follow_expansion_samples
-from lithobrake.pipeline.paper.expansion_samples import sample_expansion
-from lithobrake.pipeline.paper.paper_summary import write_summary
 from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.runs import landings
 from lithobrake.pipeline.runs.beds import pour_beds
@@ -137,7 +137,7 @@ SUMMARY = Stage(
     summary_dependencies,
     ANSWER_PARTS,
 )
-PAPER_PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
+PAPER_PARTS = ("pipeline/expansion", "analysis", "emulator", *RUN_PARTS)
 MEDIAN_LANDING = Stage(
     "landing", "median landing", landings.landing_files, landings.land_once, ("bed",), landings.landing_dependencies
 )
