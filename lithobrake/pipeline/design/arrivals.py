@@ -226,14 +226,14 @@ def friction_of(row: Mapping[str, float]) -> float:
 def place_region(study: Study) -> tuple[Interval, Interval] | None:
     """The rectangle [m, from the middle of the bed, along x and y] out of which places are drawn; None for no draw.
 
-    Where a drawn study names neither place nor region: all of a bed that repeats; between walls, wherever the lander is
+    Where a study names neither place nor region: all of a bed that repeats; between walls, wherever the lander is
     as far from each as in the smallest bed whose walls do not answer its first blow, or in the middle where a bed is no
     wider than that.
     """
     impact = study.impact
     if impact.region is not None:
         return impact.region.x, impact.region.y
-    if impact.place is not None or study.design.method != "drawn":
+    if impact.place is not None:
         return None
     if study.bed.sides == "periodic":
         along, across = (0.5 * width for width in study.bed.width)
