@@ -115,12 +115,6 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, campaign.Record]:
     }
 
 
-def make_drawn_runs(job: Job) -> None:
-    # Before the landings, since it may be a reason not to make them.
-    say_gravity(job)
-    make_rows(job, "drawn", [job.design.rows])
-
-
 def make_side_runs(job: Job) -> None:
     for design in SIDE_DESIGNS if job.study.design.side_runs else ():
         make_rows(job, design, [job.design.rows_of(design)])
@@ -165,7 +159,7 @@ def landing_files(study: Study) -> list[str]:
 
 
 def telling_files(study: Study) -> list[str]:
-    return [TELLING] if study.has_soil and study.design.method == "drawn" else []
+    return [TELLING] if study.has_soil and study.design.run_count else []
 
 
 def landing_dependencies(study: Study) -> dict[str, Any]:
@@ -173,9 +167,8 @@ def landing_dependencies(study: Study) -> dict[str, Any]:
 
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
-    """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
-    if design.study.design.method == "paper":
-        # The paper's method has no first drawn run; its landing is that of the medians.
+    """All inputs of the landing to look at: that of the first lander, or at the medians of all inputs."""
+    if not design.study.design.run_count:
         return touchdown_model.draw(design.study, design.medians, design.study.seed)
     return design.shown_row
 
