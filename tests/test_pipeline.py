@@ -16,8 +16,8 @@ from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.paper.expansions import kept_inputs, points
-from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points
+from lithobrake.pipeline.answer.expansion_results import limited_shares, return_fraction
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES

@@ -20,7 +20,7 @@ from lithobrake.campaign import Ledger
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.paper.expansions import points
+from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study

@@ -10,13 +10,13 @@ from lithobrake.pipeline.answer.study_summary import summary_dependencies, write
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.expansion import expansions
+from lithobrake.pipeline.expansion.expansion_samples import sample_expansion
 from lithobrake.pipeline.first_bounces import bounces_to_rest, emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_samples, write_paths
 from lithobrake.pipeline.job import Job, Stage, no_dependencies, same_files
 from lithobrake.pipeline.journeys import emulated_journeys
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
-from lithobrake.pipeline.paper import expansions
-from lithobrake.pipeline.paper.expansion_samples import sample_expansion
 from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.runs import landings
 from lithobrake.pipeline.runs.beds import pour_beds
@@ -66,9 +66,9 @@ EMULATOR_PARTS = (
     "analysis", "results/table.py", "vocabulary/quantities.py",
 )  # fmt: skip
 EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
-EXPANSION_PARTS = ("pipeline/paper", "analysis", "emulator", *RUN_PARTS)
+EXPANSION_PARTS = ("pipeline/expansion", "analysis", "emulator", *RUN_PARTS)
 ANSWER_PARTS = (
-    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys", "pipeline/paper"),
+    *("pipeline/answer", "pipeline/site.py", "pipeline/journeys", "pipeline/expansion"),
     *("analysis", "chaos", "emulator", "results", "statements", "vocabulary"),
 )
 

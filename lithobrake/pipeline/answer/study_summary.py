@@ -14,6 +14,7 @@ from lithobrake.analysis import LEVEL
 from lithobrake.campaign import read_records
 from lithobrake.pipeline.answer.dispersion_statistics import body_product, delivery_results, flight_checks, site_results
 from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends
+from lithobrake.pipeline.answer.expansion_results import expansion_results
 from lithobrake.pipeline.answer.followed_landers import followed_results
 from lithobrake.pipeline.answer.journey_ends import (
     JourneyTable,
@@ -30,7 +31,6 @@ from lithobrake.pipeline.answer.sample_results import return_fraction_of_samples
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_results import expansion_results
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import FlightResults
 from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, OutputScore

@@ -10,7 +10,7 @@ import numpy as np
 from lithobrake.chaos import smolyak_count
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
-from lithobrake.pipeline.paper.expansions import kept_inputs, points, replicate_count
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
 from lithobrake.pipeline.study_folder import StudyFolder

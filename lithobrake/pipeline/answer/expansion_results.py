@@ -14,9 +14,9 @@ from lithobrake.pipeline.answer.run_answers import place_regions, scope
 from lithobrake.pipeline.answer.run_estimates import SPLIT
 from lithobrake.pipeline.answer.study_summary import bed_results, outputs_of_runs, write_summary_file
 from lithobrake.pipeline.design.dependencies import bed_files
+from lithobrake.pipeline.expansion.expansions import kept_inputs, replicate_count
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansions import kept_inputs, replicate_count
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import MISSING, Samples
 from lithobrake.results import model_results

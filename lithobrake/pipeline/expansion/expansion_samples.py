@@ -69,7 +69,7 @@ def draw_samples(job: Job) -> None:
 
     study, inputs = job.study, job.design.inputs
     refined = load(job.folder / REFINED_FILE)
-    x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
+    x = sample_inputs(inputs, study.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
     job.progress(0, 1, "chances of the outcomes")
     random = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture")))

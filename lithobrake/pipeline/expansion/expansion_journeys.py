@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.first_bounces.bounce_laws import inputs_at
 from lithobrake.pipeline.first_bounces.bounces_to_rest import first_velocity, follow
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, outgoing, rolling_spin
 from lithobrake.vocabulary.file_names import REFINED_FILE
