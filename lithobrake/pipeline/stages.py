@@ -1,4 +1,4 @@
-"""The stages of a study in order: what each writes, of what, and by which code. A stage without files is passed over."""
+"""The stages of a study in order: what each writes, of what, and by which code; one without files is passed over."""
 
 from collections.abc import Callable
 from pathlib import Path
