@@ -33,12 +33,11 @@ Numbers = dict[str, float]
 
 def rows_of(study: Study, kept: Path) -> Iterator[tuple[str, list[Numbers]]]:
     """Each kept design of a study with the inputs of its landings as today's code draws them."""
-    if study.design.method == "paper":
+    if study.expansion is not None:
         refined = json.loads((kept / "refined.json").read_text(encoding="utf-8"))
         drawn, chosen = DrawnDesign(study), [one["name"] for one in refined["inputs"]]
         for design in PAPER_DESIGNS:
             yield design, drawn_rows(drawn, points(drawn, design, chosen), 0)
-        return
     for design in DRAWN_DESIGNS:
         if (kept / "runs" / f"{design}.csv").is_file():
             yield design, DrawnDesign(study).rows_of(design)

@@ -208,8 +208,12 @@ def stored_bed(path: Path) -> "Bed":
     return bed
 
 
-def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
+def draw(
+    study: Study, values: Values, seed: int, region: tuple[tuple[float, float], tuple[float, float]] | None
+) -> dict[str, float]:
     """The values of a run with what it draws by chance, or is given in its place.
+
+    region: ends of x and y between which impact points are drawn [m]; None: the point is given.
 
     bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
     whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
@@ -224,11 +228,10 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
     # Four normal numbers point evenly over the unit quaternions.
     quaternion = generator.standard_normal(4)
     impact = study.impact
-    if impact.region is None:
-        place = [values["impact.place.x"], values["impact.place.y"]]
+    if region is None:
+        place = [values[name] for name in PLACE]
     else:
-        ends = (impact.region.x, impact.region.y)
-        place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
+        place = [low + part * (high - low) for part, (low, high) in zip(fractions.tolist(), region, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values[IMPACT_AZIMUTH]
     if impact.orientation != "random":
         quaternion = given_attitude(study, *generator.random(2).tolist())

@@ -13,12 +13,11 @@ from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
 from lithobrake.pipeline.flights import flight_numbers, read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results import dispersion
 from lithobrake.results.journey_results import DeliveryResults
-from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.results.run_results import CountedShare, Level
 from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.results.study_files import results_in
 from lithobrake.statements.touchdowns import followed
@@ -27,11 +26,9 @@ from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import QUANTILES
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.outcomes import JourneyStatus
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 
-# In the order of the summary.
-FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
 NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 POSITION = tuple(f"position_{axis}" for axis in "xyz")
@@ -88,26 +85,6 @@ def _of_kernels(study: Study) -> KernelNumbers | None:
     own = (spin.period, spin.pole_right_ascension_deg, spin.pole_declination_deg, spin.prime_meridian_deg)
     partner = () if place is None else (place.longitude_deg, place.latitude_deg, place.distance, place.period)
     return KernelNumbers(*own, *partner)
-
-
-def shares(samples: Samples, flights: Rows, *, holds: bool) -> SampleShares:
-    """What became of the samples, as shares of all that were looked at, without intervals.
-
-    When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
-    of all. `returns` = down again in time, or captured where the site `holds` what lies there; `missing` = left
-    sideways, in contact at the time limit, or outside, after which nobody knows where the lander is.
-    """
-    total = len(samples.outcome)
-    if len(flights) < int(samples.leaves.sum()):
-        total = int(flights[-1]["sample"]) + 1
-    met = np.bincount(samples.outcome[:total], minlength=len(SAMPLE_OUTCOMES)).tolist()
-    counts = {str(name): count for name, count in zip(SAMPLE_OUTCOMES, met, strict=True)}
-    del counts[SampleOutcome.CLEAR]
-    statuses = [row["status"] for row in flights]
-    counts |= {str(status): statuses.count(status) for status in FLIGHTS}
-    counts["returns"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
-    counts["missing"] = sum(counts[name] for name in MISSING)
-    return SampleShares(total, len(flights), {name: proportion(count, total) for name, count in counts.items()})
 
 
 def impact_numbers(rows: Rows) -> dispersion.ImpactNumbers:

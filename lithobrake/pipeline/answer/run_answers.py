@@ -16,7 +16,7 @@ from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.dispersion import RestRegion
-from lithobrake.results.run_results import MissingLandings
+from lithobrake.results.run_results import MissingLandings, OutputRange
 from lithobrake.results.site_results import SiteResults
 from lithobrake.statements import ends as statements
 from lithobrake.statements.ends import Scope
@@ -125,6 +125,20 @@ def left_in_flight(runs: DesignRuns) -> np.ndarray:
 def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
     """Which of the landings a number describes, in words; known: those that have one [run_count]."""
     return statements.described([outcome for outcome, one in zip(outcomes, known, strict=True) if one], len(outcomes))
+
+
+def output_ranges(runs: DesignRuns) -> dict[str, OutputRange]:
+    """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
+    table = {}
+    for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
+        known = np.isfinite(runs.output(name))
+        values = runs.output(name)[~np.isnan(runs.output(name))]
+        if len(values):
+            table[name] = OutputRange(
+                float(np.median(values)), float(values.min()), float(values.max()), TOUCHDOWN[name].units,
+                described(known, runs.outcomes),
+            )  # fmt: skip
+    return table
 
 
 def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:

@@ -155,7 +155,7 @@ def landed(
 def _values(design: DrawnDesign, number: int) -> dict[str, float]:
     study = design.study
     if not study.design.run_count:
-        return draw(study, design.medians, study.seed)
+        return draw(study, design.medians, study.seed, design.region)
     last = study.design.most_runs - 1
     if not 0 <= number <= last:
         raise ValueError(f"the number of a run is {number}; allowed: 0 to {last}, the runs of the study")

@@ -118,7 +118,8 @@ class ServedStudy:
         """
         seed, given = _seed(config), _inputs(config)
         # All draws are made first and then replaced, so that a number that is given changes none of the others.
-        values = draw(self.study, self.design.medians | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
+        medians, drawn = self.design.medians, dict(zip(self.inputs, point, strict=True))
+        values = draw(self.study, medians | drawn, seed, self.design.region) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
         answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)

@@ -78,6 +78,11 @@ def replicate_count(study: Study, design: str) -> int:
     return 1 if design.startswith("test") else section_of(study).replicate_count
 
 
+def runs_of_designs(job: Job) -> dict[str, DesignRuns]:
+    """The runs of all designs, by their names."""
+    return {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
+
+
 def fit_screening(job: Job) -> None:
     runs = DesignRuns.load(job.folder, "screening")
     _fit(job, "screening", runs, list(job.design.inputs)).save(job.folder / SCREENING_FILE)
@@ -131,9 +136,9 @@ def score_all(job: Job) -> None:
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / SCREENING_FILE), load(job.folder / REFINED_FILE)
-    runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
+    runs = runs_of_designs(job)
     job.progress(0, 1, "scores with their intervals")
-    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in PAPER_DESIGNS}
+    scores = {design: _score(screening if design == "screening" else refined, one) for design, one in runs.items()}
     scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json(SCORES_FILE, scores)
 

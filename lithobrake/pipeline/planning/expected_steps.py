@@ -105,7 +105,8 @@ def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[st
         return drawn.rows[:most]
     points_of_runs = _planned_points(drawn, kept_count, most).tolist()
     return [
-        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed) for row in points_of_runs
+        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed, drawn.region)
+        for row in points_of_runs
     ]
 
 

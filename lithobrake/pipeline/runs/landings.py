@@ -77,7 +77,7 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
 
 def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
     study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
-    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate))
+    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate), design.region)
     return {name: float(value) for name, value in drawn.items()}
 
 
@@ -167,9 +167,10 @@ def landing_dependencies(study: Study) -> dict[str, Any]:
 
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
-    """All inputs of the landing to look at: that of the first lander, or at the medians of all inputs."""
+    """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if not design.study.design.run_count:
-        return touchdown_model.draw(design.study, design.medians, design.study.seed)
+        # Without a lander that is drawn the landing is that of the medians.
+        return touchdown_model.draw(design.study, design.medians, design.study.seed, design.region)
     return design.shown_row
 
 
