@@ -14,7 +14,7 @@ from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN
+from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
@@ -132,12 +132,14 @@ class InferredStudy:
 
         folder = StudyFolder.only_read(path)
         if not (folder / EMULATOR_FILE).is_file():
-            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a drawn study there first (design.method = drawn)")
+            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
+        if why := why_no_emulator(folder.read_json(EMULATOR_FILE)):
+            raise ValueError(f"{path} has no emulator of the first touchdown: {why} Raise design.run_count.")
         model = load(intact_file(path, EMULATOR_FILE, REMEDY))
         _refuse_unbounded(folder / EMULATOR_FILE, model)
         return cls(study, folder, model)

@@ -323,17 +323,18 @@ def landing(study: Study, values: Values) -> "Landing":
         spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
         gravity=acceleration(values, values["surface.gravity"]),
         # What is left of a journey.
-        time_limit=values.get(TIME_LEFT, study.landing.time_limit),
+        time_limit=min(values.get(TIME_LEFT, study.journey.duration), study.landing.time_limit or math.inf),
         hop_height=hop_height(study, values),
         contact=contact(study),
     )
 
 
 def hop_height(study: Study, values: Values) -> float | None:
-    """Height [m] of the lowest hop that leaves the bed in a journey; None for a study that follows none."""
-    if study.journey is None:
-        return None
-    return study.journey.hop_height or HOP_PER_LANDER * 2.0 * lander(study, values).reach
+    """Height [m] of the lowest hop that leaves the bed; None where every departure from the ground does."""
+    given = study.journey.hop_height
+    if given is None:
+        return HOP_PER_LANDER * 2.0 * lander(study, values).reach
+    return given or None
 
 
 def acceleration(values: Values, size: float) -> tuple[float, float, float]:

@@ -40,9 +40,14 @@ SHARES = (0.5, 0.95)
 MOST_PLACES = 5000
 
 
+def asks_rest(study: Study) -> bool:
+    """Whether the answer of a study is the fraction at rest, rather than what its first touchdowns tell."""
+    return study.journey.touchdowns != 1 and study.design.half_width_of is None
+
+
 def answer_words(study: Study) -> str:
     """What the answers of a study's runs are a share of, in words."""
-    if study.journey is not None:
+    if asks_rest(study):
         return "the fraction at rest"
     asked = study.design.half_width_of
     return "the return fraction" if asked is None else f"the probability of {asked}"
@@ -85,8 +90,8 @@ def scope(study: Study) -> Scope:
         random_attitude=study.impact.orientation == "random",
         has_scatter=study.monte_carlo.scatter,
         flight_time=study.flight.duration,
-        rest_time=study.rest.duration,
-        journey_time=None if study.journey is None else study.journey.duration,
+        journey_time=study.journey.duration,
+        is_first=study.journey.touchdowns == 1,
     )
 
 

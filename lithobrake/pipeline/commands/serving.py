@@ -16,7 +16,8 @@ from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator, why_no_emulator
+from lithobrake.pipeline.first_bounces.emulator import why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
@@ -66,15 +67,16 @@ class ServedStudy:
         beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
         if self.inputs and all(bed.is_file() for bed in beds):
             found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
-        if (self.folder / EMULATOR_FILE).is_file():
-            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
-        if self._has_touchdown_emulator():
+        # Of all touchdowns where there is one: it knows the first ones as well.
+        if self._has(TOUCHDOWN_EMULATOR_FILE):
             found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
+        elif self._has(EMULATOR_FILE):
+            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
         return found
 
-    def _has_touchdown_emulator(self) -> bool:
-        path = self.folder / TOUCHDOWN_EMULATOR_FILE
-        return path.is_file() and why_no_emulator(self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None
+    def _has(self, emulator: str) -> bool:
+        """Whether there is a file of an emulator, and an emulator in it."""
+        return (self.folder / emulator).is_file() and why_no_emulator(self.folder.read_json(emulator)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:

@@ -193,12 +193,16 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
 
 
 def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
-    """The first touchdowns of journeys, numbered from `first` on, each on the soil and under the acceleration there."""
+    """The first touchdowns of landers, numbered from `first` on, each on the soil there, and under the acceleration there
+    unless the study gives all of them one.
+    """
     study = site.study
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
     met = first_axes(study, axes, rows)
     arriving = Soils(site).on_soil(on_rough_ground(study, rows, axes, met), origin)
+    if not study.has_local_ground:
+        return arriving
     return on_ground(site.body, arriving, origin, met, site.clock(columns), columns["mass"], columns["spin_period"])
 
 

@@ -62,8 +62,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
         "time_limit": study.landing.time_limit,
-        # A key that came later is left out where it has no effect, so that folders of earlier versions stay current.
-        **({} if study.journey is None else {"hop_height": study.journey.hop_height}),
+        "hop_height": study.journey.hop_height,
         "version": touchdown_version(),
     }
 

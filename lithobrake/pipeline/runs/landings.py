@@ -115,12 +115,6 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, campaign.Record]:
     }
 
 
-def make_drawn_runs(job: Job) -> None:
-    # Before the landings, since it may be a reason not to make them.
-    say_gravity(job)
-    make_rows(job, "drawn", [job.design.rows])
-
-
 def make_side_runs(job: Job) -> None:
     for design in SIDE_DESIGNS if job.study.design.side_runs else ():
         make_rows(job, design, [job.design.rows_of(design)])
