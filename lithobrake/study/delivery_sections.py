@@ -151,9 +151,7 @@ class JourneySection(quantity.Section):
         default=None, examples=["1"]
     )
     """Most touchdowns of a lander; 1: the first touchdown alone. Absent: landers are followed to rest."""
-    count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = Field(
-        default=None, examples=["96"]
-    )
+    count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = None
     """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
     duration: Annotated[float, quantity.Number("s", above=0)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
