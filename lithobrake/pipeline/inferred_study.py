@@ -15,7 +15,7 @@ from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
-from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
@@ -161,8 +161,8 @@ class InferredStudy:
         speed, spin = (self.model.output_names.index(name) for name in (SPEED, SPIN))
         if np.isfinite(upper[0, speed]):
             design = DrawnDesign(self.study)
-            height = height_of_beds(self.study, self.folder)
-            bound = energy_bound(design, height, dict(zip(design.inputs, x.T, strict=True)), len(x))
+            height, across = height_of_beds(self.study, self.folder), across_of(self.study, self.folder)
+            bound = energy_bound(design, height, dict(zip(design.inputs, x.T, strict=True)), len(x), across)
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
 

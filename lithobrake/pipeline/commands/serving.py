@@ -18,7 +18,7 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
 from lithobrake.pipeline.first_bounces.emulator import why_no_emulator
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
-from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.samples import VELOCITY
@@ -153,7 +153,8 @@ class ServedStudy:
                 )
         _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
         x = np.array([point])
-        bound = energy_bound(self.design, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
+        across = across_of(self.study, self.folder)
+        bound = energy_bound(self.design, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1, across)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})

@@ -14,7 +14,13 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.energy_bound import EnergyBound, bound_numbers, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.energy_bound import (
+    EnergyBound,
+    across_of,
+    bound_numbers,
+    energy_bound,
+    height_of_beds,
+)
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
@@ -51,8 +57,9 @@ def fit_emulator(job: Job) -> None:
             raise ValueError(f"{why}; raise design.run_count, or set monte_carlo.sample_count to 0")
         job.folder.write_json(EMULATOR_FILE, {"why": f"{why}."})
         return
-    values = {name: runs.inputs[name] for name in job.design.inputs}
-    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
+    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
+    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
+    bound = energy_bound(job.design, height, values, runs.run_count, across)
     outputs = outputs_of_runs(runs, RIDERS)
     fitted(job, job.design.inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
 
@@ -185,7 +192,8 @@ class DrawnLandings:
 
 
 def write_explorer(job: Job) -> None:
-    bound = bound_numbers(job.design, height_of_beds(job.study, job.folder))
+    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
+    bound = bound_numbers(job.design, height, across)
     save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(refits(job), bound))
 
 
@@ -241,7 +249,8 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
     purpose: of the random numbers.
     """
     study, inputs = job.study, job.design.inputs
-    bound = energy_bound(job.design, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
+    height, across = height_of_beds(study, job.folder), across_of(study, job.folder)
+    bound = energy_bound(job.design, height, dict(zip(inputs, x.T, strict=True)), len(x), across)
     models = refits(job)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
