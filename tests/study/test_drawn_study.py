@@ -73,7 +73,7 @@ REFUSED_KEYS: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     ({"design": {"run_count": 0, "half_width": 0.02}, "expansion": {}, "bed": {"bed_count": 12}},
      ["design.half_width asks landers drawn from the laws of the inputs, and design.run_count is 0"]),
     ({"design": {"run_count": 0, "side_runs": True}, "expansion": {}},
-     ["design.side_runs asks landers drawn from the laws of the inputs, and design.run_count is 0; raise it, or leave"]),
+     ["design.side_runs asks landers drawn from the laws of the inputs, and design.run_count is 0; raise it"]),
     ({"design": {"run_count": "many"}}, ["design.run_count is", "whole number"]),
     ({"design": {"side_runs": "yes"}}, ["design.side_runs is", "true or false"]),
     ({"design": {"side_runs": True, "twin_shift": 0.0}}, ["design.twin_shift is 0", "above 0 [m]"]),
