@@ -11,13 +11,13 @@ import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
+from lithobrake.pipeline.answer.expansion_results import limited_shares, return_fraction
 from lithobrake.pipeline.answer.run_answers import scope
 from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.expansion.expansions import kept_inputs, points
-from lithobrake.pipeline.answer.expansion_results import limited_shares, return_fraction
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES

@@ -16,8 +16,8 @@ FEW_SAMPLES = {
     "flight_count = 50": "flight_count = 5",
     "count = 200 ": "count = 5 ",
 }
-# What the example says of its design, for `drawn` to stand in the place of.
-PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
+# What the example says of its expansions and of what all their runs have alike; drawn landers have neither.
+OF_EXPANSION = """[expansion]
 screening_level = 2
 screening_degree = 2
 refined_level = 3
@@ -25,6 +25,10 @@ refined_degree = 3
 kept_outputs = ["speed_out"]
 test_count = 10
 """
+ALIKE = (
+    'sides = "walls"\nbed_count = 1\n',
+    "azimuth_deg = 0.0\nplace = { x = 0.0, y = 0.0 }\norientation = [1.0, 0.0, 0.0, 0.0]\n",
+)
 
 
 def write_ball(path: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
@@ -43,6 +47,7 @@ def edit(path: Path, changes: dict[str, str]) -> Path:
     return path
 
 
-def drawn(run_count: int, more: str = "") -> str:
-    """The design of a study that draws so many runs, and more lines of that table."""
-    return f'method = "drawn"\nrun_count = {run_count}\n{more}'
+def drawn(run_count: int, more: str = "") -> dict[str, str]:
+    """Changes of the example to so many drawn landers and no expansions, with more lines of [design]."""
+    design = {OF_EXPANSION: "", "run_count = 0\n": f"run_count = {run_count}\n{more}\n"}
+    return design | dict.fromkeys(ALIKE, "")

@@ -61,11 +61,10 @@ def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
     tables["grain"]["poisson_ratio"] = 0.25
     tables["lander"] = {"shape": "sphere", "diameter": 0.1, "mass": 1.0}
     tables["impact"] = {"speed": SPEED_LIMIT, "incidence_deg": 20.0, "region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}
-    tables["design"] = {"method": "drawn", "run_count": 144}
+    tables["design"] = {"run_count": 144}
     tables["monte_carlo"] = {"sample_count": 4000}
     tables["site"] = {"heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}}
     tables["flight"] = {"flight_count": 1000}
-    tables["rest"] = {"count": 0}
     changed = tables | {name: tables.get(name, {}) | keys for name, keys in changes.items()}
     # A key that is None is left out.
     return {

@@ -15,7 +15,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
 from ..command_line import lithobrake
 from ..few_grains import few_grains
-from .ball_studies import FEW_RUNS, FEW_SAMPLES, PAPERS, drawn, edit, write_ball
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, drawn, edit, write_ball
 
 
 def said_by(*words: object) -> str:
@@ -26,7 +26,7 @@ def said_by(*words: object) -> str:
 
 
 def ball(folder: Path, run_count: int, more: str = "") -> Path:
-    return write_ball(folder / "study.toml", {PAPERS: drawn(run_count, more), **FEW_SAMPLES})
+    return write_ball(folder / "study.toml", drawn(run_count, more) | FEW_SAMPLES)
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,9 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("soil")
     text = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
-    (folder / "study.toml").write_text(f"{text}[design]\n{drawn(4, 'side_runs = true')}\n[landing]\ntime_limit = 5.0\n")
+    (folder / "study.toml").write_text(
+        f"{text}[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n"
+    )
     run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
     return folder
 

@@ -12,16 +12,15 @@ from lithobrake.pipeline.runs.beds import compile_kernels, fly_briefly
 from lithobrake.results import open_study
 from lithobrake.study import read_study
 
-from ..few_grains import few_grains
+from ..few_grains import AT_ONE_PLACE, few_grains
 from .killed_studies import VICTIMS, end, kill, ledger, start, wait_for_stage
 
 STUDY = f"""seed = 2
 campaign = {{ retry_count = 20 }}
 monte_carlo = {{ sample_count = 500 }}
 flight = {{ flight_count = 10, duration = 20000.0 }}
-rest = {{ count = 10 }}
-{few_grains(12, width=0.3, lander_diameter=0.1)}[design]
-method = "paper"
+hard_ground = {{ count = 10 }}
+{few_grains(12, width=0.3, lander_diameter=0.1, sides="walls")}{AT_ONE_PLACE}[expansion]
 screening_level = 2
 screening_degree = 1
 refined_level = 2
@@ -31,7 +30,7 @@ test_count = 6
 """
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
-MOMENTS = ("bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "rest", "summary",
+MOMENTS = ("bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "hard_ground", "summary",
     "report")  # fmt: skip
 AT_ONCE = {"screen", "refine", "test"}
 MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
