@@ -62,7 +62,7 @@ class OneStudy:
 
     @classmethod
     def open(cls, path: Path) -> "OneStudy":
-        """Read a folder. Raises ValueError for one that is no study that draws landers, or did not run to its summary."""
+        """Read a folder. Raises ValueError for a study that draws no lander, or did not run to its summary."""
         results = open_study(path)
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         if not source.study.design.run_count:
