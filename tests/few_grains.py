@@ -1,29 +1,24 @@
 """Studies of real soil within seconds: a sphere on a bed of a few grains."""
 
-# Behind the table of the impact: what all runs of expansions have alike where no lander is drawn.
-AT_ONE_PLACE = """azimuth_deg = 0.0
-place = { x = 0.0, y = 0.0 }
-orientation = [1.0, 0.0, 0.0, 0.0]
-[design]
-run_count = 0
-"""
 UNCERTAIN = '{ distribution = "uniform", lower = 0.5, upper = 0.9 }'
 
 
-def few_grains(
-    count: int, width: float, lander_diameter: float, friction: str = UNCERTAIN, *, sides: str = "periodic"
-) -> str:
-    """A study of first touchdowns: bed, grains, lander and impact as text of its file, lengths in m.
+# At one place and in one attitude, written behind the impact; and expansions of it, without drawn landers.
+ONE_IMPACT = "azimuth_deg = 0.0\nplace = { x = 0.0, y = 0.0 }\norientation = [1.0, 0.0, 0.0, 0.0]\n"
+EXPANSION = "[journey]\ntouchdowns = 1\n[design]\nrun_count = 0\n[expansion]\n"
 
-    What is written behind it goes on in the table of the impact, and keys of no table stand before it.
+
+def few_grains(
+    count: int, width: float, lander_diameter: float, friction: str = UNCERTAIN, sides: str = "periodic"
+) -> str:
+    """Bed, grains, lander and impact as text of a study file, lengths in m; what is written behind it goes on in
+    the table of the impact, and keys of no table stand before it.
     """
     return f"""
-[journey]
-touchdowns = 1
 [bed]
-sides = "{sides}"
 grain_count = {count}
 width = [{width}, {width}]
+sides = "{sides}"
 diameter = {{ distribution = "constant", value = 0.08 }}
 cloud_point_count = 10
 pour_gravity = 0.1
@@ -42,7 +37,6 @@ restitution = 0.95
 gravity = 1e-4
 [contact]
 pair_rule = "mean"
-held_speed = 0.0
 steps_per_contact = 20.0
 [impact]
 speed = 0.4

@@ -30,8 +30,7 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
     """
     keys = stage_keys(study)
     return {
-        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)}
-        for stage in STAGES
+        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)} for stage in STAGES
     }
 
 

@@ -30,7 +30,7 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
     is not there or not whole, or was made otherwise than the study says.
     """
-    if run_answers.asks_rest(study):
+    if run_answers.answers_rest(study):
         return _at_rest(study, folder)
     key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:

@@ -34,7 +34,6 @@ from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
 
 
-
 def limit_state_results(job: Job, shares: Mapping[str, CountedShare]) -> dict[str, LimitStateResult]:
     """The results of every limit state of a study, by its name.
 

@@ -41,13 +41,18 @@ MOST_PLACES = 5000
 
 
 def asks_rest(study: Study) -> bool:
-    """Whether the answer of a study is the fraction at rest, rather than what its first touchdowns tell."""
-    return study.journey.touchdowns != 1 and study.design.half_width_of is None
+    """Whether a study asks how many landers come to rest, rather than what their first touchdowns tell."""
+    return study.journey.touchdowns != 1 and study.design.run_count > 0
+
+
+def answers_rest(study: Study) -> bool:
+    """Whether the half width of a study is that of the fraction at rest."""
+    return asks_rest(study) and study.design.half_width_of is None
 
 
 def answer_words(study: Study) -> str:
     """What the answers of a study's runs are a share of, in words."""
-    if asks_rest(study):
+    if answers_rest(study):
         return "the fraction at rest"
     asked = study.design.half_width_of
     return "the return fraction" if asked is None else f"the probability of {asked}"
@@ -91,7 +96,7 @@ def scope(study: Study) -> Scope:
         has_scatter=study.monte_carlo.scatter,
         flight_time=study.flight.duration,
         journey_time=study.journey.duration,
-        is_first=study.journey.touchdowns == 1,
+        to_rest=asks_rest(study),
     )
 
 

@@ -62,7 +62,7 @@ class OneStudy:
 
     @classmethod
     def open(cls, path: Path) -> "OneStudy":
-        """Read a folder. Raises ValueError for one that is no study that draws landers, or did not run to its summary."""
+        """Read a folder. Raises ValueError for a study that draws no lander, or did not run to its summary."""
         results = open_study(path)
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         if not source.study.design.run_count:
@@ -136,10 +136,8 @@ def _paired_count(one: OneStudy, two: OneStudy) -> int:
     """How many pairs there are. Raises ValueError where the runs of one number differ in what they must share."""
     limits = [each.study.journey.touchdowns for each in (one, two)]
     if limits[0] != limits[1]:
-        said = " and ".join(
-            f"{each.path} follows landers {'to rest' if limit is None else f'for {counted(limit, 'touchdown')}'}"
-            for each, limit in zip((one, two), limits, strict=True)
-        )
+        ways = ["to rest" if limit is None else f"for {counted(limit, 'touchdown')}" for limit in limits]
+        said = " and ".join(f"{each.path} follows landers {way}" for each, way in zip((one, two), ways, strict=True))
         raise ValueError(f"{said}; compare studies with the same journey.touchdowns")
     count = min(one.run_count, two.run_count)
     for name, words in COMMON.items():

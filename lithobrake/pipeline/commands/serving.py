@@ -15,8 +15,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
-from lithobrake.pipeline.first_bounces.emulator import why_no_emulator
+from lithobrake.pipeline.first_bounces.emulator import DrawnLandings, why_no_emulator
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of

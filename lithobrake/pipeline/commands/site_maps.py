@@ -48,8 +48,8 @@ def map_sites(
 
     cell_count: sites, cells of equal area; lander_count: landers of each, a multiple of the refits of the emulator, at
     least two of each; all else: as for `run_study`, which makes the journeys and their emulator first. Raises
-    ValueError for a study without an emulator of its touchdowns, one whose landers are delivered as states, and for what
-    `run_study` refuses.
+    ValueError for a study without an emulator of its touchdowns, one whose landers are delivered as states, and for
+    what `run_study` refuses.
     """
     shown = shown or Silent()
     cells = EqualAreaCells.of(cell_count)

@@ -193,8 +193,9 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
 
 
 def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
-    """The first touchdowns of landers, numbered from `first` on, each on the soil there, and under the acceleration there
-    unless the study gives all of them one.
+    """The first touchdowns of landers, numbered from `first` on, each on the soil of where it is.
+
+    Under the acceleration there, too, unless the study gives all of them one.
     """
     study = site.study
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}

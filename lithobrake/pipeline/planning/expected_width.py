@@ -21,7 +21,7 @@ from lithobrake.analysis.half_width import (
     half_width_range,
 )
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.run_answers import answer_words, answers_of, asks_rest
+from lithobrake.pipeline.answer.run_answers import answer_words, answers_of, answers_rest
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import journey_time, machine_pace, pour_time, run_time
@@ -113,7 +113,7 @@ def expected_width(
     found = foreseen(law, missing=missing)
     if found is None:
         return None
-    told = () if own else TOLD_AT_REST if asks_rest(study) else TOLD_OF_RETURNS
+    told = () if own else TOLD_AT_REST if answers_rest(study) else TOLD_OF_RETURNS
     widths = {percent(share): foreseen(AllOrNothing(share, share)) for share in told}
     lost = f"; {percent(missing, 1)} of all landings have no outcome" if missing else ""
     return ExpectedHalfWidth(
@@ -132,7 +132,7 @@ def expected_width(
 
 
 def expected_correlation(study: Study) -> float:
-    return JOURNEY_CORRELATION if asks_rest(study) else CORRELATION
+    return JOURNEY_CORRELATION if answers_rest(study) else CORRELATION
 
 
 def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
@@ -141,7 +141,7 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
     reach: fraction of the landers that reach the ground.
     """
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
-    if asks_rest(study):
+    if answers_rest(study):
         who = "the landers" if reach == 1.0 else "those that reach the ground"
         return AllOrNothing(reach, LEAST_AT_REST * reach), (f"{assumed_at_rest(LEAST_AT_REST, who)}; {beds}")
     if study.design.half_width_of is not None:
@@ -166,7 +166,7 @@ def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
 
 def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> float:
     """Fraction of the runs to come that will have no outcome: that of those that have ended, else as foreseen."""
-    if asks_rest(study):
+    if answers_rest(study):
         return 0.0
     if len(values) >= FEWEST_ANSWERS:
         return float(np.mean(~np.isfinite(values)))

@@ -16,7 +16,7 @@ from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES
-from lithobrake.vocabulary.number_words import percent, span
+from lithobrake.vocabulary.number_words import percent
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing

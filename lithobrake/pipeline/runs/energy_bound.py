@@ -94,9 +94,10 @@ def across_of(study: Study, folder: StudyFolder) -> float | None:
 def bound_numbers(design: DrawnDesign, bed_height: float, across: float | None = None) -> dict[str, float]:
     """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
 
-    across: as of `energy_bound`. height: of the bed [m]; across: that or the box [m], and time_limit: in which a lander
-    comes downhill where there is neither [s], each 0 without the other; smallest, largest: squared radii of gyration [m2] at the medians, which go with these
-    powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
+    across: as of `energy_bound`. The result has height: of the bed [m]; across: that or the box [m], and time_limit: in
+    which a lander comes downhill where there is neither [s], each 0 without the other; smallest, largest: squared radii
+    of gyration [m2] at the medians, which go with these powers of mass and diameter; and the medians of whatever the
+    bound depends on, by dotted key.
     """
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
