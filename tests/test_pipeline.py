@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
-from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
+from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
 from lithobrake.pipeline.answer.run_answers import scope
 from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.paper.expansions import kept_inputs, points
-from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points
+from lithobrake.pipeline.answer.expansion_results import limited_shares, return_fraction
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES
@@ -39,20 +39,20 @@ REMADE = [
     ({"bed": {"grain_count": 151}}, "bed"), ({"surface": {"gravity": 4e-5}}, "bed"),
     ({"impact": {"speed": 0.25}}, "landing"), ({"contact": {"pair_rule": "mean"}}, "bed"),
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
-    ({"design": {"screening_level": 3}}, "screening_runs"), ({"design": {"fit": "best"}}, "screen"),
-    ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
-    ({"design": {"kept_share": 0.8}}, "refined_runs"), ({"design": {"test_count": 11}}, "test_runs"),
+    ({"expansion": {"screening_level": 3}}, "screening_runs"), ({"expansion": {"fit": "best"}}, "screen"),
+    ({"expansion": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
+    ({"expansion": {"kept_share": 0.8}}, "refined_runs"), ({"expansion": {"test_count": 11}}, "test_runs"),
     ({"monte_carlo": {"sample_count": 200}}, "sample"), ({"monte_carlo": {"scatter": True}}, "sample"),
     ({"site": {"heading_deg": 10.0}}, "fly"), ({"flight": {"flight_count": 7}}, "fly"),
     ({"site": {"partner": False}}, "fly"), ({"lander": {"mass": 3.0}}, "landing"),
-    ({"site": {"east_error": 10.0}}, "fly"), ({"rest": {"friction": 0.5}}, "rest"),
+    ({"site": {"east_error": 10.0}}, "fly"), ({"hard_ground": {"friction": 0.5}}, "hard_ground"),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])
 def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict[str, Any], first: str) -> None:
     before, after = stage_keys(changed()), stage_keys(changed(**change))
-    names = [stage.name for stage in stages_of(changed())]
+    names = [stage.name for stage in STAGES]
     different = [name for name in names if before[name] != after[name]]
     assert different[0] == first
     assert set(names[names.index("summary") :]) <= set(different)
@@ -139,7 +139,7 @@ def test_kept_is_the_smallest_set_that_explains_enough_of_every_deciding_output(
     surrogate = fit(inputs, x, y, degree=2, output_names=OUTPUTS)
 
     def kept(share: float, outputs: list[str]) -> tuple[str, ...]:
-        return kept_inputs(changed(design={"kept_share": share, "kept_outputs": outputs}), surrogate)
+        return kept_inputs(changed(expansion={"kept_share": share, "kept_outputs": outputs}), surrogate)
 
     assert kept(0.9, ["speed_out"]) == ("a",)
     assert kept(0.9, ["speed_out", "elevation_out"]) == ("a", "b")

@@ -49,7 +49,7 @@ def size_problems(study: Study, radius: float) -> Iterator[str]:
 
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
-    if (study.contact.held_speed or 0.0) > 0.0 and study.contact.stepping != "local":
+    if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
         yield (
             f'contact.held_speed is {study.contact.held_speed:g} with contact.stepping = "{study.contact.stepping}"; '
             'allowed above 0: "local" only; change either'

@@ -19,11 +19,11 @@ from lithobrake.pipeline.answer.study_summary import write_drawn_summary
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.paper.paper_summary import write_summary
+from lithobrake.pipeline.answer.expansion_results import write_summary
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
-from ..pipeline.paper.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
+from ..pipeline.expansion.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
 from ..synthetic_landings import Truth
 

@@ -1,5 +1,6 @@
 """What the drawn runs say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -53,6 +54,20 @@ SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> run_results.ReturnFraction:
     """The return fraction with its interval, which covers whatever became of the landings without an outcome."""
     return run_results.ReturnFraction.of(_share(study, runs, flights.returns))
+
+
+def no_return_fraction(study: Study) -> run_results.ReturnFraction:
+    """That of a study that draws no lander."""
+    why = run_answers.why_no_interval(study)
+    return run_results.ReturnFraction(
+        share=Estimate(math.nan, None, None, why_missing=why),
+        from_="no landings",
+        next_bed=None,
+        if_missing=(0.0, 1.0),
+        missing=0.0,
+        emulator=None,
+        why=why,
+    )
 
 
 def run_shares(

@@ -56,7 +56,7 @@ def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
 class DrawnDesign:
     """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
 
-    A study of the paper method takes site, inputs, medians and region alone from it.
+    A study that draws no lander takes site, inputs, medians and region alone from it.
     known_site: of the same study with another number of runs.
     """
 
@@ -121,9 +121,9 @@ class DrawnDesign:
 
     @cached_property
     def rows(self) -> list[dict[str, float]]:
-        """All inputs of the runs, by dotted key in the file's units, with what each drew.
+        """All inputs of the first touchdowns, by dotted key in the file's units, with what each drew.
 
-        Of journeys that are flown to the ground these are the first touchdowns of those that reach it.
+        Of landers that are flown to the ground, of those that reach it.
         """
         points = self._points(len(self.beds))
         return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
@@ -214,20 +214,15 @@ class DrawnDesign:
     def _first_touchdowns(
         self, rows: list[dict[str, float]], first: int, descents: Descents | None
     ) -> list[dict[str, float]]:
-        """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
+        """Rows of landers, numbered from `first` on, as first touchdowns on the ground that they meet."""
         delivered = self._delivered(rows, first)
-        if self.study.journey is None:
-            return delivered
         if descents is not None:
             return descents.first_touchdowns(delivered)
         return on_local_ground(self.site, delivered, first)
 
     def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
-        """Rows of runs as journeys have them before it is known which ground they meet."""
-        journey = self.study.journey
-        if journey is None:
-            return rows
-        begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
+        """Rows of landers before it is known which ground they meet."""
+        begin = {"touchdown": 0.0, TIME_LEFT: self.study.journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
         return arriving_together(self.site, numbered, first)
 

@@ -308,7 +308,7 @@ def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
 
 
-QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
+QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {}, "journey": {"touchdowns": 1}}
 SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
 ARRIVAL = ("bed", *PLACE, "impact.azimuth_deg", *ORIENTATION)
 REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
@@ -405,12 +405,12 @@ def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
 
 def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
     arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
-    study = check_tables(QUICK | {"design": {"method": "paper"}, "impact": {**QUICK["impact"], **arrival}}, Path())
+    study = check_tables(QUICK | {"impact": {**QUICK["impact"], **arrival}}, Path())
     draws = [draw(study, medians(study), seed) for seed in range(50)]
     assert 8.0 < np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0])).max() <= 10.0
     # The error is drawn after all else, which is as it was without it.
     given = {**QUICK["impact"], "orientation": [1, 0, 0, 0]}
-    without = check_tables(QUICK | {"design": {"method": "paper"}, "impact": given}, Path())
+    without = check_tables(QUICK | {"impact": given}, Path())
     before, no_attitude = draw(without, medians(without), 3), dict.fromkeys(ORIENTATION, 0.0)
     assert before | no_attitude == draws[3] | no_attitude
 
@@ -460,7 +460,7 @@ def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
 
 
 def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
-    study = drawn(50, design={"method": "drawn", "side_runs": True, "twin_shift": 2e-4})
+    study = drawn(50, design={"side_runs": True, "twin_shift": 2e-4})
     rows, pairs = DrawnDesign(study).rows[:12], DrawnDesign(study).rows_of("twins")
     assert len(pairs) == 12
     shift = columns(pairs, *PLACE) - columns(rows, *PLACE)

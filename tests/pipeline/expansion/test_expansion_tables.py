@@ -16,8 +16,8 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import StudyFolder, stage_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
-from lithobrake.pipeline.paper.expansions import points
+from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
+from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
