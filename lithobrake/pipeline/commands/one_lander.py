@@ -84,7 +84,8 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
 
     By dotted key, in the units of the study file; at the medians where the study draws no lander. Raises ValueError for
-    a change of what a landing does not read or the study file may not have, a study without soil, or a number that no run of it has.
+    a change of what a landing does not read or the study file may not have, a study without soil, or a number that no
+    run of it has.
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")

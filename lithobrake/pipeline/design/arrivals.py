@@ -123,7 +123,7 @@ def met_ground(
     uniforms: gives numbers between 0 and 1, [count, 2], that draw the gradient; asked where the ground is rough alone.
     """
     from lithobrake.smallbody import incidence_on, met_normals
-    from lithobrake.smallbody.hopping import impact_frame
+    from lithobrake.smallbody.bounce import impact_frame
 
     # Flat facets take no random numbers.
     if not study.site.roughness_deg:
