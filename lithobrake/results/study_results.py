@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
     from lithobrake.results.named_emulator import NamedEmulator, NamedSurrogate
     from lithobrake.results.questions import RareLimitState
-    from lithobrake.results.summary import DrawnResults, PaperResults, Summary
+    from lithobrake.results.summary import Results, Summary
     from lithobrake.results.table import ExplorerTables
     from lithobrake.touchdown import Outcome
 
@@ -63,7 +63,7 @@ class StudyResults(StudyTables):
             return Summary.of_json(self._content)
 
     @property
-    def results(self) -> "DrawnResults | PaperResults":
+    def results(self) -> "Results":
         return self.summary.results
 
     @property
@@ -215,10 +215,9 @@ class StudyResults(StudyTables):
     @cached_property
     def touchdown_explorer(self) -> "ExplorerTables | None":
         """The same of the emulator of all touchdowns of journeys; None where they have none (results.emulated.why)."""
-        from lithobrake.results.summary import DrawnResults
         from lithobrake.results.table import ExplorerTables
 
-        emulated = self.results.emulated if isinstance(self.results, DrawnResults) else None
+        emulated = self.results.emulated
         if emulated is not None and emulated.why is not None:
             return None
         return ExplorerTables.read(self._file(file_names.TOUCHDOWN_EXPLORER_FILE), self.remedy)
