@@ -14,9 +14,7 @@ TYPES = {
 }
 
 # Keys of older study files, and what to write in their place.
-TO_REST = (
-    "write touchdowns = 1 in it to simulate the first touchdown alone, or nothing to follow every lander to rest"
-)
+TO_REST = "write touchdowns = 1 in it to simulate the first touchdown alone, or nothing to follow every lander to rest"
 OF_EXPANSION = "write it in [expansion], the analysis of the first touchdown by polynomial chaos"
 REPLACED = {
     "design.method": "leave it out: journey.touchdowns = 1 simulates the first touchdown alone, and [expansion] with "

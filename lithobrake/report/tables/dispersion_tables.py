@@ -175,8 +175,8 @@ def region_table(data: PageData, *, of_impacts: bool, of_rest: bool) -> PageTabl
         for name, found in sets.items()
         for one in found
     ]
-    note = "The smallest regions that hold that share, from a density fitted to the points."
-    return PageTable("Regions", columns, rows, note if rows else "", frozenset(columns[1:]))
+    note = "From a density fitted to the points."
+    return PageTable("Smallest regions", columns, rows, note if rows else "", frozenset(columns[1:]))
 
 
 def site_table(data: PageData) -> PageTable:
