@@ -22,6 +22,7 @@ from harness import SCENARIOS, command_line, read_document
 
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import StudySource, read_study
 from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash, medians
 
@@ -34,7 +35,7 @@ class EqualLandings:
     def __init__(self, folder: Path) -> None:
         study = read_study(STUDY)
         self.model = TouchdownModel(study, (folder / "beds" / "bed_0.h5",), engine_hash())
-        self.values = draw(study, medians(study), study.seed)
+        self.values = draw(study, medians(study), study.seed, DrawnDesign(study).region)
 
     def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
         """Land."""

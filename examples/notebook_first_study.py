@@ -59,6 +59,9 @@ poisson_ratio = 0.25
 restitution = 0.5
 friction = 0.5
 
+[journey]
+touchdowns = 1
+
 [design]
 run_count = 24
 
@@ -75,9 +78,6 @@ sample_count = 1000
 flight_count = 50
 duration = 14_400.0        # s
 gravity = "exact"
-
-[rest]
-count = 0
 """
 Path("first_study.toml").write_text(study)
 

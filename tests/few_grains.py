@@ -3,7 +3,14 @@
 UNCERTAIN = '{ distribution = "uniform", lower = 0.5, upper = 0.9 }'
 
 
-def few_grains(count: int, width: float, lander_diameter: float, friction: str = UNCERTAIN) -> str:
+# At one place and in one attitude, written behind the impact; and expansions of it, without drawn landers.
+ONE_IMPACT = "azimuth_deg = 0.0\nplace = { x = 0.0, y = 0.0 }\norientation = [1.0, 0.0, 0.0, 0.0]\n"
+EXPANSION = "[journey]\ntouchdowns = 1\n[design]\nrun_count = 0\n[expansion]\n"
+
+
+def few_grains(
+    count: int, width: float, lander_diameter: float, friction: str = UNCERTAIN, sides: str = "periodic"
+) -> str:
     """Bed, grains, lander and impact as text of a study file, lengths in m; what is written behind it goes on in
     the table of the impact, and keys of no table stand before it.
     """
@@ -11,6 +18,7 @@ def few_grains(count: int, width: float, lander_diameter: float, friction: str =
 [bed]
 grain_count = {count}
 width = [{width}, {width}]
+sides = "{sides}"
 diameter = {{ distribution = "constant", value = 0.08 }}
 cloud_point_count = 10
 pour_gravity = 0.1

@@ -1,4 +1,4 @@
-"""Tables of studies: the template as one of two steps, ground that is small, and tables with other keys."""
+"""Tables of studies: the template as the paper's analysis, ground that is small, and tables with other keys."""
 
 import tomllib
 from typing import Any
@@ -16,9 +16,20 @@ SMALL_GROUND: dict[str, Any] = {
 
 
 def paper_tables() -> dict[str, Any]:
-    """The tables of the template with the method "paper" and small grids."""
-    design = {"method": "paper", "screening_level": 2, "screening_degree": 2, "refined_level": 3, "refined_degree": 3}
-    return tomllib.loads(template()) | {"design": design | {"test_count": 10}}
+    """The template on one bed, at one place and in one attitude, with expansions on small grids and no drawn lander."""
+    levels = {"screening_level": 2, "screening_degree": 2, "refined_level": 3, "refined_degree": 3, "test_count": 10}
+    return with_keys(
+        tomllib.loads(template()),
+        {
+            "bed": {"sides": "walls", "bed_count": 1},
+            "impact": {"azimuth_deg": 0.0, "place": {"x": 0.0, "y": 0.0}, "orientation": [1.0, 0.0, 0.0, 0.0]},
+            "contact": {"held_speed": 0.0},
+            "journey": {"duration": 86_400.0},
+            "design": {"run_count": 0},
+            "expansion": levels,
+            "hard_ground": {"count": 10_000},
+        },
+    )
 
 
 def with_keys(tables: dict[str, Any], changes: dict[str, dict[str, Any]]) -> dict[str, Any]:

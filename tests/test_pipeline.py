@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from lithobrake.chaos import Uniform, fit, smolyak
-from lithobrake.pipeline import StudyFolder, stage_keys, stages_of
+from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
 from lithobrake.pipeline.answer.run_answers import scope
+from lithobrake.pipeline.answer.sample_results import limited_shares, return_fraction
 from lithobrake.pipeline.answer.study_summary import study_tables
+from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.paper.expansions import kept_inputs, points
-from lithobrake.pipeline.paper.paper_summary import limited_shares, return_fraction
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES
@@ -39,20 +40,20 @@ REMADE = [
     ({"bed": {"grain_count": 151}}, "bed"), ({"surface": {"gravity": 4e-5}}, "bed"),
     ({"impact": {"speed": 0.25}}, "landing"), ({"contact": {"pair_rule": "mean"}}, "bed"),
     ({"grain": {"friction": {"distribution": "uniform", "lower": 0.35, "upper": 0.85}}}, "screening_runs"),
-    ({"design": {"screening_level": 3}}, "screening_runs"), ({"design": {"fit": "best"}}, "screen"),
-    ({"design": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
-    ({"design": {"kept_share": 0.8}}, "refined_runs"), ({"design": {"test_count": 11}}, "test_runs"),
+    ({"expansion": {"screening_level": 3}}, "screening_runs"), ({"expansion": {"fit": "best"}}, "screen"),
+    ({"expansion": {"points": "sobol_sequence", "screening_count": 40, "refined_count": 60}}, "screening_runs"),
+    ({"expansion": {"kept_share": 0.8}}, "refined_runs"), ({"expansion": {"test_count": 11}}, "test_runs"),
     ({"monte_carlo": {"sample_count": 200}}, "sample"), ({"monte_carlo": {"scatter": True}}, "sample"),
     ({"site": {"heading_deg": 10.0}}, "fly"), ({"flight": {"flight_count": 7}}, "fly"),
     ({"site": {"partner": False}}, "fly"), ({"lander": {"mass": 3.0}}, "landing"),
-    ({"site": {"east_error": 10.0}}, "fly"), ({"rest": {"friction": 0.5}}, "rest"),
+    ({"site": {"east_error": 10.0}}, "fly"), ({"hard_ground": {"friction": 0.5}}, "hard_ground"),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("change", "first"), REMADE, ids=[str(change) for change, _ in REMADE])
 def test_a_change_makes_again_what_depends_on_it_and_nothing_before(change: dict[str, Any], first: str) -> None:
     before, after = stage_keys(changed()), stage_keys(changed(**change))
-    names = [stage.name for stage in stages_of(changed())]
+    names = [stage.name for stage in STAGES]
     different = [name for name in names if before[name] != after[name]]
     assert different[0] == first
     assert set(names[names.index("summary") :]) <= set(different)
@@ -97,16 +98,18 @@ def test_json_without_nan(tmp_path: Path) -> None:
 
 def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
     study = changed()
-    one = draw(study, medians(study), 5)
-    assert one == draw(study, medians(study), 5)
+    one = draw(study, medians(study), 5, None)
+    assert one == draw(study, medians(study), 5, None)
     drawn = {name: value for name, value in one.items() if medians(study).get(name) != value}
     assert drawn == {"bed": 0.0, **dict(zip(ORIENTATION, [1.0, 0.0, 0.0, 0.0], strict=True))}
 
 
 def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
     region = {"x": [-0.1, 0.1], "y": [0.0, 0.05]}
-    study = changed(bed={"bed_count": 3}, impact={"region": region, "azimuth_deg": "random", "orientation": "random"})
-    draws = [draw(study, medians(study), seed) for seed in range(3000)]
+    study = changed(
+        bed={"bed_count": 3}, impact={"place": None, "region": region, "azimuth_deg": "random", "orientation": "random"}
+    )
+    draws = [draw(study, medians(study), seed, place_region(study)) for seed in range(3000)]
     places = np.array([[one[name] for name in PLACE] for one in draws])
     assert np.bincount([round(one["bed"]) for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
     assert places.min(axis=0) == pytest.approx([-0.1, 0.0], abs=1e-3)
@@ -120,7 +123,7 @@ def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
 def test_one_more_bed_takes_its_share_of_runs_and_leaves_the_others_as_they_are() -> None:
     random = {"azimuth_deg": "random", "orientation": "random"}
     two, three = (changed(bed={"bed_count": count}, impact=random) for count in (2, 3))
-    pairs = [(draw(two, medians(two), seed), draw(three, medians(three), seed)) for seed in range(900)]
+    pairs = [(draw(two, medians(two), seed, None), draw(three, medians(three), seed, None)) for seed in range(900)]
     moved = [after for before, after in pairs if before != after]
     assert {one["bed"] for one in moved} == {2.0}
     assert len(moved) == pytest.approx(300, abs=45)
@@ -139,7 +142,7 @@ def test_kept_is_the_smallest_set_that_explains_enough_of_every_deciding_output(
     surrogate = fit(inputs, x, y, degree=2, output_names=OUTPUTS)
 
     def kept(share: float, outputs: list[str]) -> tuple[str, ...]:
-        return kept_inputs(changed(design={"kept_share": share, "kept_outputs": outputs}), surrogate)
+        return kept_inputs(changed(expansion={"kept_share": share, "kept_outputs": outputs}), surrogate)
 
     assert kept(0.9, ["speed_out"]) == ("a",)
     assert kept(0.9, ["speed_out", "elevation_out"]) == ("a", "b")
@@ -201,8 +204,8 @@ def test_drawn_velocities_have_the_drawn_speed_and_elevation_and_impossible_draw
 def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_last_that_flew() -> None:
     outcomes = ("clear", "captured", "left_sideways", "outside", "time_limit", "clear", "captured", "clear")
     flown = [{"sample": "0", "status": "impact"}, {"sample": "5", "status": "escaped"}]
-    found = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=True)
-    assert found.sample_count == 6
+    found = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), "One bed.", holds=True)
+    assert (found.sample_count, found.level, found.why) == (6, 0.95, "One bed.")
     table = found.outcomes
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
     assert [table[name].count for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
@@ -212,14 +215,14 @@ def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_la
     assert table["left_sideways"].upper_limit == pytest.approx(1.0 - 0.05 ** (1 / 51))
     assert table["captured"].upper_limit is None
     # What is captured where the site pushes outwards is lifted off again.
-    away = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
+    away = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), "One bed.", holds=False)
     assert away.outcomes["returns"].count == 1
 
 
 def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> None:
     study = changed(site={"latitude_deg": 75.0})
     flown = [{"sample": "0", "status": "impact"}] * 3
-    table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, holds=True)
+    table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, None, holds=True)
     found = return_fraction(study, table, 40)
     assert (found.share.lower, found.share.upper, found.next_bed, found.share.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why
@@ -230,9 +233,9 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
 @pytest.mark.parametrize(("bed", "impact", "where"), [
     ({}, {}, "On this bed, at this impact point"),
     ({"bed_count": 6}, {}, "At this impact point"),
-    ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
-    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
-    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
+    ({}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
+    ({"bed_count": 6}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
+    ({"bed_count": 6}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
      "On these 6 beds, at random impact points and attitudes"),
 ])  # fmt: skip
 def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:

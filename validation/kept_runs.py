@@ -20,7 +20,7 @@ from lithobrake.campaign import Ledger
 from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.paper.expansions import points
+from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study
@@ -33,12 +33,11 @@ Numbers = dict[str, float]
 
 def rows_of(study: Study, kept: Path) -> Iterator[tuple[str, list[Numbers]]]:
     """Each kept design of a study with the inputs of its landings as today's code draws them."""
-    if study.design.method == "paper":
+    if study.expansion is not None:
         refined = json.loads((kept / "refined.json").read_text(encoding="utf-8"))
         drawn, chosen = DrawnDesign(study), [one["name"] for one in refined["inputs"]]
         for design in PAPER_DESIGNS:
             yield design, drawn_rows(drawn, points(drawn, design, chosen), 0)
-        return
     for design in DRAWN_DESIGNS:
         if (kept / "runs" / f"{design}.csv").is_file():
             yield design, DrawnDesign(study).rows_of(design)

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import lithobrake
+from lithobrake.files.reading import hashed_seed
 from lithobrake.results.study_files import json_values
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
@@ -32,7 +33,9 @@ SPEED, ELEVATION = "speed_out", "elevation_out"
 def scenario(name: str, seed: int) -> dict[str, Any]:
     """The tables of a study of the repository, with another seed, and between walls on the beds of one_place.toml."""
     tables, place = (tomllib.loads((SCENARIOS / f"{one}.toml").read_text()) for one in (name, "one_place"))
-    return tables | {"seed": seed, "bed": place["bed"] | {"sides": "walls"}}
+    one_bed = {"bed_count": 1, "seed": hashed_seed(seed, "bed", 0)}
+    ground = {key: value for key, value in place["bed"].items() if key not in one_bed}
+    return tables | {"seed": seed, "bed": ground | (one_bed if "expansion" in tables else {})}
 
 
 def with_grains(tables: dict[str, Any], diameter: float) -> dict[str, Any]:
@@ -58,18 +61,18 @@ def studies(seeds: int) -> list[tuple[str, float, dict[str, Any]]]:
 def told(results: lithobrake.StudyResults) -> dict[str, Any]:
     """What the table and the figures need of a study."""
     found = json_values(results.results)
-    samples = found["monte_carlo"]["outputs"]
+    samples, analysis = found["samples"]["outputs"], found["expansion"]
     entry = {
-        "returns": found["returns"], "variance_shares": found.get("variance_shares"), "headline": found["headline"],
+        "returns": found["returns"], "variance_shares": found["variance_shares"], "headline": found["headline"],
         "mean": {name: samples[name]["mean"] for name in (SPEED, ELEVATION)},
         "std": {name: samples[name]["std"] for name in (SPEED, ELEVATION)},
     }  # fmt: skip
-    if "refined" in found:
-        entry["sobol_first"] = found["refined"]["sobol_first"][SPEED]
-        entry["q2"] = found["scores"]["test_all"][SPEED]["q2"]
-        entry["outcomes"] = {name: design["outcomes"] for name, design in found["designs"].items()}
-    else:
+    if analysis is None:
         entry["runs"] = found["runs"]
+    else:
+        entry["sobol_first"] = analysis["refined"]["sobol_first"][SPEED]
+        entry["q2"] = analysis["scores"]["test_all"][SPEED]["q2"]
+        entry["outcomes"] = {name: design["outcomes"] for name, design in analysis["designs"].items()}
     return entry
 
 

@@ -108,7 +108,7 @@ def tables(name: str, seed: int) -> Row:
 
 def answer_of(study: Study, folder: StudyFolder) -> Row:
     """Outcome and bed of each run of a finished study, and the half width of its answer."""
-    if study.journey is not None:
+    if study.journey.touchdowns != 1:
         table = JourneyTable.load(folder)
         found, values, bed = end_share(table.rests, table.bed), table.rests.astype(float), table.bed
     else:
@@ -164,7 +164,7 @@ def before(study: Study) -> HalfWidths:
 def after(study: Study, values: np.ndarray, bed: np.ndarray, count: int) -> HalfWidths:
     """What it promises when so many runs have ended."""
     law, _ = law_of_runs(values[:count], bed[:count])
-    missing = 0.0 if study.journey is not None else float(np.mean(~np.isfinite(values[:count])))
+    missing = 0.0 if study.journey.touchdowns != 1 else float(np.mean(~np.isfinite(values[:count])))
     correlation = expected_correlation(study)
     found = half_width_range(
         law, bed[count:], values=values[:count], values_bed=bed[:count], missing=missing, correlation=correlation

@@ -52,7 +52,7 @@ def land(
         from lithobrake.pipeline import landing_inputs
 
         values = landing_inputs(checked, change or (), number)
-        found = _landed if checked.journey is None else _followed
+        found = _landed if checked.journey.touchdowns == 1 else _followed
         told, lines = found(checked, values, out, show, force, json)
     arguments.tell_result(json, told, lines)
 

@@ -26,7 +26,7 @@ from .outdated_files import stage_keys as stage_keys
 from .planning.plan import Plan as Plan
 from .planning.plan import plan_lines as plan_lines
 from .planning.planner import plan_study as plan_study
-from .stages import stages_of as stages_of
+from .stages import STAGES as STAGES
 from .study_folder import StudyFolder as StudyFolder
 from .study_run import run_study as run_study
 from .study_run import write_report_again as write_report_again

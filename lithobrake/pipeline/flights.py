@@ -61,22 +61,33 @@ class Ways:
     status: tuple[str, ...]
 
     @classmethod
-    def of_samples(cls, flown: "Flights", samples: np.ndarray) -> "Ways":
-        """The first flights of samples; samples: of all flights, [flight_count]."""
-        start, count = flown.start, min(len(samples), PATHS)
+    def of_study(cls, job: Job) -> "Ways":
+        if job.study.design.run_count:
+            ways = cls._of_journeys(job.folder)
+            if len(ways.sample):
+                return ways
+        return cls._of_samples(job)
+
+    @classmethod
+    def _of_samples(cls, job: Job) -> "Ways":
+        """The first flights of samples; none where there are no samples."""
+        samples = Samples.load(job.folder) if job.study.sample_count else None
+        start = starts(job.site, samples) if samples else Starts.none()
+        first = Starts(start.sample[:PATHS], start.velocity[:PATHS], {k: v[:PATHS] for k, v in start.site.items()})
+        flown = fly_starts(job, first, "paths of flights")
         return cls(
-            position=start.position[:count],
-            velocity=start.velocity[:count],
-            begin=start.time[:count],
-            duration=flown.time[:count],
-            mass=start.mass[:count],
-            spin_period=start.spin_period[:count],
-            sample=samples[:count],
-            status=tuple(str(word) for word in flown.status[:count]),
+            position=flown.start.position,
+            velocity=flown.start.velocity,
+            begin=flown.start.time,
+            duration=flown.time,
+            mass=flown.start.mass,
+            spin_period=flown.start.spin_period,
+            sample=first.sample,
+            status=tuple(str(word) for word in flown.status),
         )
 
     @classmethod
-    def of_journeys(cls, folder: "StudyFolder") -> "Ways":
+    def _of_journeys(cls, folder: "StudyFolder") -> "Ways":
         ends = {
             row["journey"]: row["end"]
             for row in read_rows(folder / file_names.JOURNEYS_FILE, ("journey", "end"), AGAIN)
@@ -102,7 +113,13 @@ class Ways:
         )
 
 
-def write_flight_paths(job: "Job", body: "Body", ways: Ways) -> None:
+def write_paths(job: Job) -> None:
+    """Write the shape of the body, and paths of flights: of the landers, or of the samples where these have none."""
+    write_shape(job.site.body, job.folder)
+    _write_flight_paths(job, job.site.body, Ways.of_study(job))
+
+
+def _write_flight_paths(job: "Job", body: "Body", ways: Ways) -> None:
     """Fly these again, each until the end of every part of its time, and write flight_paths.h5.
 
     position [path_count, PARTS + 1, 3] [m], body-fixed; time [path_count, PARTS + 1] [s]; sample [path_count] and, as
@@ -145,6 +162,10 @@ class Starts:
     sample: np.ndarray
     velocity: np.ndarray
     site: dict[str, np.ndarray]
+
+    @classmethod
+    def none(cls) -> "Starts":
+        return cls(np.empty(0, dtype=np.int64), np.empty((0, 3)), {key: np.empty(0) for key in SITE_KEYS})
 
 
 def flight_dependencies(study: Study) -> dict[str, Any]:
@@ -194,10 +215,17 @@ def fly_samples(job: Job) -> None:
         if words:
             job.say(words)
     job.folder.write_json(file_names.FLIGHT_CHECKS_FILE, _checks(job, start))
-    write_shape(body, job.folder)
     flown = fly_starts(job, start, "flights")
-    write_flight_paths(job, body, Ways.of_samples(flown, start.sample))
     write_table(job.folder, file_names.SAMPLE_FLIGHTS_FILE, COLUMNS, flight_rows(start, flown))
+    if study.monte_carlo.scatter:
+        _fly_without_scatter(job, samples)
+
+
+def _fly_without_scatter(job: Job, samples: Samples) -> None:
+    """Write the flights of an expansion without the scatter from run to run."""
+    start = starts(job.site, samples.expansion_alone())
+    flown = fly_starts(job, start, "flights without scatter")
+    write_table(job.folder, file_names.FLIGHTS_WITHOUT_SCATTER_FILE, COLUMNS, flight_rows(start, flown))
 
 
 def write_table(
@@ -294,17 +322,3 @@ def flight_numbers(flights: Sequence[dict[str, str]]) -> dict[str, Any]:
 def read_table(folder: StudyFolder, name: str) -> list[dict[str, str]]:
     """The rows of a CSV file of samples by column. Raises ValueError for a damaged file."""
     return read_rows(folder / name, ("sample", "status"), AGAIN)
-
-
-def fly_expansion_samples(job: Job) -> None:
-    """Fly the samples of an expansion; where these have the scatter from run to run, without it too.
-
-    flights_without_scatter.csv has the flights of the expansion alone; without scatter it is empty.
-    """
-    fly_samples(job)
-    samples = Samples.load(job.folder)
-    alone: Iterable[list[Any]] = ()
-    if samples.without_scatter is not None:
-        start = starts(job.site, samples.expansion_alone())
-        alone = flight_rows(start, fly_starts(job, start, "flights without scatter"))
-    write_table(job.folder, "flights_without_scatter.csv", COLUMNS, alone)

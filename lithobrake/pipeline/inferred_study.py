@@ -14,8 +14,8 @@ from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN
-from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
+from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
@@ -132,12 +132,14 @@ class InferredStudy:
 
         folder = StudyFolder.only_read(path)
         if not (folder / EMULATOR_FILE).is_file():
-            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a drawn study there first (design.method = drawn)")
+            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
+        if why := why_no_emulator(folder.read_json(EMULATOR_FILE)):
+            raise ValueError(f"{path} has no emulator of the first touchdown: {why} Raise design.run_count.")
         model = load(intact_file(path, EMULATOR_FILE, REMEDY))
         _refuse_unbounded(folder / EMULATOR_FILE, model)
         return cls(study, folder, model)
@@ -159,8 +161,8 @@ class InferredStudy:
         speed, spin = (self.model.output_names.index(name) for name in (SPEED, SPIN))
         if np.isfinite(upper[0, speed]):
             design = DrawnDesign(self.study)
-            height = height_of_beds(self.study, self.folder)
-            bound = energy_bound(design, height, dict(zip(design.inputs, x.T, strict=True)), len(x))
+            height, across = height_of_beds(self.study, self.folder), across_of(self.study, self.folder)
+            bound = energy_bound(design, height, dict(zip(runs.inputs, x.T, strict=True)), len(x), across)
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
 

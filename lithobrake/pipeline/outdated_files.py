@@ -8,14 +8,14 @@ from typing import Any
 
 from lithobrake.files.reading import json_hash, source_hash
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.stages import stages_of, stages_until
+from lithobrake.pipeline.stages import STAGES, stages_until
 from lithobrake.study import Study
 
 
 def stage_keys(study: Study) -> dict[str, str]:
     """The key of each stage: what it reads of the study, its code, and the keys of the stages before it."""
     keys: dict[str, str] = {}
-    for stage in stages_of(study):
+    for stage in STAGES:
         # The keys of the stages before stand for their files, so that none has to be read to know what an edit
         # outdates.
         before = [keys[name] for name in stage.after]
@@ -30,8 +30,7 @@ def setting(study: Study) -> dict[str, dict[str, Any]]:
     """
     keys = stage_keys(study)
     return {
-        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)}
-        for stage in stages_of(study)
+        stage.name: {"title": stage.title, "key": keys[stage.name], "files": stage.files(study)} for stage in STAGES
     }
 
 

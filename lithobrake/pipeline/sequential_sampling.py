@@ -17,7 +17,7 @@ from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
-from lithobrake.pipeline.stages import FOLLOW_JOURNEYS
+from lithobrake.pipeline.stages import RUNS
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import JOURNEYS_FILE
@@ -30,7 +30,7 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
     is not there or not whole, or was made otherwise than the study says.
     """
-    if study.journey is not None:
+    if run_answers.answers_rest(study):
         return _at_rest(study, folder)
     key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:
@@ -52,7 +52,7 @@ def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
     if key is None or folder.key_of(file_of("drawn")) is None:
         return {}
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
-    if stage_keys(study.with_run_count(max(len(table.end), 2)))[FOLLOW_JOURNEYS.name] != key:
+    if stage_keys(study.with_run_count(max(len(table.end), 2)))[RUNS.name] != key:
         return {}
     return dict(zip(keys, table.rests[table.numbers["touchdowns"] > 0.0].astype(float).tolist(), strict=True))
 

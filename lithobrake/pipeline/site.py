@@ -249,12 +249,9 @@ def _rotation(body: "Body", start: RotationSection, longest: float) -> "Attitude
 
 def _longest_stay(study: Study) -> float:
     """Longest time that a lander of a study flies and rests about its body from its arrival on [s]."""
-    own = 0.0
-    if study.journey is not None:
-        # A lander that is flown to the ground may take as long for that.
-        is_flown = study.delivery is not None and study.delivery.is_flown
-        own = study.journey.duration * (2.0 if is_flown else 1.0)
-    return max(own, study.flight.duration, study.rest.duration)
+    # A lander that is flown to the ground may take as long for that.
+    is_flown = study.delivery is not None and study.delivery.is_flown
+    return max(study.journey.duration * (2.0 if is_flown else 1.0), study.flight.duration)
 
 
 @lru_cache(maxsize=1)
@@ -279,4 +276,4 @@ def with_site_gravity(study: Study, name: str = STUDY_FILE) -> Study:
         ]
     if problems:
         raise StudyError(problems)
-    return study.model_copy(update={"surface": study.surface.model_copy(update={"gravity": gravity})})
+    return study.under_site_gravity(gravity)

@@ -76,9 +76,9 @@ class StudyResults(StudyTables):
     def scores(self) -> dict[str, dict[str, dict[str, Any]]]:
         """Errors of the expansions by set of runs and output (docs/summary.md), with those of single runs in "ape".
 
-        A drawn study has those of its emulator in `emulator.model.scores`.
+        Those of the emulator are in `emulator.model.scores`.
         """
-        self._refuse_drawn("scores", "errors of expansions")
+        self._refuse_without_expansion("scores")
         content: dict[str, Any] = read_json(self._file(file_names.SCORES_FILE), {str: {str: _SCORE}}, self.remedy)
         return content
 
@@ -117,9 +117,9 @@ class StudyResults(StudyTables):
 
     @cached_property
     def median_landing(self) -> "MovingBodies":
-        """The landing at the medians, or in a drawn study that with the median speed of the runs that leave.
+        """The first touchdown with the median speed of those that leave; before all have ended, the first one.
 
-        Until all runs of a drawn study have ended, its first. Grains and, as the last body, the lander.
+        At the medians where no lander is drawn. Grains and, as the last body, the lander.
         """
         told = (self.folder / file_names.TELLING_LANDING_FILE).is_file()
         return self._bodies(file_names.TELLING_LANDING_FILE if told else file_names.LANDING_FILE)
@@ -178,28 +178,29 @@ class StudyResults(StudyTables):
 
     @cached_property
     def surrogate(self) -> "NamedSurrogate":
-        """The refined expansion, called by the names of its inputs; a drawn study has an `emulator` in its place."""
+        """The refined expansion, called by the names of its inputs."""
         from lithobrake.results.named_emulator import NamedSurrogate
 
-        self._refuse_drawn("surrogate", "an expansion")
+        self._refuse_without_expansion("surrogate")
         path = self._file(file_names.REFINED_FILE)
         with reading(path, self.remedy):
             return NamedSurrogate.read(path)
 
     @cached_property
     def emulator(self) -> "NamedEmulator":
-        """The emulator of a drawn study, sampled by the names of its inputs, also at values that were not simulated.
+        """The emulator of all touchdowns, sampled by the names of its inputs, also at values that were not simulated.
 
-        Of a study of journeys that of all their touchdowns. Raises ValueError where these have none.
+        Of the first touchdown where the study has no emulator of all of them.
+        Raises ValueError where it has neither.
         """
         from lithobrake.emulator import load
         from lithobrake.results.named_emulator import NamedEmulator
 
-        is_of_journeys = (self.folder / JOURNEYS).is_file()
-        path = self._file(file_names.TOUCHDOWN_EMULATOR_FILE if is_of_journeys else file_names.EMULATOR_FILE)
-        explorer = self.touchdown_explorer if is_of_journeys else None
-        if is_of_journeys and explorer is None:
-            raise ValueError(f"{self.folder} has no emulator: {self._content['results']['emulated']['why']}")
+        explorer = self.touchdown_explorer
+        path = self._file(file_names.EMULATOR_FILE if explorer is None else file_names.TOUCHDOWN_EMULATOR_FILE)
+        why = read_json(path, dict, self.remedy).get("why")
+        if why is not None:
+            raise ValueError(f"{self.folder} has no emulator: {why}")
         with reading(path, self.remedy):
             if explorer is not None:
                 return NamedEmulator(load(path), self._units, lambda: explorer.bound, explorer.attitude)
@@ -214,18 +215,18 @@ class StudyResults(StudyTables):
 
     @cached_property
     def touchdown_explorer(self) -> "ExplorerTables | None":
-        """The same of the emulator of all touchdowns of journeys; None where they have none (results.emulated.why)."""
+        """The same of the emulator of all touchdowns; None where there is none (results.emulated.why)."""
         from lithobrake.results.table import ExplorerTables
 
         emulated = self.results.emulated
-        if emulated is not None and emulated.why is not None:
+        if emulated is None or emulated.why is not None:
             return None
         return ExplorerTables.read(self._file(file_names.TOUCHDOWN_EXPLORER_FILE), self.remedy)
 
-    def _refuse_drawn(self, name: str, what: str) -> None:
-        """Say that a study whose runs were drawn has no such thing, where this is one."""
+    def _refuse_without_expansion(self, name: str) -> None:
+        """Say that a study without expansions has no such thing, where this is one."""
         if (self.folder / file_names.EMULATOR_FILE).is_file() and not (self.folder / file_names.REFINED_FILE).is_file():
-            raise ValueError(f"{self.folder} is of a drawn study, without {what}: ask for emulator, not {name}")
+            raise ValueError(f"{self.folder} is of a study without [expansion]: ask for emulator, not {name}")
 
     def _key(self, run: str | int) -> str:
         """The key of a run of the study. Raises ValueError where it has none, or several that begin like that."""

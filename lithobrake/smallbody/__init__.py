@@ -4,8 +4,7 @@ from lithobrake.smallbody.body import Body, Partner
 from lithobrake.smallbody.bounce import Bounce, HardSurface, Impacts, Rebounds, RestitutionTable
 from lithobrake.smallbody.built_in_bodies import built_in_body, didymos, dimorphos
 from lithobrake.smallbody.flight import fly
-from lithobrake.smallbody.flight_results import Arcs, Flights
-from lithobrake.smallbody.hopping import Journeys, Launch, hop
+from lithobrake.smallbody.flight_results import Flights
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.smallbody.rotation_history import (
     PartnerPlace,
@@ -15,16 +14,15 @@ from lithobrake.smallbody.rotation_history import (
     read_spin,
     rotation_history,
 )
-from lithobrake.smallbody.rough_ground import RoughGround, incidence_on, met_normals
+from lithobrake.smallbody.rough_ground import incidence_on, met_normals
 from lithobrake.smallbody.shape import Shape
 from lithobrake.smallbody.sky import HeliocentricOrbit, Screen, circle_places, day_directions, latitudes_over, seen_from
 from lithobrake.smallbody.tumbling import tumble
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus
+from lithobrake.vocabulary.outcomes import FlightStatus
 
-__all__ = [
-    "Arcs", "AttitudeHistory", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "HeliocentricOrbit",
-    "Impacts", "JourneyStatus", "Journeys", "Launch", "Partner", "PartnerPlace", "Rebounds", "RestitutionTable",
-    "RoughGround", "Screen", "Shape", "SpinState", "built_in_body", "circle_places", "day_directions", "didymos",
-    "dimorphos", "fly", "hop", "incidence_on", "latitudes_over", "met_normals", "read_partner", "read_places",
-    "read_spin", "rotation_history", "seen_from", "tumble",
+__all___all__ = [
+    "AttitudeHistory", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "HeliocentricOrbit", "Impacts",
+    "Partner", "PartnerPlace", "Rebounds", "RestitutionTable", "Screen", "Shape", "SpinState", "built_in_body",
+    "circle_places", "day_directions", "didymos", "dimorphos", "fly", "incidence_on", "latitudes_over", "met_normals",
+    "read_partner", "read_places", "read_spin", "rotation_history", "seen_from", "tumble",
 ]  # fmt: skip

@@ -31,7 +31,7 @@ class Impacts:
     spin        angular velocity [rad/s], [count, 3]
     effective_acceleration   gravity and centrifugal acceleration along the outward normal [m/s2], [count]; below 0 it
                 holds a lander
-    lander      which of the landers each is, counted as they were given to `hop`, [count]
+    lander      which of the landers each is, counted among all that are followed, [count]
     """
 
     speed: NDArray[np.float64]
@@ -186,3 +186,14 @@ def cells(edges: Array, values: Array) -> NDArray[np.int64]:
     """The cell of each value [count] between edges [cell_count + 1]; the outermost cells take what lies beyond."""
     found: NDArray[np.int64] = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
     return found
+
+
+def impact_frame(velocity: Array, up: Array) -> Array:
+    """Axes in rows, [count, 3, 3]: x along the horizontal velocity, y = z cross x, z = up, the unit normal."""
+    level = velocity - np.einsum("ni,ni->n", velocity, up)[:, None] * up
+    # A vertical impact has no horizontal direction; any will do.
+    aside = np.eye(3)[np.argmin(np.abs(up), axis=1)]
+    length = np.linalg.norm(level, axis=1, keepdims=True)
+    level = np.where(length > 1e-12 * np.linalg.norm(velocity, axis=1, keepdims=True), level, np.cross(up, aside))
+    x = level / np.linalg.norm(level, axis=1, keepdims=True)
+    return np.stack([x, np.cross(up, x), up], axis=1)

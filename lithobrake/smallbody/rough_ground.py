@@ -1,4 +1,4 @@
-"""Ground that is rough at the scale of a lander: which way the ground faces that it meets, and bounces off such ground.
+"""Ground that is rough at the scale of a lander: which way the ground faces that it meets.
 
 The gradient of the ground against the facets of a shape has two components that are normal and independent, so its size
 has a Rayleigh distribution and its direction is any. Seen along a velocity, ground that faces the lander covers more of
@@ -8,19 +8,15 @@ Source: [Shepard-2001] (rms slope, and that it belongs to a scale).
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.smallbody.bounce import Bounce, Impacts, Rebounds
-from lithobrake.smallbody.hopping import impact_frame
+from lithobrake.smallbody.bounce import impact_frame
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import finite_number
 
 # Standard deviations within which a gradient lies, and halvings of their width down to the last bit.
 FARTHEST, HALVINGS = 9.0, 60
-# How often a lander meets ground before it leaves that about it; then it is held where it is.
-MOST_TOUCHES = 100
 
 
 def met_normals(velocity: Array, up: Array, roughness: float, uniforms: Array) -> Array:
@@ -77,48 +73,3 @@ def incidence_on(velocity: Array, up: Array) -> Array:
     down = -(velocity * up).sum(axis=1) / np.linalg.norm(velocity, axis=1)
     found: Array = np.arccos(np.clip(down, -1.0, 1.0))
     return found
-
-
-@dataclass(frozen=True)
-class RoughGround:
-    """A bounce off ground that is rough, each time with a gradient of its own.
-
-    bounce     off the ground that is met
-    roughness  as in met_normals [rad]
-    A lander that leaves the ground that it has met toward that about it meets ground again at once, up to a hundred
-    times; then it is captured. Of the acceleration only the part along the mean normal is known; along the normal of
-    the ground that is met its share of that acts.
-    """
-
-    bounce: Bounce
-    roughness: float
-
-    def __call__(self, impacts: Impacts, random: np.random.Generator) -> Rebounds:
-        """Bounce until each lander leaves the ground, is captured, or the bounce does not know its impact."""
-        count, mean_up = len(impacts.speed), np.array([0.0, 0.0, 1.0])
-        along, down = np.sin(impacts.incidence), np.cos(impacts.incidence)
-        velocity = impacts.speed[:, None] * np.stack([along, np.zeros(count), -down], axis=1)
-        spin = np.array(impacts.spin)
-        captured, outside = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
-        going = np.arange(count)
-        for _ in range(MOST_TOUCHES):
-            up = np.tile(mean_up, (len(going), 1))
-            normal = met_normals(velocity[going], up, self.roughness, random.random((len(going), 2)))
-            axes = impact_frame(velocity[going], normal)
-            met = Impacts(
-                speed=np.linalg.norm(velocity[going], axis=1),
-                incidence=incidence_on(velocity[going], normal),
-                spin=np.einsum("nij,nj->ni", axes, spin[going]),
-                effective_acceleration=impacts.effective_acceleration[going] * normal[:, 2],
-                lander=impacts.lander[going],
-            )
-            result = self.bounce(met, random)
-            velocity[going], spin[going] = (
-                np.einsum("nji,nj->ni", axes, one) for one in (result.velocity, result.spin)
-            )
-            captured[going], outside[going] = result.captured, result.outside
-            going = going[~result.captured & ~result.outside & (velocity[going, 2] <= 0.0)]
-            if not len(going):
-                break
-        captured[going] = True
-        return Rebounds(velocity, spin, captured, outside)

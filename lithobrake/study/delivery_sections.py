@@ -19,9 +19,6 @@ OWN_KEYS = ("correlations", "frame", "epoch", "states", "release")
 # What such a flight tells and no one gives; from the aim point no direction is then better than another.
 FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
 ANY_HEADING = quantity.Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
-# Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
-# (docs/decisions/touchdown.md).
-HELD_SPEED = 0.03
 # Of one journey; more would be a lander that moves along for ever.
 MOST_TOUCHDOWNS = 1000
 # What follows for those who look at first touchdowns alone.
@@ -154,9 +151,7 @@ class JourneySection(quantity.Section):
         default=None, examples=["1"]
     )
     """Most touchdowns of a lander; 1: the first touchdown alone. Absent: landers are followed to rest."""
-    count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = Field(
-        default=None, examples=["96"]
-    )
+    count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = None
     """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
     duration: Annotated[float, quantity.Number("s", above=0)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
@@ -209,7 +204,7 @@ def journey_tables(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     is_local = not isinstance(contact, Mapping) or contact.get("stepping", "local") == "local"
     has_landers = not isinstance(design, Mapping) or design.get("run_count") != 0
     filled: dict[str, dict[str, Any]] = {
-        "contact": {"held_speed": HELD_SPEED if is_local else 0.0},
+        "contact": {} if is_local else {"held_speed": 0.0},
         "journey": {"hop_height": 0.0, "emulated_count": 0} if is_first else {"emulated_count": EMULATED_LANDERS},
         "design": {} if journey.get("count") is None else {"run_count": journey["count"]},
         "monte_carlo": {"sample_count": FIRST_TOUCHDOWN_SAMPLES if is_first or not has_landers else 0},

@@ -142,7 +142,7 @@ def _unbounded_problems(study: Study, design: ExpansionSection) -> Iterator[str]
         if not all(map(math.isfinite, reach(value))):
             yield (
                 f'{name} is {value.distribution}, which has no end, and expansion.points = "smolyak" puts runs at the '
-                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take other expansion.points"
+                "ends; give it two limits (truncated_normal, log_uniform, uniform, beta), or take other points"
             )
 
 

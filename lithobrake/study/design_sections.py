@@ -250,10 +250,11 @@ class OrbiterSection(Section):
 
 
 class SkySection(Section):
-    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them. During one day of the small body, Sun and Earth are overhead at one latitude each, which changes with the
-    season. Either give the latitudes (a distribution represents a year: each lander samples its own), or give `date`,
-    from which they follow by site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by
-    site.kernels. The shape hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
+    """How long a lander at rest sees the Sun, Earth and an orbiter, and which of its sides face them. During one day of
+    the small body, Sun and Earth are overhead at one latitude each, which changes with the season. Either give the
+    latitudes (a distribution represents a year: each lander samples its own), or give `date`, from which they follow by
+    site.pole_right_ascension_deg, site.pole_declination_deg and the heliocentric orbit, or by site.kernels. The shape
+    hides what is behind it, and so does the partner of a binary, as a spheroid of its extents.
     """
 
     sun_latitude_deg: Latitude | None = None

@@ -12,6 +12,9 @@ from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 if TYPE_CHECKING:
     from lithobrake.smallbody import PartnerPlace, SpinState
 
+# Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
+# (docs/decisions/touchdown.md).
+HELD_SPEED = 0.03
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
@@ -67,7 +70,7 @@ class ImpactSection(Section):
 class SurfaceSection(Section):
     """The constant acceleration during the touchdown."""
 
-    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = "site"
+    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field(default="site", examples=["5e-5"])
     """Acceleration toward the surface. "site": that of gravity and rotation together where each touchdown is, with the
     slope there. A number, only with journey.touchdowns = 1: the same for all first touchdowns, with slope_deg; a
     negative value points outward, as is possible near the equator of a fast rotator."""
@@ -96,10 +99,10 @@ class ContactSection(Section):
     resolved_speed: Annotated[float, Number("", at_least=0, at_most=1)] = 0.3
     """Collisions slower than this fraction of the lander's speed take fewer steps than steps_per_contact, in proportion
     to their speed, but at least five. 0: all collisions take the same number of steps. Only with stepping = "local"."""
-    held_speed: Annotated[float, Number("", at_least=0, below=1)] | None = None
+    held_speed: Annotated[float, Number("", at_least=0, below=1)] = HELD_SPEED
     """Grains in contact are frozen while they are slower than this fraction of the lander's speed and farther from it
     than the walls of the smallest bed would be. An impact that makes them faster releases them. 0: no grain is frozen.
-    Absent: 0.03 with stepping = "local", otherwise 0, its only value there."""
+    With stepping = "global" 0 is the default and the only value."""
 
 
 class LandingSection(Section):

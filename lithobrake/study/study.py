@@ -125,7 +125,7 @@ class Study(Section):
         # What a run is given is the attitude that it draws with that error.
         values.pop("impact.pointing_error_deg", None)
         if self.impact.region is None and self.impact.place is None:
-            # draw() takes the place of a run without a region from here.
+            # Every run has a place, drawn over the bed in place of this.
             values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
         return values
 

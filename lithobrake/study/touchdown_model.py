@@ -208,8 +208,12 @@ def stored_bed(path: Path) -> "Bed":
     return bed
 
 
-def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
+def draw(
+    study: Study, values: Values, seed: int, region: tuple[tuple[float, float], tuple[float, float]] | None
+) -> dict[str, float]:
     """The values of a run with what it draws by chance, or is given in its place.
+
+    region: ends of x and y between which impact points are drawn [m]; None: the point is given.
 
     bed: number of the bed; impact.place.x and .y [m], impact.azimuth_deg, impact.orientation.w to .z. All are drawn,
     whether used or not, so that each has the same random numbers in every study. A run takes the bed with the largest
@@ -224,11 +228,10 @@ def draw(study: Study, values: Values, seed: int) -> dict[str, float]:
     # Four normal numbers point evenly over the unit quaternions.
     quaternion = generator.standard_normal(4)
     impact = study.impact
-    if impact.region is None:
-        place = [values["impact.place.x"], values["impact.place.y"]]
+    if region is None:
+        place = [values[name] for name in PLACE]
     else:
-        ends = (impact.region.x, impact.region.y)
-        place = [low + fraction * (high - low) for fraction, (low, high) in zip(fractions.tolist(), ends, strict=True)]
+        place = [low + part * (high - low) for part, (low, high) in zip(fractions.tolist(), region, strict=True)]
     azimuth = 360 * turn if impact.azimuth_deg == "random" else values[IMPACT_AZIMUTH]
     if impact.orientation != "random":
         quaternion = given_attitude(study, *generator.random(2).tolist())
@@ -320,17 +323,18 @@ def landing(study: Study, values: Values) -> "Landing":
         spin=(values["impact.spin_x"], values["impact.spin_y"], values["impact.spin_z"]),
         gravity=acceleration(values, values["surface.gravity"]),
         # What is left of a journey.
-        time_limit=values.get(TIME_LEFT, study.landing.time_limit),
+        time_limit=min(values.get(TIME_LEFT, study.journey.duration), study.landing.time_limit or math.inf),
         hop_height=hop_height(study, values),
         contact=contact(study),
     )
 
 
 def hop_height(study: Study, values: Values) -> float | None:
-    """Height [m] of the lowest hop that leaves the bed in a journey; None for a study that follows none."""
-    if study.journey is None:
-        return None
-    return study.journey.hop_height or HOP_PER_LANDER * 2.0 * lander(study, values).reach
+    """Height [m] of the lowest hop that leaves the bed; None where every departure from the ground does."""
+    given = study.journey.hop_height
+    if given is None:
+        return HOP_PER_LANDER * 2.0 * lander(study, values).reach
+    return given or None
 
 
 def acceleration(values: Values, size: float) -> tuple[float, float, float]:

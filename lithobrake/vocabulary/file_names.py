@@ -13,18 +13,18 @@ EMULATOR_FILE, EXPLORER_FILE = "emulator.json", "explorer.h5"
 TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE = "touchdown_emulator.json", "touchdown_explorer.h5"
 # Samples of an emulator or expansion, their flights to the next impact, and their journeys from bounce to bounce.
 SAMPLES_FILE, SAMPLE_FLIGHTS_FILE, FLIGHT_CHECKS_FILE = "samples.h5", "flights.csv", "flights.json"
-REST_FILE, REST_NOTES_FILE = "rest.csv", "rest.json"
+REST_FILE = "rest.csv"
 # One row a journey of landings, a touchdown, and a flight between impacts.
 JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE = "journeys.csv", "touchdowns.csv", "arcs.csv"
 SKY_FILE, AIM_FILE = "sky.csv", "aim.csv"
-BODY_FILE = "body.obj"
+BODY_FILE, FLIGHTS_WITHOUT_SCATTER_FILE = "body.obj", "flights_without_scatter.csv"
 # What each holds, as the page says it; names with * stand for several files.
 CONTENTS = {
     STUDY_FILE: "the study file",
     SUMMARY_FILE: "every number of this page, with its unit",
     RUNS_FILE: "every touchdown: inputs, outcome, outputs, seed, times",
     "beds/bed_*.h5": "a settled bed: shapes, poses and motion",
-    "designs/drawn.csv": "the drawn landings: inputs and outputs",
+    "designs/drawn.csv": "the first touchdowns of the landers: inputs and outputs",
     "designs/soil_pairs.csv": "drawn landings repeated on a second soil",
     "designs/twins.csv": "drawn landings repeated at a slightly shifted impact point",
     "run_flights.csv": "how the flights of each run ended, from many sites",
@@ -39,7 +39,7 @@ CONTENTS = {
     SCORES_FILE: "the errors of the expansions, run by run",
     SAMPLES_FILE: "the Monte Carlo: inputs and outputs of every sample",
     SAMPLE_FLIGHTS_FILE: "the flight of each sample that leaves the surface",
-    "flights_without_scatter.csv": "the same flights without run-to-run scatter",
+    FLIGHTS_WITHOUT_SCATTER_FILE: "the same flights without run-to-run scatter",
     FLIGHT_CHECKS_FILE: "accuracy of the flights",
     "flight_paths.h5": "paths of the first flights, as the page shows them about the body",
     JOURNEYS_FILE: "every journey: end, time, place, distance, contacts, side down",
@@ -48,10 +48,9 @@ CONTENTS = {
     TOUCHDOWN_EMULATOR_FILE: "the emulator of all touchdowns of the journeys (lithobrake.emulator.load reads it)",
     TOUCHDOWN_EXPLORER_FILE: "refits of that emulator, for the explorer of this page",
     "emulated.csv": "journeys by the emulator of the touchdowns, and how they ended",
-    REST_FILE: "the journey of each lander that was followed from bounce to bounce",
+    REST_FILE: "how each lander ended that was followed on other ground",
     ARCS_FILE: "each flight between impacts: state at the beginning, time of the end",
     "restitution.csv": "restitution, friction and scatter that the soil implies, by speed and incidence",
-    REST_NOTES_FILE: "which ground was followed, and the range of the runs",
     "rare_*.json": "a rare limit state: its probability and the levels of its subset simulation",
     AIM_FILE: "the landers at every delivery option, and how they ended",
     BODY_FILE: "the shape of the body that the flights used",

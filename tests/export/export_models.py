@@ -20,11 +20,11 @@ def study_with_flights() -> dict[str, Any]:
     """The ball on a plate on Dimorphos with Didymos beside it, where place, heading, mass and spin are uncertain."""
     tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
     del tables["solver"]
-    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 1, "refined_degree": 1}
-    tables["design"] |= {"test_count": 2}
+    tables["expansion"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 1, "refined_degree": 1}
+    tables["expansion"] |= {"test_count": 2}
     tables["monte_carlo"] = {"sample_count": 100}
     tables["flight"] = {"flight_count": 16, "duration": 7200.0, "gravity": "exact"}
-    tables["rest"] = {"count": 10}
+    tables["hard_ground"] = {"count": 10}
     tables["site"] = {
         "body": "dimorphos", "latitude_deg": 20.0, "longitude_deg": 60.0,
         "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},

@@ -26,7 +26,7 @@ from lithobrake.results import MovingBodies, StudyResults, open_study
 from lithobrake.smallbody import Shape, dimorphos
 from lithobrake.study import StudySource
 
-from ..few_grains import few_grains
+from ..few_grains import EXPANSION, ONE_IMPACT, few_grains
 
 
 def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResults, tmp_path: Path) -> None:
@@ -296,8 +296,8 @@ def test_a_program_is_told_of_runs_and_files_as_json(results: StudyResults, tmp_
 
 
 STUDY = (
-    few_grains(20, width=0.4, lander_diameter=0.12, friction="0.7")
-    + '[design]\nmethod = "paper"\nscreening_level = 1\nscreening_degree = 1\nkept_outputs = ["speed_out"]\n'
+    few_grains(20, width=0.4, lander_diameter=0.12, friction="0.7", sides="walls")
+    + f'{ONE_IMPACT}{EXPANSION}screening_level = 1\nscreening_degree = 1\nkept_outputs = ["speed_out"]\n'
 )
 
 

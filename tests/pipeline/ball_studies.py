@@ -16,8 +16,11 @@ FEW_SAMPLES = {
     "flight_count = 50": "flight_count = 5",
     "count = 200 ": "count = 5 ",
 }
-# What the example says of its design, for `drawn` to stand in the place of.
-PAPERS = """method = "paper"                                           # two steps, each with an expansion of its own
+# What the example says of its expansions, of one place and of one bed, in the place of which `drawn` stands.
+EXPANSIONS = """[design]
+run_count = 0
+
+[expansion]
 screening_level = 2
 screening_degree = 2
 refined_level = 3
@@ -25,6 +28,8 @@ refined_degree = 3
 kept_outputs = ["speed_out"]
 test_count = 10
 """
+ONE_PLACE = "azimuth_deg = 0.0\nplace = { x = 0.0, y = 0.0 }\norientation = [1.0, 0.0, 0.0, 0.0]\n"
+ONE_BED = 'sides = "walls"\nbed_count = 1\n'
 
 
 def write_ball(path: Path, changes: dict[str, str], program: Path = PROGRAM) -> Path:
@@ -43,6 +48,6 @@ def edit(path: Path, changes: dict[str, str]) -> Path:
     return path
 
 
-def drawn(run_count: int, more: str = "") -> str:
-    """The design of a study that draws so many runs, and more lines of that table."""
-    return f'method = "drawn"\nrun_count = {run_count}\n{more}'
+def drawn(run_count: int, more: str = "") -> dict[str, str]:
+    """Changes for a study that draws so many landers, and more lines of [design]."""
+    return {EXPANSIONS: f"[design]\nrun_count = {run_count}\n{more}", ONE_PLACE: "", ONE_BED: ""}

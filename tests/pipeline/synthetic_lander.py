@@ -53,7 +53,7 @@ def outputs_of(y: np.ndarray) -> dict[str, float]:
 
 
 def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a drawn study of these landings, a few hundred samples, and other keys in its tables."""
+    """The tables of a study of these first touchdowns, a few hundred samples, and other keys in its tables."""
     tables: dict[str, Any] = tomllib.loads(template())
     for name, law in SOIL.items():
         section, key = name.split(".")
@@ -61,11 +61,11 @@ def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
     tables["grain"]["poisson_ratio"] = 0.25
     tables["lander"] = {"shape": "sphere", "diameter": 0.1, "mass": 1.0}
     tables["impact"] = {"speed": SPEED_LIMIT, "incidence_deg": 20.0, "region": {"x": [-0.1, 0.1], "y": [-0.1, 0.1]}}
-    tables["design"] = {"method": "drawn", "run_count": 144}
+    tables["journey"] = {"touchdowns": 1}
+    tables["design"] = {"run_count": 144}
     tables["monte_carlo"] = {"sample_count": 4000}
     tables["site"] = {"heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}}
     tables["flight"] = {"flight_count": 1000}
-    tables["rest"] = {"count": 0}
     changed = tables | {name: tables.get(name, {}) | keys for name, keys in changes.items()}
     # A key that is None is left out.
     return {

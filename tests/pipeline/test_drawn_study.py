@@ -15,7 +15,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
 
 from ..command_line import lithobrake
 from ..few_grains import few_grains
-from .ball_studies import FEW_RUNS, FEW_SAMPLES, PAPERS, drawn, edit, write_ball
+from .ball_studies import FEW_RUNS, FEW_SAMPLES, drawn, edit, write_ball
 
 
 def said_by(*words: object) -> str:
@@ -26,7 +26,7 @@ def said_by(*words: object) -> str:
 
 
 def ball(folder: Path, run_count: int, more: str = "") -> Path:
-    return write_ball(folder / "study.toml", {PAPERS: drawn(run_count, more), **FEW_SAMPLES})
+    return write_ball(folder / "study.toml", drawn(run_count, more) | FEW_SAMPLES)
 
 
 @pytest.fixture(scope="module")
@@ -65,16 +65,14 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     assert "10 of 10 stages are current: runs, side runs, flights of the runs" in status
 
 
-def test_a_stage_of_the_other_method_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
+def test_a_stage_that_the_study_does_not_ask_for_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
     source = StudySource.read(grown[0] / "study.toml")
-    with pytest.raises(
-        ValueError, match=r'"screen" is no stage of a study with design.method = "drawn"; allowed: bed,'
-    ):
+    with pytest.raises(ValueError, match='"screen" is no stage of this study; allowed: bed,'):
         run_study(source, tmp_path / "out", until="screen")
     assert not (tmp_path / "out").exists()
 
 
-def test_a_folder_that_changes_its_method_has_the_runs_of_the_present_one(
+def test_a_folder_whose_study_asks_for_other_runs_has_those_alone(
     grown: tuple[Path, DesignRuns, str], tmp_path: Path
 ) -> None:
     shutil.copytree(grown[0] / "out", tmp_path / "out")
@@ -94,7 +92,7 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("soil")
     text = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
-    (folder / "study.toml").write_text(f"{text}[design]\n{drawn(4, 'side_runs = true')}\n[landing]\ntime_limit = 5.0\n")
+    (folder / "study.toml").write_text(f"{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n")
     run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
     return folder
 

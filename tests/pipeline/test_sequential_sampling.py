@@ -44,7 +44,11 @@ def source(**design: Any) -> StudySource:
     # Where the ground holds what was captured; most of those that leave escape.
     tables["site"] = {"latitude_deg": 50.0}
     tables["impact"]["speed"] = 0.8
-    tables["design"] = {"method": "drawn", "run_count": 24} | design
+    tables["design"] = {"run_count": 24} | design
+    del tables["expansion"]
+    tables["journey"] = {"touchdowns": 1}
+    tables["bed"] = {key: value for key, value in tables["bed"].items() if key not in ("sides", "bed_count")}
+    tables["impact"] = {key: tables["impact"][key] for key in ("speed", "incidence_deg")}
     return StudySource.of_tables(tables, function_identity(land))
 
 

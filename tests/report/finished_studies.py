@@ -23,7 +23,7 @@ from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
 from ..pipeline.journeys.bouncing_lander import bounce, journey_tables
-from ..pipeline.paper.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
+from ..pipeline.expansion.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
 from ..synthetic_landings import Truth
 

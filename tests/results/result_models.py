@@ -41,9 +41,9 @@ def small_study() -> dict[str, Any]:
     """The ball on a plate without its program, with few runs."""
     tables = tomllib.loads((EXAMPLES / "ball_on_plate.toml").read_text())
     del tables["solver"]
-    tables["design"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
-    tables["design"] |= {"test_count": 4}
+    tables["expansion"] |= {"screening_level": 1, "screening_degree": 1, "refined_level": 2, "refined_degree": 1}
+    tables["expansion"] |= {"test_count": 4}
     tables["monte_carlo"] = {"sample_count": 400}
     tables["flight"] = {"flight_count": 6, "duration": 600.0, "gravity": "exact"}
-    tables["rest"] = {"count": 0}
+    tables["hard_ground"] = {"count": 0}
     return tables

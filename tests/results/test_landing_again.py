@@ -10,16 +10,13 @@ from lithobrake.pipeline import run_study
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource
 
-from ..few_grains import few_grains
+from ..few_grains import EXPANSION, few_grains
 from ..ledger_rows import edit_rows
 
 STUDY = (
-    few_grains(30, width=0.45, lander_diameter=0.12, friction="0.7")
-    + """azimuth_deg = "random"
-orientation = "random"
-[design]
-method = "paper"
-screening_level = 1
+    few_grains(30, width=0.45, lander_diameter=0.12, friction="0.7", sides="walls")
+    + f"""place = {{ x = 0.0, y = 0.0 }}
+{EXPANSION}screening_level = 1
 screening_degree = 1
 kept_outputs = ["speed_out"]
 """

@@ -5,33 +5,28 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL, dispersion_ellipses, highest_density, wilson_interval
+from lithobrake.analysis import dispersion_ellipses, highest_density
 from lithobrake.files.reading import read_rows
 from lithobrake.geometry.mesh_units import labelled_mesh, product_id
-from lithobrake.pipeline.answer.run_answers import SHARES, place_regions, rest_regions
+from lithobrake.pipeline.answer.run_answers import SHARES, rest_regions
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
-from lithobrake.pipeline.flights import flight_numbers, read_table
+from lithobrake.pipeline.flights import flight_numbers
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results import dispersion
 from lithobrake.results.journey_results import DeliveryResults
-from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.results.run_results import CountedShare
 from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.results.study_files import results_in
-from lithobrake.statements.touchdowns import followed
 from lithobrake.study import BUILT_IN_BODIES, Study
 from lithobrake.study.impact_sections import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.file_names import ARCS_FILE, FLIGHT_CHECKS_FILE, REST_FILE, REST_NOTES_FILE, TOUCHDOWNS_FILE
+from lithobrake.vocabulary.file_names import ARCS_FILE, FLIGHT_CHECKS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import QUANTILES
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 
-# In the order of the summary.
-FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
 NORMAL_QUANTILE_90 = 1.6448536269514722
 Rows = Sequence[dict[str, str]]
 POSITION = tuple(f"position_{axis}" for axis in "xyz")
@@ -90,26 +85,6 @@ def _of_kernels(study: Study) -> KernelNumbers | None:
     return KernelNumbers(*own, *partner)
 
 
-def shares(samples: Samples, flights: Rows, *, holds: bool) -> SampleShares:
-    """What became of the samples, as shares of all that were looked at, without intervals.
-
-    When not all leaving samples flew, only the samples up to the last that flew are looked at: they are a random part
-    of all. `returns` = down again in time, or captured where the site `holds` what lies there; `missing` = left
-    sideways, in contact at the time limit, or outside, after which nobody knows where the lander is.
-    """
-    total = len(samples.outcome)
-    if len(flights) < int(samples.leaves.sum()):
-        total = int(flights[-1]["sample"]) + 1
-    met = np.bincount(samples.outcome[:total], minlength=len(SAMPLE_OUTCOMES)).tolist()
-    counts = {str(name): count for name, count in zip(SAMPLE_OUTCOMES, met, strict=True)}
-    del counts[SampleOutcome.CLEAR]
-    statuses = [row["status"] for row in flights]
-    counts |= {str(status): statuses.count(status) for status in FLIGHTS}
-    counts["returns"] = counts[FlightStatus.IMPACT] + (counts[SampleOutcome.CAPTURED] if holds else 0)
-    counts["missing"] = sum(counts[name] for name in MISSING)
-    return SampleShares(total, len(flights), {name: proportion(count, total) for name, count in counts.items()})
-
-
 def impact_numbers(rows: Rows) -> dispersion.ImpactNumbers:
     """Quantiles of time, speed and incidence of the flights that end on the body."""
     return dispersion.ImpactNumbers(
@@ -144,57 +119,6 @@ def place_ellipses(site: Site, latitude: np.ndarray, longitude: np.ndarray) -> d
         long_m, short_m = (np.radians((long, short)) * radius).tolist()
         held.append(dispersion.EllipseShare(share, (long, short), (long_m, short_m)))
     return dispersion.LandingEllipses(found.latitude_deg, found.longitude_deg, found.heading_deg, tuple(held))
-
-
-def rest_results(job: Job) -> dispersion.RestResults:
-    """What became of the samples that were followed, on each ground."""
-    rows, known = read_table(job.folder, REST_FILE), job.folder.read_json(REST_NOTES_FILE)
-    site = site_results(job.site)
-    ranges = {name: (low, high) for name, (low, high) in known["trained_ranges"].items()}
-    found: dict[str, dispersion.GroundResults | None] = {}
-    for ground in ("soil", "hard", "equivalent"):
-        part = [row for row in rows if row["ground"] == ground]
-        found[ground] = _ends(job, site, ground, part, ranges) if part else None
-    hard = found["hard"]
-    if hard is not None:
-        found["hard"] = _with_sampling_intervals(hard)
-    return dispersion.RestResults(known["why_no_soil"], ranges, **found)
-
-
-def _with_sampling_intervals(found: dispersion.GroundResults) -> dispersion.GroundResults:
-    """The bounds of shares that depend on nothing but the samples drawn. Source: [Wilson-1927]."""
-
-    def bounded(one: CountedShare) -> CountedShare:
-        lower, upper = wilson_interval(one.count, found.sample_count, NORMAL_QUANTILE_90)
-        return one.within(lower, upper)
-
-    return found.with_counts({name: bounded(one) for name, one in found.counts.items()}, Level(LEVEL, None))
-
-
-def _ends(
-    job: Job, site: SiteResults, ground: str, rows: Rows, ranges: dict[str, tuple[float, float]]
-) -> dispersion.GroundResults:
-    """Shares of each end, and the numbers of the landers that settled."""
-    statuses, total = [row["status"] for row in rows], len(rows)
-    settled = [row for row in rows if row["status"] == JourneyStatus.SETTLED]
-    numbers = {}
-    for name in ("time_s", "path_length", "rebounds", "slid_length", "slid_time_s") if settled else ():
-        values = np.array([float(row[name]) for row in settled])
-        numbers[name] = {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}
-    lowest = ranges[IMPACT_SPEED][0] if IMPACT_SPEED in ranges else 0.0
-    # Most journeys that leave the range of the runs have become too slow for it; some ended at the first impact.
-    outside = [float(row["impact_speed"] or "inf") for row in rows if row["status"] == JourneyStatus.OUTSIDE]
-    return dispersion.GroundResults(
-        sample_count=total,
-        outcomes={str(name): proportion(statuses.count(name), total) for name in JourneyStatus},
-        slid=proportion(sum(float(row["slid_length"]) > 0.0 for row in rows), total),
-        **numbers,
-        ellipses=ellipses(job.site, rows, JourneyStatus.SETTLED),
-        outside_too_slow=proportion(sum(speed < lowest for speed in outside), total),
-        of=followed(ground, total, "expansion" if job.study.design.method == "paper" else "emulator"),
-        interval=None,
-        regions=place_regions(site, rows, JourneyStatus.SETTLED),
-    )
 
 
 def proportion(count: int, total: int) -> CountedShare:

@@ -8,11 +8,13 @@ import numpy as np
 from lithobrake import analysis
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows
+from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.flights import read_table
+from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
@@ -27,31 +29,24 @@ from lithobrake.study.lander_section import side_words
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary import outcomes
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.file_names import AIM_FILE
+from lithobrake.vocabulary.file_names import AIM_FILE, SAMPLE_FLIGHTS_FILE
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, UNKNOWN_END
 
-# The outcome of these landers is unknown.
-UNKNOWN = (outcomes.JourneyStatus.OUTSIDE, outcomes.JourneyStatus.BOUNCING, UNKNOWN_END)
-# The words of bounces and of journeys.
-RESTS = (outcomes.SETTLED, AT_REST)
 
-
-def limit_state_results(
-    study: Study, folder: StudyFolder, flights: Rows, shares: Mapping[str, CountedShare], *, holds: bool
-) -> dict[str, LimitStateResult]:
-    """The results of every limit state of a study, by its name; holds: whether the site holds what lies there.
+def limit_state_results(job: Job, shares: Mapping[str, CountedShare]) -> dict[str, LimitStateResult]:
+    """The results of every limit state of a study, by its name.
 
     shares: the table of how landings end (`run_shares`), from which a limit state of one of its words has its numbers.
 
     Raises ValueError for an output that no run has.
     """
+    study, folder = job.study, job.folder
     conditions = study.limit_states.conditions()
     if not conditions:
         return {}
-    runs, samples = DesignRuns.load(folder, "drawn"), Samples.load(folder)
-    fates = RunFlights.load(folder, "drawn").fates
-    of_samples = _values_of_samples(samples, sample_fates(samples, flights, holds=holds), holds=holds)
+    runs, fates = DesignRuns.load(folder, "drawn"), RunFlights.load(folder, "drawn").fates
+    of_samples = _values_of_samples(job)
     states = {name: LimitState.of(text) for name, text in conditions.items()}
     found = {}
     for name, state in states.items():
@@ -72,7 +67,7 @@ def _one(
                 f"limit_states.{name} uses {output}, which no run has; have the program that simulates the touchdowns "
                 "return it, or leave the limit state out"
             )
-    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).inputs
+    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).lawful_inputs
     if not np.isfinite(failing).any():
         raise ValueError(
             f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "
@@ -120,8 +115,15 @@ def _of_one_word(state: LimitState, shares: Mapping[str, CountedShare]) -> Estim
     return one
 
 
-def _values_of_samples(samples: Samples, met: dict[str, np.ndarray], *, holds: bool) -> dict[str, np.ndarray]:
-    """What limit states may name, of the samples up to the last that was looked at, and which of them are known."""
+def _values_of_samples(job: Job) -> dict[str, np.ndarray]:
+    """What limit states may name, of the samples of the emulator up to the last that was looked at; empty without any.
+
+    NaN where it is not known what became of a sample.
+    """
+    if not job.study.sample_count or job.study.expansion is not None:
+        return {}
+    samples, holds = Samples.load(job.folder), job.site.holds
+    met = sample_fates(samples, read_table(job.folder, SAMPLE_FLIGHTS_FILE), holds=holds)
     total = len(met["returns"])
     known = ~met["missing"]
     words = {status.value: met[status] for status in outcomes.FlightStatus}
@@ -167,7 +169,7 @@ class Landers:
     @property
     def settled(self) -> np.ndarray:
         """Which have come to rest where the ground holds them."""
-        rests: np.ndarray = np.isin(self.status, RESTS)
+        rests: np.ndarray = self.status == AT_REST
         return rests
 
 
@@ -181,7 +183,7 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
     on_soil, best_on_soil = _on_ground(soil, aims, limits, fitted, "soil")
     on_hard: Sequence[AimOnGround | None] = [None] * len(aims)
     best_on_hard: BestAim | None = None
-    if study.journey is None:
+    if study.hard_ground.count:
         on_hard, best_on_hard = _on_ground(_landers(folder, "hard", len(aims)), aims, limits, fitted, "hard")
     results = AimResults(
         names=study.aim.names,
@@ -233,7 +235,7 @@ def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGro
 
     return AimOnGround(
         settled=_share(settled, np.ones(len(settled), dtype=bool), refit, ground, fitted),
-        missing=float(np.isin(landers.status[row], UNKNOWN).mean()),
+        missing=float((landers.status[row] == UNKNOWN_END).mean()),
         distance_p95=far(landers.distance[row]),
         time_p95=far(landers.time[row]),
         allowed=False,
@@ -251,7 +253,7 @@ def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitt
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:
     """Whether an aim and what comes of it keep all limits."""
     known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
-    known |= dict.fromkeys(RESTS, part.settled.value) | {"missing": part.missing}
+    known |= {AT_REST: part.settled.value, "missing": part.missing}
     far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
     known |= {name: None if one is None else one.value for name, one in far.items()}
     return all(limit.keeps(known[limit.name]) for limit in limits)

@@ -16,7 +16,7 @@ from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.dispersion import RestRegion
-from lithobrake.results.run_results import MissingLandings
+from lithobrake.results.run_results import MissingLandings, OutputRange
 from lithobrake.results.site_results import SiteResults
 from lithobrake.statements import ends as statements
 from lithobrake.statements.ends import Scope
@@ -40,9 +40,19 @@ SHARES = (0.5, 0.95)
 MOST_PLACES = 5000
 
 
+def asks_rest(study: Study) -> bool:
+    """Whether a study asks how many landers come to rest, rather than what their first touchdowns tell."""
+    return study.journey.touchdowns != 1 and study.design.run_count > 0
+
+
+def answers_rest(study: Study) -> bool:
+    """Whether the half width of a study is that of the fraction at rest."""
+    return asks_rest(study) and study.design.half_width_of is None
+
+
 def answer_words(study: Study) -> str:
     """What the answers of a study's runs are a share of, in words."""
-    if study.journey is not None:
+    if answers_rest(study):
         return "the fraction at rest"
     asked = study.design.half_width_of
     return "the return fraction" if asked is None else f"the probability of {asked}"
@@ -85,8 +95,8 @@ def scope(study: Study) -> Scope:
         random_attitude=study.impact.orientation == "random",
         has_scatter=study.monte_carlo.scatter,
         flight_time=study.flight.duration,
-        rest_time=study.rest.duration,
-        journey_time=None if study.journey is None else study.journey.duration,
+        journey_time=study.journey.duration,
+        to_rest=asks_rest(study),
     )
 
 
@@ -120,6 +130,20 @@ def left_in_flight(runs: DesignRuns) -> np.ndarray:
 def described(known: np.ndarray, outcomes: Sequence[str]) -> str:
     """Which of the landings a number describes, in words; known: those that have one [run_count]."""
     return statements.described([outcome for outcome, one in zip(outcomes, known, strict=True) if one], len(outcomes))
+
+
+def output_ranges(runs: DesignRuns) -> dict[str, OutputRange]:
+    """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
+    table = {}
+    for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
+        known = np.isfinite(runs.output(name))
+        values = runs.output(name)[~np.isnan(runs.output(name))]
+        if len(values):
+            table[name] = OutputRange(
+                float(np.median(values)), float(values.min()), float(values.max()), TOUCHDOWN[name].units,
+                described(known, runs.outcomes),
+            )  # fmt: skip
+    return table
 
 
 def failing_runs(state: LimitState, runs: DesignRuns, fates: np.ndarray) -> np.ndarray:

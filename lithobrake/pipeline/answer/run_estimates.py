@@ -1,5 +1,6 @@
 """What the drawn runs say of themselves: shares, parts of the variance, means and quantiles, with intervals."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -53,6 +54,20 @@ SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
 def return_fraction(study: Study, runs: DesignRuns, flights: RunFlights) -> run_results.ReturnFraction:
     """The return fraction with its interval, which covers whatever became of the landings without an outcome."""
     return run_results.ReturnFraction.of(_share(study, runs, flights.returns))
+
+
+def no_return_fraction(study: Study) -> run_results.ReturnFraction:
+    """That of a study that draws no lander."""
+    why = run_answers.why_no_interval(study)
+    return run_results.ReturnFraction(
+        share=Estimate(math.nan, None, None, why_missing=why),
+        from_="no landings",
+        next_bed=None,
+        if_missing=(0.0, 1.0),
+        missing=0.0,
+        emulator=None,
+        why=why,
+    )
 
 
 def run_shares(
@@ -133,10 +148,7 @@ def _moved(one: run_results.CountedShare, share: float) -> run_results.CountedSh
 
 def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
-    inputs = DrawnDesign(study).inputs
-    if study.soil:
-        # On the soils of regions the grains of a run follow another law than the study gives for [grain].
-        inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
+    inputs = DrawnDesign(study).lawful_inputs
     terms = analysis.regression_terms(inputs, runs.columns(list(inputs)))
     bed, why = runs.inputs["bed"], run_answers.why_no_interval(study)
     return analysis.share_estimate(share, bed, terms=terms, like_missing=run_answers.left_in_flight(runs), why=why)

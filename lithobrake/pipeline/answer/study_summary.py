@@ -1,9 +1,8 @@
-"""summary.json of studies of first bounces and of journeys, and its parts."""
+"""summary.json: what came out of a study, and where it comes from."""
 
 import os
 import platform
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -13,17 +12,10 @@ import numpy as np
 
 from lithobrake.analysis import LEVEL
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.answer.dispersion_statistics import (
-    Rows,
-    body_product,
-    delivery_results,
-    ellipses,
-    flight_checks,
-    rest_results,
-    shares,
-    site_results,
-)
-from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends, journey_ends, sample_fates
+from lithobrake.pipeline.answer.dispersion_statistics import body_product, delivery_results, flight_checks, site_results
+from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends
+from lithobrake.pipeline.answer.expansion_results import expansion_results
+from lithobrake.pipeline.answer.followed_landers import followed_results
 from lithobrake.pipeline.answer.journey_ends import (
     JourneyTable,
     end_shares,
@@ -33,30 +25,37 @@ from lithobrake.pipeline.answer.journey_ends import (
     with_journeys,
 )
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
-from lithobrake.pipeline.answer.run_answers import described, place_regions, scope, why_no_interval
-from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, parts_of_journeys
+from lithobrake.pipeline.answer.run_answers import described, scope, why_no_interval
+from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, SPLIT, no_return_fraction, parts_of_journeys
+from lithobrake.pipeline.answer.sample_results import (
+    return_fraction_of_known,
+    return_fraction_of_samples,
+    sample_results,
+)
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE
-from lithobrake.pipeline.flights import read_table
+from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import Samples
-from lithobrake.results.dispersion import FlightResults, RestResults
-from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, MonteCarlo, OutputScore
-from lithobrake.results.run_results import EmulatorShares, LandingShares, Level, OutputRange, ReturnFraction
+from lithobrake.results.dispersion import FlightResults
+from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, OutputScore
+from lithobrake.results.run_results import MissingLandings, OutputRange, RunResults, RunShares
 from lithobrake.results.site_results import BedNumbers
 from lithobrake.results.study_files import SUMMARY_FORMAT, results_in
-from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Provenance, RunTimes, Summary
-from lithobrake.statements.answers import landing_answer, landing_headline
+from lithobrake.results.summary import Estimates, Provenance, Results, RunTimes, Summary
+from lithobrake.statements.answers import study_answer, study_headline
 from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import grain, lander, stored_bed
-from lithobrake.vocabulary.file_names import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
-from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN
+from lithobrake.vocabulary.file_names import RUNS_FILE, SUMMARY_FILE
+from lithobrake.vocabulary.quantities import (
+    DRAWN_DESIGNS,
+    IMPACT_SPEED,
+    JOURNEY_DESIGN,
+    OUTPUTS,
+    PAPER_DESIGNS,
+    TOUCHDOWN,
+)
 
-# Adds what came of the landings to what they say.
-Completed = Callable[[Job, DrawnResults, DesignRuns, Estimates], DrawnResults]
 PIT_BINS = 10
 
 
@@ -66,8 +65,8 @@ def summary_dependencies(study: Study) -> dict[str, Any]:
 
 
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:
-    """The study with the defaults of its method, as the tables of its file; paths of meshes as they were written."""
-    dump: dict[str, Any] = _plain(study.model_dump(exclude={"design": study.design.keys_of_the_other_method}))
+    """The study with all defaults, as the tables of its file; paths of meshes as they were written."""
+    dump: dict[str, Any] = _plain(study.model_dump())
     for section, key in (("lander", "file"), ("site", "body"), ("site", "kernels"), ("solver", "command")):
         dump[section][key] = (tables or {}).get(section, {}).get(key, dump[section][key])
     return dump
@@ -115,7 +114,7 @@ def outputs_of_runs(runs: DesignRuns) -> dict[str, OutputRange]:
     return table
 
 
-def write_summary_file(job: Job, results: DrawnResults | PaperResults, asked: int, runs: DesignRuns) -> None:
+def write_summary_file(job: Job, results: Results, asked: int, runs: DesignRuns) -> None:
     """Write summary.json. Times, host, folders and versions stand in provenance only; asked, runs: as provenance."""
     summary = Summary(SUMMARY_FORMAT, study_tables(job.study, job.tables), results, provenance(job, asked, runs))
     job.folder.write_json(SUMMARY_FILE, summary.to_json())
@@ -142,116 +141,127 @@ def provenance(job: Job, asked: int, runs: DesignRuns) -> Provenance:
     )
 
 
-def write_results(job: Job, completed: Completed) -> None:
+def write_summary(job: Job) -> None:
     """Write summary.json: study, results, provenance."""
-    side = job.study.design.side_runs
-    runs = [DesignRuns.load(job.folder, design) for design in (DRAWN_DESIGNS if side else DRAWN_DESIGNS[:1])]
-    distinct = DesignRuns.distinct(runs)
-    estimates = results_in(Estimates, job.folder.read_json(ESTIMATES_FILE), "estimates")
-    results = completed(job, results_of_landings(job, estimates, distinct), runs[0], estimates)
-    results = replace(results, answer=tuple(landing_answer(scope(job.study), results)))
-    results = replace(results, headline=tuple(landing_headline(results)))
+    over = scope(job.study)
+    results = _of_landers(job, _without_landers(job)) if job.study.design.run_count else _without_landers(job)
+    results = _of_samples(job, results)
+    results = replace(
+        results,
+        emulator=_emulator(job, results),
+        limit_states=limit_state_results(job, results.shares.outcomes),
+        hard_ground=followed_results(job),
+    )
+    results = replace(results, answer=tuple(study_answer(over, results)))
+    results = replace(results, headline=tuple(study_headline(over, results)))
     for part in (results.runs, results.emulator):
         if part is not None and part.warning:
             job.say(part.warning)
-    write_summary_file(job, results, sum(one.run_count for one in runs), distinct)
+    runs = [DesignRuns.load(job.folder, design) for design in _designs(job.study)]
+    write_summary_file(job, results, sum(one.run_count for one in runs), DesignRuns.distinct(runs))
 
 
-def results_of_landings(job: Job, estimates: Estimates, distinct: DesignRuns) -> DrawnResults:
-    """What the landings say, or the first ones of journeys."""
-    return DrawnResults(
+def _designs(study: Study) -> tuple[str, ...]:
+    """The designs with all landings of a study."""
+    landers = (JOURNEY_DESIGN, *_side_designs(study)) if study.design.run_count else ()
+    return (*landers, *(PAPER_DESIGNS if study.expansion else ()))
+
+
+def _side_designs(study: Study) -> tuple[str, ...]:
+    return DRAWN_DESIGNS[1:] if study.design.side_runs else ()
+
+
+def _without_landers(job: Job) -> Results:
+    """The results of a study that draws no lander."""
+    study, why = job.study, why_no_interval(job.study)
+    expansion = expansion_results(job) if study.expansion else None
+    return Results(
+        answer=(),
+        headline=(),
         units={name: TOUCHDOWN[name].units for name in OUTPUTS},
-        beds=tuple(bed_results(job, name) for name in bed_files(job.study)),
+        beds=tuple(bed_results(job, name) for name in bed_files(study)),
+        site=site_results(job.site),
+        ends={},
+        journeys=0,
+        touchdowns=0,
+        rest=None,
+        delivery=None,
+        returns=no_return_fraction(study),
+        shares=RunShares(0, 0, LEVEL, why, {}),
+        flights=FlightResults(checks=flight_checks(job) if study.sample_count else None),
+        variance_shares=dict.fromkeys(SPLIT),
+        end_variance_shares={},
+        outputs={},
+        runs=RunResults(0, 0, {}, MissingLandings(0, 0.0, {}), None, 0, None, None),
+        outputs_of_runs={},
+        sides={},
+        soils={},
+        sky={},
+        limit_states={},
+        emulator=None,
+        emulated=None,
+        hard_ground={},
+        aim=None,
+        samples=None,
+        expansion=expansion,
+    )
+
+
+def _of_landers(job: Job, found: Results) -> Results:
+    """The results with what the first touchdowns of the landers say, and how their journeys ended."""
+    study, folder = job.study, job.folder
+    runs, table = DesignRuns.load(folder, "drawn"), JourneyTable.load(folder)
+    touchdowns = DesignRuns.load(folder, JOURNEY_DESIGN)
+    estimates = results_in(Estimates, folder.read_json(ESTIMATES_FILE), "estimates")
+    emulated, ends = None, end_shares(study, table)
+    if study.journey.emulated_count:
+        emulated, ends = emulated_ends(job, table, ends)
+    # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
+    landed = table.taken(runs.inputs["journey"].astype(int))
+    distinct = DesignRuns.distinct([runs, *(DesignRuns.load(folder, design) for design in _side_designs(study))])
+    return replace(
+        found,
+        ends=ends,
+        journeys=len(table.end),
+        touchdowns=table.touchdowns,
+        rest=journey_rest(study, table),
+        delivery=delivery_results(job, runs, len(table.end)),
         returns=estimates.returns,
-        shares=LandingShares(**vars(estimates.shares), emulator=None),
-        flights=FlightResults(estimates.flights, None),
+        shares=estimates.shares,
+        flights=replace(found.flights, impacts=estimates.flights),
         variance_shares=estimates.variance_shares,
+        end_variance_shares=parts_of_journeys(job, runs, landed),
         outputs=estimates.outputs,
         runs=estimates.runs,
         outputs_of_runs=outputs_of_runs(distinct),
-        site=site_results(job.site),
-        monte_carlo=None,
-        ellipses=None,
-        without_scatter=None,
-        rest=RestResults(None, {}, None, None, None),
-        limit_states={},
-        aim=None,
-        emulator=None,
-        answer=(),
-        headline=(),
-        sides=estimates.sides,
-        end_variance_shares={},
-        sky={},
-        soils={},
+        sides=with_journeys(study, dict(estimates.sides), runs, touchdowns, landed),
+        soils=soil_shares(job, table),
+        sky=sky_results(study, folder, table),
+        emulated=emulated,
+        aim=aim_results(study, folder, Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(study))),
     )
 
 
-def write_drawn_summary(job: Job) -> None:
-    """Write summary.json: study, results, provenance."""
-    write_results(job, _with_samples)
+def _of_samples(job: Job, found: Results) -> Results:
+    """The results with what became of the samples; of a study without landers these are its answer."""
+    if not job.study.sample_count:
+        return found
+    samples = sample_results(job)
+    returns = found.returns
+    if not found.journeys:
+        returns = return_fraction_of_samples(job, samples.shares)
+    elif job.study.expansion is None:
+        returns = replace(returns, emulator=return_fraction_of_known(samples.shares))
+    return replace(found, samples=samples, returns=returns)
 
 
-def _with_samples(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
-    """What the landings say, and what became of the samples of the emulator."""
-    study, holds, refits = job.study, job.site.holds, _refits(estimates)
-    samples, flights = Samples.load(job.folder), read_table(job.folder, SAMPLE_FLIGHTS_FILE)
-    table = _emulator_shares(samples, flights, estimates, refits, holds=holds)
-    known = table.sample_count - table.outcomes["missing"].count
-    returns = replace(found.returns, emulator=table.outcomes["returns"].count / known if known else None)
-    shares = replace(found.shares, emulator=table)
-    return replace(
-        found,
-        returns=returns,
-        shares=shares,
-        flights=replace(found.flights, checks=flight_checks(job)),
-        # Its outputs are those of the runs, of which results.outputs speaks.
-        monte_carlo=MonteCarlo(len(samples.leaves), int(samples.leaves.sum())),
-        ellipses=ellipses(job.site, flights, FlightStatus.IMPACT),
-        regions=place_regions(found.site, flights, FlightStatus.IMPACT),
-        rest=_rest(job, refits),
-        limit_states=limit_state_results(study, job.folder, flights, shares.outcomes, holds=holds),
-        aim=aim_results(study, job.folder, refits),
-        emulator=_emulator(job, runs, returns),
-    )
-
-
-def _ended(estimates: Estimates) -> dict[str, int]:
-    """How many runs ended in each way, without those that failed."""
-    return {name: count for name, count in estimates.runs.outcomes.items() if name in list(TouchdownOutcome)}
-
-
-def _refits(estimates: Estimates) -> Refits:
-    """What the emulator was fitted to."""
-    return Refits(estimates.runs.beds, sum(_ended(estimates).values()), estimates.returns.why)
-
-
-def _rest(job: Job, refits: Refits) -> RestResults:
-    """What became of the samples that were followed, on the soil with intervals from refits."""
-    rest = rest_results(job)
-    if rest.soil is None:
-        return rest
-    rows = [row for row in read_table(job.folder, REST_FILE) if row["ground"] == "soil"]
-    sample = np.array([int(row["sample"]) for row in rows])
-    counts = refits.with_intervals(rest.soil.counts, sample, journey_ends(rows))
-    return replace(rest, soil=rest.soil.with_counts(counts, Level(LEVEL, refits.why)))
-
-
-def _emulator_shares(
-    samples: Samples, flights: Rows, estimates: Estimates, refits: Refits, *, holds: bool
-) -> EmulatorShares:
-    """What became of the samples of the emulator, as shares of all that were looked at, with intervals from refits."""
-    found = shares(samples, flights, holds=holds)
-    fates = sample_fates(samples, flights, holds=holds)
-    counts = refits.with_intervals(found.outcomes, np.arange(found.sample_count), fates)
-    counts = refits.widened(counts, _ended(estimates))
-    return EmulatorShares(found.sample_count, found.flight_count, counts, LEVEL, refits.why)
-
-
-def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorResults:
-    """What the emulator is worth on beds left out, and whether it agrees with the runs."""
+def _emulator(job: Job, found: Results) -> EmulatorResults | None:
+    """What the emulator is worth on beds left out, and whether it agrees with the runs; None where there is none."""
     from lithobrake.emulator import load
 
-    model = load(job.folder / EMULATOR_FILE)
+    if not found.journeys or why_no_emulator(job.folder.read_json(EMULATOR_FILE)):
+        return None
+    runs, model = DesignRuns.load(job.folder, "drawn"), load(job.folder / EMULATOR_FILE)
     scores, modelled = model.scores, [model.output_names[column] for column in model.runs.modelled]
     table = {}
     for column, name in enumerate(modelled):
@@ -265,34 +275,5 @@ def _emulator(job: Job, runs: DesignRuns, returns: ReturnFraction) -> EmulatorRe
         follows_inputs=model.follows_inputs,
         found_inputs=tuple(name for name, found in model.found_inputs().items() if found),
         scores=EmulatorScores(JointScore(scores.gain / scores.energy_of_rows), table),
-        warning=disagreement(returns),
-    )
-
-
-def write_journey_summary(job: Job) -> None:
-    """Write summary.json: study, results, provenance."""
-    write_results(job, _with_journeys)
-
-
-def _with_journeys(job: Job, found: DrawnResults, runs: DesignRuns, estimates: Estimates) -> DrawnResults:
-    """What the first touchdowns say, and how the journeys ended."""
-    table = JourneyTable.load(job.folder)
-    emulated, ends = emulated_ends(job, table, end_shares(job.study, table))
-    # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
-    landed = table.taken(runs.inputs["journey"].astype(int))
-    touchdowns = DesignRuns.load(job.folder, JOURNEY_DESIGN)
-    fitted = Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(job.study))
-    return replace(
-        found,
-        aim=aim_results(job.study, job.folder, fitted),
-        rest=journey_rest(job.study, table),
-        ends=ends,
-        sky=sky_results(job.study, job.folder, table),
-        delivery=delivery_results(job, runs, len(table.end)),
-        journeys=len(table.end),
-        touchdowns=table.touchdowns,
-        emulated=emulated,
-        soils=soil_shares(job, table),
-        sides=with_journeys(job.study, dict(found.sides), runs, touchdowns, landed),
-        end_variance_shares=parts_of_journeys(job, runs, landed),
+        warning=disagreement(found.returns),
     )

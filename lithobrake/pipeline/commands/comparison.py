@@ -26,7 +26,7 @@ from lithobrake.statements.comparison import lines, other_beds, pairs
 from lithobrake.study import Study, StudySource
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.file_names import STUDY_FILE
-from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN
+from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN, counted
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
 
@@ -62,16 +62,14 @@ class OneStudy:
 
     @classmethod
     def open(cls, path: Path) -> "OneStudy":
-        """Read a folder. Raises ValueError for one that is no drawn study, or did not run to its summary."""
+        """Read a folder. Raises ValueError for a study that draws no lander, or did not run to its summary."""
         results = open_study(path)
-        if results.study["design"]["method"] == "paper":
-            raise ValueError(f"{path} is a study of the paper method, on one bed; compare studies with drawn runs")
         source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
+        if not source.study.design.run_count:
+            raise ValueError(f"{path} draws no lander (design.run_count is 0); compare studies that draw some")
         runs = DesignRuns.load(StudyFolder.only_read(path), "drawn")
-        bed, number = runs.inputs["bed"], np.arange(runs.run_count)
-        if source.study.journey is not None:
-            # A lander that is flown to the ground and misses it has a journey, and no run.
-            bed, number = JourneyTable.load(StudyFolder.only_read(path)).bed, runs.inputs["journey"].astype(int)
+        # A lander that is flown to the ground and misses it has a journey, and no run.
+        bed, number = JourneyTable.load(StudyFolder.only_read(path)).bed, runs.inputs["journey"].astype(int)
         columns = {name: np.full(len(bed), np.nan) for name in COMMON if name in runs.inputs}
         for name, values in columns.items():
             values[number] = runs.inputs[name]
@@ -136,10 +134,11 @@ def comparison_lines(comparison: StudyComparison) -> list[str]:
 
 def _paired_count(one: OneStudy, two: OneStudy) -> int:
     """How many pairs there are. Raises ValueError where the runs of one number differ in what they must share."""
-    if (one.study.journey is None) != (two.study.journey is None):
-        kinds = {True: "first bounces", False: "journeys to rest"}
-        said = " and ".join(f"{each.path} follows {kinds[each.study.journey is None]}" for each in (one, two))
-        raise ValueError(f"{said}; compare two studies of one kind")
+    limits = [each.study.journey.touchdowns for each in (one, two)]
+    if limits[0] != limits[1]:
+        ways = ["to rest" if limit is None else f"for {counted(limit, 'touchdown')}" for limit in limits]
+        said = " and ".join(f"{each.path} follows landers {way}" for each, way in zip((one, two), ways, strict=True))
+        raise ValueError(f"{said}; compare studies with the same journey.touchdowns")
     count = min(one.run_count, two.run_count)
     for name, words in COMMON.items():
         if (name in one.columns) != (name in two.columns):
@@ -180,8 +179,9 @@ def _answers(
     pair: tuple[OneStudy, OneStudy], count: int, bed: np.ndarray, why: str | None
 ) -> Iterator[tuple[str, ComparedAnswer]]:
     """Every answer that both studies have, by name."""
-    made = _journey_answers if pair[0].study.journey is not None else _bounce_answers
-    yield from made(pair, count, bed, why)
+    if pair[0].study.journey.touchdowns != 1:
+        yield from _journey_answers(pair, count, bed, why)
+    yield from _bounce_answers(pair, count, bed, why)
 
 
 def _journey_answers(

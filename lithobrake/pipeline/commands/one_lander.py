@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 FRAMES = 120
 # A number of TOML, and nothing else of it: no truth values, no comments, no second line.
 _NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)", re.ASCII)
-# What a touchdown of a journey is given by where the lander is, and by when.
-OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT, *GROUND)
+# What a touchdown is given by when it is.
+OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT)
 # Seeds of pours are told apart by the number of the bed in so many bits.
 LAST_BED = 2**32 - 1
 Row = dict[str, float]
@@ -83,9 +83,9 @@ class OneLanding:
 def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> dict[str, float]:
     """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
 
-    By dotted key, in the units of the study file. A study in two stages lands at the medians, whatever the
-    number. Raises ValueError for a change of what a landing does not read or the study file may not have, a study
-    without soil, or a number that no run of it has.
+    By dotted key, in the units of the study file; at the medians where the study draws no lander. Raises ValueError for
+    a change of what a landing does not read or the study file may not have, a study without soil, or a number that no
+    run of it has.
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
@@ -93,7 +93,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     design = DrawnDesign(study)
     Soils(design.site).refuse("the study")
     values = _values(design, number)
-    own = OF_JOURNEYS if study.journey is not None else ()
+    own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
     changed = dict(_changed(change, free) for change in changes)
     if not changed:
@@ -109,7 +109,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
             "take the soil of their region; change the study file"
         )
     _refuse(study, free | changed)
-    if study.journey is None:
+    if not study.has_local_ground:
         return values | changed
     # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
     return on_local_ground(design.site, [values | changed], number)[0]
@@ -155,8 +155,8 @@ def landed(
 
 def _values(design: DrawnDesign, number: int) -> dict[str, float]:
     study = design.study
-    if study.design.method == "paper":
-        return draw(study, design.medians, study.seed)
+    if not study.design.run_count:
+        return draw(study, design.medians, study.seed, design.region)
     last = study.design.most_runs - 1
     if not 0 <= number <= last:
         raise ValueError(f"the number of a run is {number}; allowed: 0 to {last}, the runs of the study")

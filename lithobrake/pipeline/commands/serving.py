@@ -15,9 +15,9 @@ from scipy.spatial.transform import Rotation
 from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import DrawnLandings
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator, why_no_emulator
-from lithobrake.pipeline.runs.energy_bound import energy_bound, height_of_beds
+from lithobrake.pipeline.first_bounces.emulator import DrawnLandings, why_no_emulator
+from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
+from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.samples import VELOCITY
@@ -66,15 +66,16 @@ class ServedStudy:
         beds = [self.folder / name for name in bed_files(self.study)] if self.study.has_soil else []
         if self.inputs and all(bed.is_file() for bed in beds):
             found.append(ServedModel("landing", self.inputs, LANDING, self.landing))
-        if (self.folder / EMULATOR_FILE).is_file():
-            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
-        if self._has_touchdown_emulator():
+        # Of all touchdowns where there is one: it knows the first ones as well.
+        if self._has(TOUCHDOWN_EMULATOR_FILE):
             found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
+        elif self._has(EMULATOR_FILE):
+            found.append(ServedModel("emulator", tuple(self._emulator.runs.inputs), LANDING, self.emulated))
         return found
 
-    def _has_touchdown_emulator(self) -> bool:
-        path = self.folder / TOUCHDOWN_EMULATOR_FILE
-        return path.is_file() and why_no_emulator(self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)) is None
+    def _has(self, emulator: str) -> bool:
+        """Whether there is a file of an emulator, and an emulator in it."""
+        return (self.folder / emulator).is_file() and why_no_emulator(self.folder.read_json(emulator)) is None
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
@@ -116,7 +117,8 @@ class ServedStudy:
         """
         seed, given = _seed(config), _inputs(config)
         # All draws are made first and then replaced, so that a number that is given changes none of the others.
-        values = draw(self.study, self.design.medians | dict(zip(self.inputs, point, strict=True)), seed) | dict(given)
+        medians, drawn = self.design.medians, dict(zip(self.inputs, point, strict=True))
+        values = draw(self.study, medians | drawn, seed, self.design.region) | dict(given)
         self._refuse_bed(values["bed"])
         _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
         answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
@@ -140,7 +142,8 @@ class ServedStudy:
         Raises ValueError for other inputs, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        values = self.design.medians | dict(zip(self.inputs, point, strict=True))
+        inputs = list(self._emulator.runs.inputs)
+        values = self.design.medians | dict(zip(inputs, point, strict=True))
         _refuse(self.study, values)
         for name in values.keys() & given.keys():
             if given[name] != values[name]:
@@ -150,7 +153,8 @@ class ServedStudy:
                 )
         _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
         x = np.array([point])
-        bound = energy_bound(self.design, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1)
+        across = across_of(self.study, self.folder)
+        bound = energy_bound(self.design, self._bed_height, dict(zip(inputs, x.T, strict=True)), 1, across)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})

@@ -44,12 +44,12 @@ def map_sites(
     model: Model | None = None,
     shown: StudyProgress | None = None,
 ) -> SiteMap:
-    """Say what becomes of landers that a study of journeys delivers to each of so many sites over its body.
+    """Say what becomes of landers that a study delivers to each of so many sites over its body.
 
     cell_count: sites, cells of equal area; lander_count: landers of each, a multiple of the refits of the emulator, at
     least two of each; all else: as for `run_study`, which makes the journeys and their emulator first. Raises
-    ValueError for a study without journeys or emulator, one whose landers are delivered as states, and for what
-    `run_study` refuses.
+    ValueError for a study without an emulator of its touchdowns, one whose landers are delivered as states, and for
+    what `run_study` refuses.
     """
     shown = shown or Silent()
     cells = EqualAreaCells.of(cell_count)
@@ -69,13 +69,6 @@ def map_sites(
 
 def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
     """Raise ValueError for a study that has no landers to deliver elsewhere, and for counts that make no map."""
-    if study.journey is None:
-        raise ValueError("sites follows landers to rest, and the study has no [journey]; add it")
-    if study.soil:
-        raise ValueError(
-            "sites follows landers by the emulator of the touchdowns, which has one soil for the whole body, but "
-            "[soil] gives regions their own; leave [soil] out"
-        )
     if study.delivery is not None and study.delivery.is_flown:
         raise ValueError(
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
@@ -109,7 +102,7 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         of="",
         level=LEVEL,
         why=fitted.why,
-        duration_s=study.journey.duration if study.journey else 0.0,
+        duration_s=study.journey.duration,
         landers=lander_count,
         refits=REFIT_COUNT,
         beds=fitted.bed_count,

@@ -123,7 +123,7 @@ def met_ground(
     uniforms: gives numbers between 0 and 1, [count, 2], that draw the gradient; asked where the ground is rough alone.
     """
     from lithobrake.smallbody import incidence_on, met_normals
-    from lithobrake.smallbody.hopping import impact_frame
+    from lithobrake.smallbody.bounce import impact_frame
 
     # Flat facets take no random numbers.
     if not study.site.roughness_deg:
@@ -193,12 +193,17 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
 
 
 def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
-    """The first touchdowns of journeys, numbered from `first` on, each on the soil and under the acceleration there."""
+    """The first touchdowns of landers, numbered from `first` on, each on the soil of where it is.
+
+    Under the acceleration there, too, unless the study gives all of them one.
+    """
     study = site.study
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
     met = first_axes(study, axes, rows)
     arriving = Soils(site).on_soil(on_rough_ground(study, rows, axes, met), origin)
+    if not study.has_local_ground:
+        return arriving
     return on_ground(site.body, arriving, origin, met, site.clock(columns), columns["mass"], columns["spin_period"])
 
 
@@ -226,14 +231,14 @@ def friction_of(row: Mapping[str, float]) -> float:
 def place_region(study: Study) -> tuple[Interval, Interval] | None:
     """The rectangle [m, from the middle of the bed, along x and y] out of which places are drawn; None for no draw.
 
-    Where a drawn study names neither place nor region: all of a bed that repeats; between walls, wherever the lander is
+    Where a study names neither place nor region: all of a bed that repeats; between walls, wherever the lander is
     as far from each as in the smallest bed whose walls do not answer its first blow, or in the middle where a bed is no
     wider than that.
     """
     impact = study.impact
     if impact.region is not None:
         return impact.region.x, impact.region.y
-    if impact.place is not None or study.design.method != "drawn":
+    if impact.place is not None:
         return None
     if study.bed.sides == "periodic":
         along, across = (0.5 * width for width in study.bed.width)

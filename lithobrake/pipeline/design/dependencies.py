@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake import __version__
 from lithobrake.campaign import Command, run_key
-from lithobrake.files.reading import content_hash, hashed_seed
+from lithobrake.files.reading import content_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
@@ -35,15 +35,14 @@ def bed_dependencies(study: Study) -> dict[str, Any]:
 
 
 def bed_setting(study: Study) -> dict[str, Any]:
-    """What is said of the beds but for how many there are; nothing of boulders where there are none."""
-    return study.bed.model_dump(exclude={"bed_count"} | ({"boulders"} if study.bed.boulders is None else set()))
+    """What is said of the beds but for their number and seed; nothing of boulders where there are none."""
+    return study.bed.model_dump(exclude={"bed_count", "seed"} | ({"boulders"} if study.bed.boulders is None else set()))
 
 
 def pour_seed(study: Study, index: int) -> int:
-    """Seed of the pour of a bed: two seeds of studies share none."""
-    # Studies of this method keep the beds that they have always had.
-    if study.design.method == "paper":
-        return hashed_seed(study.seed, "bed", index)
+    """Seed of the pour of a bed; where the study gives none, two seeds of studies share none."""
+    if study.bed.seed is not None:
+        return study.bed.seed + index
     state = np.random.SeedSequence(study.seed, spawn_key=(index,)).generate_state(1, np.uint64)
     # Below 2**53, so that it is the same number in every file.
     return int(state[0]) >> 11
@@ -63,8 +62,7 @@ def touchdown_dependencies(study: Study) -> dict[str, Any]:
         "resolved_speed": study.contact.resolved_speed,
         "held_speed": study.contact.held_speed,
         "time_limit": study.landing.time_limit,
-        # A key that came later is left out where it has no effect, so that folders of earlier versions stay current.
-        **({} if study.journey is None else {"hop_height": study.journey.hop_height}),
+        "hop_height": study.journey.hop_height,
         "version": touchdown_version(),
     }
 

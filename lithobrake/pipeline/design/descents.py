@@ -117,7 +117,6 @@ class Descents:
         from lithobrake.smallbody import fly
 
         study, count = site.study, len(uniforms)
-        assert study.journey is not None
         columns = {key: values[first:] for key, values in site.sampled(first + count).items()}
         states = _states(site, first, uniforms)
         into_body = _into_body(study, states.time, columns["spin_period"])

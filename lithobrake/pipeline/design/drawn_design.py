@@ -56,7 +56,7 @@ def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
 class DrawnDesign:
     """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
 
-    A study of the paper method takes site, inputs, medians and region alone from it.
+    A study that draws no lander takes site, inputs, medians and region alone from it.
     known_site: of the same study with another number of runs.
     """
 
@@ -121,9 +121,9 @@ class DrawnDesign:
 
     @cached_property
     def rows(self) -> list[dict[str, float]]:
-        """All inputs of the runs, by dotted key in the file's units, with what each drew.
+        """All inputs of the first touchdowns, by dotted key in the file's units, with what each drew.
 
-        Of journeys that are flown to the ground these are the first touchdowns of those that reach it.
+        Of landers that are flown to the ground, of those that reach it.
         """
         points = self._points(len(self.beds))
         return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
@@ -152,8 +152,15 @@ class DrawnDesign:
 
     def own_soil(self, run: int) -> dict[str, float]:
         """The numbers of [grain] that a run draws, by dotted key, whatever the region that it comes down in."""
-        (row,) = self.rows_at([0], self._points(1, skip=run))
-        return {name: value for name, value in row.items() if name.startswith(GRAIN)}
+        return {name: float(values[0]) for name, values in self.own_soils(np.array([run])).items()}
+
+    def own_soils(self, runs: np.ndarray) -> dict[str, np.ndarray]:
+        """The same of several runs, [run_count] each."""
+        first, last = int(runs.min()), int(runs.max())
+        count = last + 1 - first
+        rows = self.rows_at([0] * count, self._points(count, skip=first))
+        names = [name for name in rows[0] if name.startswith(GRAIN)]
+        return {name: np.array([row[name] for row in rows])[runs - first] for name in names}
 
     @property
     def shown_row(self) -> dict[str, float]:
@@ -187,6 +194,18 @@ class DrawnDesign:
         """The uncertain inputs without place and azimuth, which each run draws by itself."""
         return {name: law for name, law in self.inputs.items() if name not in (*PLACE, IMPACT_AZIMUTH)}
 
+    @property
+    def met_on_the_way(self) -> tuple[str, ...]:
+        """Numbers of a touchdown that follow no law of the study: soils of regions, and the arrival after a flight."""
+        soils = {f"{GRAIN}{key}" for soil in self.study.soil.values() for key in soil.grain.values()}
+        return (*sorted(soils), *(ARRIVAL if self.is_flown else ()))
+
+    @property
+    def lawful_inputs(self) -> "dict[str, Distribution]":
+        """The uncertain inputs that all first touchdowns draw by the law that the study gives."""
+        met = GRAIN if self.study.soil else None
+        return {name: law for name, law in self.inputs.items() if met is None or not name.startswith(met)}
+
     def with_run_count(self, count: int) -> "DrawnDesign":
         """The design of the same study with so many runs, which has all runs of one with fewer."""
         return DrawnDesign(self.study.with_run_count(count), self.site)
@@ -214,20 +233,15 @@ class DrawnDesign:
     def _first_touchdowns(
         self, rows: list[dict[str, float]], first: int, descents: Descents | None
     ) -> list[dict[str, float]]:
-        """Rows of runs, numbered from `first` on, as the first touchdowns of journeys where a study follows these."""
+        """Rows of landers, numbered from `first` on, as first touchdowns on the ground that they meet."""
         delivered = self._delivered(rows, first)
-        if self.study.journey is None:
-            return delivered
         if descents is not None:
             return descents.first_touchdowns(delivered)
         return on_local_ground(self.site, delivered, first)
 
     def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
-        """Rows of runs as journeys have them before it is known which ground they meet."""
-        journey = self.study.journey
-        if journey is None:
-            return rows
-        begin = {"touchdown": 0.0, TIME_LEFT: journey.duration}
+        """Rows of landers before it is known which ground they meet."""
+        begin = {"touchdown": 0.0, TIME_LEFT: self.study.journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
         return arriving_together(self.site, numbered, first)
 

@@ -1,18 +1,14 @@
-"""Models of a bounce for flights that go on: the emulator again, slow arrivals, and equivalent hard ground."""
+"""What a bounce on soil needs beside its model: inputs of later impacts, equivalent hard ground, and friction."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, DrawnLandings, refits
-from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, gyrations, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, touchdown_values
+from lithobrake.pipeline.samples import CAPTURED, VELOCITY, Samples, touchdown_values
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.touchdown_model import grain_sizes, lander
@@ -20,8 +16,7 @@ from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_INCIDENCE, IMPACT_SPEED, SPIN
 
 if TYPE_CHECKING:
-    from lithobrake.emulator import Emulator
-    from lithobrake.smallbody import Bounce, Impacts, Rebounds, RestitutionTable
+    from lithobrake.smallbody import Impacts, RestitutionTable
 
 RESTITUTION_FILE = "restitution.csv"
 CLEAR_RUN, CAPTURED_RUN, *_ = TouchdownOutcome
@@ -74,56 +69,6 @@ def hard_ground_only(why: str) -> str:
     return f"Journeys from bounce to bounce are on hard ground only: {why}."
 
 
-@dataclass(frozen=True)
-class EmulatorBounce:
-    """The emulator as a bounce of smallbody.hop.
-
-    refits    fits to beds drawn with replacement, of which each lander keeps one through its journey
-    refit     place of that of each lander, [lander_count]
-    inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
-              has met at first is the soil that it meets again, on another bed and place and in another attitude
-    ranges    of the runs; an impact outside them is not answered
-    bound     what energy allows landers after impacts with inputs [count, input_count]
-    """
-
-    refits: "list[Emulator]"
-    refit: np.ndarray
-    inputs: dict[str, np.ndarray]
-    ranges: dict[str, tuple[float, float]]
-    bound: Callable[[np.ndarray], EnergyBound]
-
-    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
-        """Answer each impact with a draw; a lander that goes over the rim or stays in contact has no answer."""
-        from lithobrake.smallbody import Rebounds
-
-        x, outside = inputs_at(impacts, self.inputs, self.ranges)
-        velocity, spin = np.zeros((len(x), 3)), np.zeros((len(x), 3))
-        outcome, bound = np.full(len(x), CLEAR), self.bound(x)
-        # All refits take a seed, whether landers of theirs hit or not.
-        for number, seed in enumerate(random.integers(2**31, size=len(self.refits)).tolist()):
-            of_refit = np.flatnonzero(self.refit[impacts.lander] == number)
-            if len(of_refit):
-                drawn = DrawnLandings.of(self.refits[number], x[of_refit], bound.at(of_refit), seed)
-                velocity[of_refit], spin[of_refit], outcome[of_refit] = drawn.velocity, drawn.spin, drawn.outcome
-        captured = outcome == CAPTURED
-        velocity[captured] = 0.0
-        return Rebounds(velocity, spin, captured, outside | ~(captured | (outcome == CLEAR)))
-
-
-def emulator_bounce(job: Job, samples: Samples) -> EmulatorBounce:
-    """The bounce of a study for samples whose place is known, in their order; each keeps the refit it was drawn of."""
-    known, names = np.flatnonzero(samples.known), list(samples.input_names)
-    inputs = dict(zip(names, samples.inputs[known].T, strict=True))
-    # Every bed is read for it, which no impact should wait for.
-    height = height_of_beds(job.study, job.folder)
-
-    def bound(x: np.ndarray) -> EnergyBound:
-        return energy_bound(job.design, height, dict(zip(names, x.T, strict=True)), len(x))
-
-    ranges = DesignRuns.load(job.folder, "drawn").ranges(names)
-    return EmulatorBounce(refits(job), known % REFIT_COUNT, inputs, ranges, bound)
-
-
 def restitution_table(study: Study, samples: Samples, runs: DesignRuns) -> "RestitutionTable":
     """The table of draws of the emulator, and how many runs and samples each cell has.
 
@@ -134,7 +79,7 @@ def restitution_table(study: Study, samples: Samples, runs: DesignRuns) -> "Rest
     arrival = [touchdown_values(study, samples.input_names, samples.inputs, name) for name in ARRIVAL]
     leaves, ended = samples.leaves, samples.leaves | (samples.outcome == CAPTURED)
     if not leaves.any():
-        raise ValueError("no sample leaves the surface, so the soil implies no restitution; set rest.count to 0")
+        raise ValueError("no sample leaves the surface, so the soil implies no restitution; set hard_ground.count to 0")
     side = max(1, min(MOST_CELLS, math.isqrt(int(leaves.sum()) // CELL_COUNT)))
     edges = [np.quantile(one, np.linspace(0.0, 1.0, side + 1)) for one in arrival]
 
@@ -158,7 +103,7 @@ def restitution_table(study: Study, samples: Samples, runs: DesignRuns) -> "Rest
     stay = counts(place(arrival)[ended & ~leaves]) / np.maximum(of_samples, 1)
     correlation = np.reshape([_score_correlation(*pair) for pair in pairs], (side, side))
     in_runs = counts(place([runs.inputs[name][of_runs] for name in ARRIVAL]))
-    found = (quantiles, correlation, stay, of_samples, in_runs, study.rest.rest_height)
+    found = (quantiles, correlation, stay, of_samples, in_runs, study.hard_ground.rest_height)
     return RestitutionTable(edges[0], edges[1], *found)
 
 
@@ -202,43 +147,3 @@ def has_measured_size(design: DrawnDesign) -> bool:
 def effective_friction(friction: np.ndarray) -> np.ndarray:
     """Friction that stops a lander on hulls, by that of its contacts; beyond the measured ones that of the end."""
     return INTERCEPT + SLOPE * np.clip(friction, *FRICTIONS)
-
-
-@dataclass(frozen=True)
-class SlowArrivals:
-    """A bounce that answers for another where that has no answer, and a lander comes too slowly to leave.
-
-    bounce     of the soil
-    edge       smallest edge of each lander [m], and gyration, its largest moment of inertia over its mass [m2],
-               [lander_count]
-
-    A run calls a lander captured whose energy could not lift it by half of that edge. Contacts only take energy away,
-    so what comes with less never leaves. It slides on with the horizontal velocity that it came with.
-    """
-
-    bounce: "Bounce"
-    edge: np.ndarray
-    gyration: np.ndarray
-
-    def __call__(self, impacts: "Impacts", random: np.random.Generator) -> "Rebounds":
-        from lithobrake.smallbody import Rebounds
-        from lithobrake.touchdown.outcome_judge import CAPTURED_APEX
-
-        found, velocity = self.bounce(impacts, random), np.zeros((len(impacts.speed), 3))
-        squares = impacts.speed**2 + self.gyration[impacts.lander] * (impacts.spin**2).sum(axis=1)
-        lift = -2.0 * impacts.effective_acceleration * CAPTURED_APEX * self.edge[impacts.lander]
-        slow = found.outside & (squares < lift)
-        velocity[:, 0] = impacts.speed * np.sin(impacts.incidence)
-        velocity = np.where(slow[:, None], velocity, found.velocity)
-        return Rebounds(velocity, found.spin, found.captured | slow, found.outside & ~slow)
-
-
-def slow_arrivals(design: DrawnDesign, samples: Samples, bounce: "Bounce") -> SlowArrivals:
-    """The bounce of a study for the samples whose place is known, in their order, answering for `bounce`."""
-    study, known = design.study, design.medians
-    drawn = {name: touchdown_values(study, samples.input_names, samples.inputs, name)[samples.known] for name in known}
-    if "lander.diameter" in known:
-        edge = drawn["lander.diameter"]
-    else:
-        edge = np.full(len(drawn["lander.mass"]), lander(study, known).smallest_edge)
-    return SlowArrivals(bounce, edge, gyrations(design, drawn)[1])

@@ -6,15 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.analysis import sample_inputs
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.runs.energy_bound import EnergyBound, bound_numbers, energy_bound, height_of_beds
+from lithobrake.pipeline.runs.energy_bound import (
+    EnergyBound,
+    across_of,
+    bound_numbers,
+    energy_bound,
+    height_of_beds,
+)
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
@@ -37,18 +44,40 @@ MARGIN = 1e-6
 
 
 def fit_emulator(job: Job) -> None:
+    """Fit the emulator of the first touchdown and write it, or the reason why there is none.
+
+    Raises ValueError where there is none and the study asks for its samples.
+    """
     from lithobrake.emulator.training_runs import FEWEST
 
     runs = DesignRuns.load(job.folder, "drawn")
     left = int(runs.has_outputs.sum())
     if left < FEWEST:
-        raise ValueError(
-            f"{left} of {runs.run_count} runs left the surface, but an emulator needs {FEWEST}; raise design.run_count"
-        )
-    values = {name: runs.inputs[name] for name in job.design.inputs}
-    bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count)
+        why = f"{left} of {runs.run_count} landers left the surface, but an emulator needs {FEWEST}"
+        if job.study.sample_count and job.study.expansion is None:
+            raise ValueError(f"{why}; raise design.run_count, or set monte_carlo.sample_count to 0")
+        job.folder.write_json(EMULATOR_FILE, {"why": f"{why}."})
+        return
+    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
+    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
+    bound = energy_bound(job.design, height, values, runs.run_count, across)
     outputs = outputs_of_runs(runs, RIDERS)
-    fitted(job, job.design.inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+    inputs = inputs_met(job.design, runs)
+    fitted(job, inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+
+
+def inputs_met(design: DrawnDesign, runs: DesignRuns) -> "dict[str, Distribution]":
+    """The inputs of touchdowns with their laws: those of the study, or the values that the runs have met."""
+    from lithobrake.chaos import Empirical
+
+    varied = [name for name in design.met_on_the_way if np.ptp(runs.inputs[name]) > 0.0]
+    return design.inputs | {name: Empirical(runs.inputs[name].tolist()) for name in varied}
+
+
+def why_no_emulator(content: Mapping[str, Any]) -> str | None:
+    """The reason that a file of an emulator holds in its place; None where there is an emulator."""
+    why = content.get("why")
+    return None if why is None else str(why)
 
 
 def fitted(
@@ -173,7 +202,8 @@ class DrawnLandings:
 
 
 def write_explorer(job: Job) -> None:
-    bound = bound_numbers(job.design, height_of_beds(job.study, job.folder))
+    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
+    bound = bound_numbers(job.design, height, across)
     save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(refits(job), bound))
 
 
@@ -217,9 +247,16 @@ def draw_emulator_samples(job: Job) -> None:
 
     So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
     """
-    study = job.study
-    x = sample_inputs(job.design.inputs, study.monte_carlo.sample_count, hashed_seed(study.seed, "samples"))
+    study, design = job.study, job.design
+    if design.met_on_the_way:
+        # Of landers behind those of the study: what these meet follows from where they come down.
+        first = len(design.beds)
+        rows = design.with_run_count(first + study.sample_count).rows[len(design.rows) :]
+        x = inputs_of(rows, list(inputs_met(design, DesignRuns.load(job.folder, "drawn"))))
+    else:
+        x = sample_inputs(design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
     drawn_samples(job, x, "draws").save(job.folder)
+    write_explorer(job)
 
 
 def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
@@ -227,9 +264,10 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
 
     purpose: of the random numbers.
     """
-    study, inputs = job.study, job.design.inputs
-    bound = energy_bound(job.design, height_of_beds(study, job.folder), dict(zip(inputs, x.T, strict=True)), len(x))
-    models = refits(job)
+    study, models = job.study, refits(job)
+    inputs = list(models[0].runs.inputs)
+    height, across = height_of_beds(study, job.folder), across_of(study, job.folder)
+    bound = energy_bound(job.design, height, dict(zip(inputs, x.T, strict=True)), len(x), across)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
     for number, model in enumerate(models):
@@ -241,9 +279,4 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
         if not names:
             names, outputs = list(table), np.empty((len(x), len(table)))
         outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
-    return Samples(list(inputs), names, x, outputs, outcome)
-
-
-def make_emulator(job: Job) -> None:
-    fit_emulator(job)
-    write_explorer(job)
+    return Samples(inputs, names, x, outputs, outcome)

@@ -3,82 +3,174 @@
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
-from lithobrake.pipeline.design.arrivals import first_axes
-from lithobrake.pipeline.design.descents import Descents, descents_in_words
+from lithobrake.pipeline.design.descents import descents_in_words
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.flights import Ways, write_flight_paths, write_shape, write_table
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.journey import ENDS, Journey, JourneyModel, flight_row
+from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
+from lithobrake.pipeline.journeys.landers import ENDS, Landers
+from lithobrake.pipeline.journeys.simulated_touchdowns import LandingRows, answers_of
+from lithobrake.pipeline.journeys.touchdown import FAILED
 from lithobrake.pipeline.runs.landings import account, campaign_setting, model_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.vocabulary.file_names import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import out_of, percent
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
-from lithobrake.vocabulary.quantities import ARC, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
+from lithobrake.vocabulary.quantities import ARC, IMPACT_INCIDENCE, IMPACT_SPEED, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
+
+if TYPE_CHECKING:
+    from lithobrake.smallbody import Flights
 
 JOURNEY_FILES: tuple[str, ...] = (JOURNEYS_FILE, TOUCHDOWNS_FILE, ARCS_FILE)
 # Standard errors on either side of a share that is told while journeys are under way: an interval of 90 %.
 INTERVAL_ERRORS = 1.645
 
 
-def begun_aloft(model: JourneyModel, descents: Descents) -> list[Journey]:
-    """The journeys before their first touchdowns; those that never touch down have ended with their flight."""
-    rows, flights, start = iter(model.design.rows), descents.flights, descents.flights.start
-    journeys = []
-    for number, (status, bed) in enumerate(zip(flights.status.tolist(), model.design.beds, strict=True)):
-        end = ENDS.get(FlightStatus(status))
-        journey = Journey(
-            *(model, number, {"bed": float(bed)} if end else next(rows)),
-            *(flights.position[number], descents.axes[number], float(descents.clock[number])),
-            *(float(start.mass[number]), float(start.spin_period[number])),
-        )
-        journey.end, journey.descent = end, _descent(descents, number, end is None)
+@dataclass(frozen=True)
+class Journeys:
+    """Landers by simulated landings, with the rows of their tables.
+
+    rows: inputs of the present touchdown of each; touchdowns, flights: rows of their tables, by column, of each.
+    """
+
+    landers: Landers
+    rows: list[Row]
+    touchdowns: list[list[dict[str, Any]]] = field(default_factory=list)
+    flights: list[list[dict[str, Any]]] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, landers: Landers) -> "Journeys":
+        count = len(landers)
+        return cls(landers, list(landers.begin.rows), [[] for _ in range(count)], [[] for _ in range(count)])
+
+    @classmethod
+    def begun(cls, design: DrawnDesign) -> "Journeys":
+        """The journeys of a study at their first touchdowns; those that never touch down have ended aloft."""
+        most, descents = design.study.journey.touchdowns, design.descents
+        if descents is None:
+            return cls.of(Landers.of(design, Arrivals.of_rows(design.site, design.rows, 0), most))
+        landers = Landers.of(design, Arrivals.of_descents(descents, design.rows, design.beds), most)
+        down = descents.touches_down
+        landers.is_down[:] = down
+        landers.end[~down] = [str(ENDS[FlightStatus(word)]) for word in descents.flights.status[~down].tolist()]
         # Times count from the first touchdown; of a lander that has none, from its release.
-        journey.time = 0.0 if end is None else float(flights.time[number])
-        journeys.append(journey)
-    return journeys
+        landers.time[~down] = descents.flights.time[~down]
+        journeys = cls.of(landers)
+        begin = np.where(down, -descents.flights.time, 0.0)
+        for lander, flights in enumerate(journeys.flights):
+            flights.append(flight_row(lander, descents.flights, lander, float(begin[lander])))
+        return journeys
+
+    @property
+    def design(self) -> DrawnDesign:
+        return self.landers.design
+
+    def __len__(self) -> int:
+        return len(self.landers)
+
+    def number(self, lander: int) -> int:
+        """The number of the journey of a lander."""
+        return int(self.landers.begin.number[lander])
+
+    def go_on(self, lander: int, record: Record) -> Row | None:
+        """Take in how the present touchdown ended; give the inputs of the next one, or None where there is none."""
+        which, answers = np.array([lander]), answers_of([record])
+        end = float(self.landers.time[lander] + answers.duration[0])
+        self.touchdowns[lander].append(self._touchdown(lander, record, end))
+        flights = self.landers.go_on(which, answers)
+        if flights is not None:
+            self.flights[lander].append(flight_row(self.number(lander), flights, 0, end))
+        if self.landers.end[lander]:
+            return None
+        (self.rows[lander],) = self._landing_rows.of(self.landers.impacts(which))
+        return self.rows[lander]
+
+    @cached_property
+    def _landing_rows(self) -> LandingRows:
+        return LandingRows(self.design, self.landers.begin)
+
+    def _touchdown(self, lander: int, record: Record, end: float) -> dict[str, Any]:
+        landers, place = self.landers, self.landers.position[lander].copy()
+        latitude, longitude = (float(one) for one in landers.body.shape.latitude_longitude(place))
+        return {
+            "journey": self.number(lander),
+            "touchdown": int(landers.touchdowns[lander]),
+            "key": record.key,
+            "outcome": record.outcome or FAILED,
+            "begin_s": float(landers.time[lander]),
+            "end_s": end,
+            "latitude_deg": latitude,
+            "longitude_deg": longitude,
+            **{f"position_{axis}": float(value) for axis, value in zip("xyz", place, strict=True)},
+            **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", self._incoming(lander), strict=True)},
+            **self._landing_rows.soil_column(place),
+        }
+
+    def _incoming(self, lander: int) -> np.ndarray:
+        """Velocity of the present impact against the ground [m/s], fixed to the body."""
+        row, axes = self.rows[lander], self.landers.axes[lander]
+        incidence = math.radians(row[IMPACT_INCIDENCE])
+        along, down = row[IMPACT_SPEED] * math.sin(incidence), row[IMPACT_SPEED] * math.cos(incidence)
+        incoming: np.ndarray = along * axes[0] - down * axes[2]
+        return incoming
+
+    def row(self, lander: int) -> list[Any]:
+        """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side.
+        """
+        landers, end = self.landers, str(self.landers.end[lander])
+        place: list[Any] = ["", "", "", "", "", ""]
+        if end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and landers.is_down[lander]:
+            position = landers.position[lander]
+            latitude, longitude = (float(one) for one in landers.body.shape.latitude_longitude(position))
+            away = float(self.design.site.ways_from_aim(position))
+            place = [latitude, longitude, *position.tolist(), away]
+        counts = [int(landers.contacts[lander]), int(landers.touchdowns[lander]), float(landers.path_length[lander])]
+        bed, time = int(self.rows[lander]["bed"]), float(landers.time[lander])
+        lies = self._lies(lander) if end == JourneyEnd.AT_REST else [""] * 6
+        return [self.number(lander), bed, end, time, *place, *counts, *lies, landers.reason[lander]]
+
+    def _lies(self, lander: int) -> list[Any]:
+        """Side, tilt and attitude of a lander at rest; none of a ball, or where the touchdown has no attitude."""
+        attitude = self.landers.attitude[lander]
+        if self.design.study.lander.is_ball or attitude is None:
+            return [""] * 6
+        side, tilt = side_down(attitude, self.landers.acceleration(np.array([lander]))[0])
+        return [side, math.degrees(tilt), *attitude.as_quat(scalar_first=True).tolist()]
+
+    def write(self, folder: StudyFolder) -> None:
+        """Write journeys.csv, touchdowns.csv and arcs.csv."""
+        write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [self.row(one) for one in range(len(self))], JOURNEY)
+        touchdowns = [list(row.values()) for rows in self.touchdowns for row in rows]
+        columns = JOURNEY_TOUCHDOWN | (SOIL if self.design.study.soil else {})
+        write_table(folder, TOUCHDOWNS_FILE, tuple(columns), touchdowns, columns)
+        flights = [
+            [{**row, "arc": number}[name] for name in ARC] for rows in self.flights for number, row in enumerate(rows)
+        ]
+        write_table(folder, ARCS_FILE, tuple(ARC), flights, ARC)
 
 
-def _descent(descents: Descents, number: int, touches_down: bool) -> dict[str, Any]:
-    flights, start = descents.flights, descents.flights.start
-    time = float(flights.time[number])
-    begin = -time if touches_down else 0.0
-    return flight_row(
-        number, begin, begin + time, float(start.time[number]), start.position[number], start.velocity[number],
-        float(start.mass[number]), float(start.spin_period[number]),
-    )  # fmt: skip
-
-
-def write_journeys(folder: StudyFolder, journeys: Sequence[Journey]) -> None:
-    write_table(folder, JOURNEYS_FILE, tuple(JOURNEY), [journey_row(journey) for journey in journeys], JOURNEY)
-    touchdowns = [list(row.values()) for journey in journeys for row in journey.touchdowns]
-    columns = JOURNEY_TOUCHDOWN | (SOIL if any(journey.model.design.study.soil for journey in journeys) else {})
-    write_table(folder, TOUCHDOWNS_FILE, tuple(columns), touchdowns, columns)
-    flights = [[row[name] for name in ARC] for journey in journeys for row in _flights(journey)]
-    write_table(folder, ARCS_FILE, tuple(ARC), flights, ARC)
-
-
-def _flights(journey: Journey) -> list[dict[str, Any]]:
-    rows = [*([] if journey.descent is None else [journey.descent]), *journey.flights]
-    return [{**row, "arc": number} for number, row in enumerate(rows)]
-
-
-def journey_row(journey: Journey) -> list[Any]:
-    """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side."""
-    place: list[Any] = ["", "", "", "", "", ""]
-    if journey.end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and journey.is_on_ground:
-        latitude, longitude = (float(one) for one in journey.model.body.shape.latitude_longitude(journey.origin))
-        place = [latitude, longitude, *journey.origin.tolist(), float(journey.model.site.ways_from_aim(journey.origin))]
-    side, tilt = ("", "") if journey.lies is None else (journey.lies[0], math.degrees(journey.lies[1]))
-    attitude = [""] * 4 if journey.attitude is None else journey.attitude.as_quat(scalar_first=True).tolist()
-    counts = [journey.contacts, len(journey.touchdowns), journey.path_length]
-    bed = int(journey.row["bed"])
-    return [journey.number, bed, str(journey.end), journey.time, *place, *counts, side, tilt, *attitude, journey.reason]
+def flight_row(journey: int, flights: "Flights", place: int, begin: float) -> dict[str, Any]:
+    """A row of the table of flights but for its number, by column; begin: since the first touchdown [s]."""
+    start = flights.start
+    return {
+        "sample": journey,
+        "begin_s": begin,
+        "end_s": begin + float(flights.time[place]),
+        "clock_s": float(start.time[place]),
+        **{f"position_{axis}": float(value) for axis, value in zip("xyz", start.position[place], strict=True)},
+        **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", start.velocity[place], strict=True)},
+        "site_mass": float(start.mass[place]),
+        "site_spin_period": float(start.spin_period[place]),
+    }
 
 
 def make_journeys(job: Job) -> None:
@@ -87,11 +179,10 @@ def make_journeys(job: Job) -> None:
             job.say(words)
     if job.design.descents is not None:
         job.say(descents_in_words(job.design.descents))
-    journeys = begun(job)
-    rows = job.design.rows
+    journeys, rows = Journeys.begun(job.design), job.design.rows
     # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs("drawn", job.design.keys)
-    chains = follow(job, journeys, rows)
+    chains = follow_in_chains(job, journeys, rows)
     records = [record for chain in chains for record in chain]
     _say_what_was_known(job, records)
     first = Runs([chain[0] for chain in chains], 0)
@@ -99,44 +190,29 @@ def make_journeys(job: Job) -> None:
     # First touchdowns are what the drawn runs of other studies are, so all that reads those serves journeys as well.
     DesignRuns.of(first).save(job.folder, "drawn")
     DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
-    write_journeys(job.folder, journeys)
+    journeys.write(job.folder)
     write_shape(job.site.body, job.folder)
     write_flight_paths(job, job.site.body, Ways.of_journeys(job.folder))
 
 
-def begun(job: Job) -> list[Journey]:
-    model, descents = JourneyModel(job.design), job.design.descents
-    return begin(model, job.design.rows, 0) if descents is None else begun_aloft(model, descents)
-
-
-def begin(model: JourneyModel, rows: Sequence[dict[str, float]], first: int) -> list[Journey]:
-    site = model.site
-    columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
-    origin, mean_axes = site.frames(columns)
-    axes = first_axes(site.study, mean_axes, rows)
-    numbers = zip(
-        *(one.tolist() for one in (site.clock(columns), columns["mass"], columns["spin_period"])), strict=True
-    )
-    starts = zip(rows, origin, axes, numbers, strict=True)
-    return [Journey(model, first + number, *start, *own) for number, (*start, own) in enumerate(starts)]
-
-
-def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
+def follow_in_chains(job: Job, journeys: Journeys, rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
     """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it.
 
-    rows: first touchdowns, in the order of the journeys that have one.
+    Each lander goes on as soon as its own touchdown has ended. rows: first touchdowns, in the order of the journeys
+    that have one.
     """
     # A lander that never touches down has no chain; the others keep their order.
-    landing = [journey for journey in journeys if journey.end is None]
+    landing = journeys.landers.going.tolist()
 
     def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
-        return landing[number].go_on(records[-1])
+        return journeys.go_on(landing[number], records[-1])
 
     def show(state: Tally) -> None:
-        ended, said = sum(one.end is not None for one in journeys), progress_words(journeys, state.ended)
+        ends = [end for end in journeys.landers.end.tolist() if end]
+        said = progress_words(ends, len(journeys), state.ended)
         # Other processes read this from the lock: the tables are written when all journeys have ended.
         job.note(journeys=said)
-        job.progress(ended, len(journeys), "journeys", f"{said}\n{state.sentence()}")
+        job.progress(len(ends), len(journeys), "journeys", f"{said}\n{state.sentence()}")
 
     with Ledger(job.folder / RUNS_FILE) as ledger:
         return run_chains(
@@ -149,10 +225,9 @@ def follow(job: Job, journeys: Sequence[Journey], rows: Sequence[Mapping[str, fl
         )
 
 
-def progress_words(journeys: Sequence[Journey], touchdown_count: int) -> str:
-    """How far journeys are, as "31 of 96 journeys, 140 touchdowns, at rest so far 71 +- 8 %"."""
-    ends = [one.end for one in journeys if one.end is not None]
-    said = f"{out_of(len(ends), len(journeys), 'journeys')}, {touchdown_count} touchdowns"
+def progress_words(ends: Sequence[str], journey_count: int, touchdown_count: int) -> str:
+    """How far journeys are, by the ends so far, as "31 of 96 journeys, 140 touchdowns, at rest so far 71 +- 8 %"."""
+    said = f"{out_of(len(ends), journey_count, 'journeys')}, {touchdown_count} touchdowns"
     if not ends:
         return said
     at_rest, more = ends.count(JourneyEnd.AT_REST), INTERVAL_ERRORS**2

@@ -1,34 +1,38 @@
-"""The emulator of all touchdowns of a study's journeys, and landers at their first touchdowns."""
+"""The emulator of all touchdowns of a study's journeys."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
-from lithobrake.pipeline.design.arrivals import first_axes
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, RIDERS, DrawnLandings, fitted, outputs_of_runs
+from lithobrake.pipeline.first_bounces.emulator import (
+    REFIT_COUNT,
+    RIDERS,
+    DrawnLandings,
+    fitted,
+    inputs_met,
+    outputs_of_runs,
+)
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.touchdown import Answers
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     GROUND,
-    IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
     JOURNEY_DESIGN,
     SPIN,
     TO_REST,
-    UNKNOWN_END,
 )
 
 if TYPE_CHECKING:
@@ -44,44 +48,9 @@ ALONG, ASIDE, DURATION, _ = TO_REST
 OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL_TABLES = ("impact.", "surface.")
-ONE_SOIL = (
-    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
-    "their own."
-)
 # How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
 FACTOR, DEGREES = 1.1, 5.0
 LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
-Row = dict[str, float]
-
-
-@dataclass(frozen=True)
-class Answers:
-    """How touchdowns end, [count] and [count, 3], in the frames of the touchdowns.
-
-    outcome: a word of TouchdownOutcome, "failed", or UNKNOWN_END. velocity [m/s] and spin against the ground [rad/s] of
-    those that left; way: from the impact to where a touchdown ended [m]; duration [s].
-    """
-
-    outcome: np.ndarray
-    velocity: np.ndarray
-    spin: np.ndarray
-    way: np.ndarray
-    duration: np.ndarray
-
-    @classmethod
-    def unknown(cls, count: int) -> "Answers":
-        velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
-        return cls(np.full(count, UNKNOWN_END, dtype="<U16"), velocity, spin, way, np.zeros(count))
-
-    @property
-    def is_known(self) -> np.ndarray:
-        """Which touchdowns have an answer, [count]."""
-        known: np.ndarray = self.outcome != UNKNOWN_END
-        return known
-
-    def fill(self, which: np.ndarray, others: "Answers") -> None:
-        for one in fields(self):
-            getattr(self, one.name)[which] = getattr(others, one.name)
 
 
 @dataclass(frozen=True)
@@ -140,10 +109,14 @@ class TouchdownEmulator:
 
     def beyond(self, inputs: Mapping[str, np.ndarray]) -> np.ndarray:
         """Which input of each touchdown lies beyond the ranges, the first of them, [count]; "" where none does."""
-        found = np.full(len(inputs[IMPACT_SPEED]), "", dtype="<U24")
+        found = np.full(len(next(iter(inputs.values()))), "", dtype="<U24")
         for name, (lower, upper) in self.ranges.items():
-            # No speed is too low: such a touchdown is as the slowest of them.
-            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (name != IMPACT_SPEED))
+            # Whoever asks with the inputs alone asks for what all touchdowns have in common.
+            if name not in inputs:
+                continue
+            # To rest no speed is too low: such a touchdown is as the slowest of them.
+            is_any = name == IMPACT_SPEED and self.design.study.journey.touchdowns is None
+            outside = (inputs[name] > upper) | ((inputs[name] < lower) & (not is_any))
             found[outside & (found == "")] = name
         return found
 
@@ -155,7 +128,8 @@ class TouchdownEmulator:
         found = Answers.unknown(len(refit))
         inside = self.beyond(inputs) == ""
         # Slower than any touchdown is as the slowest of them, which has more energy to leave with.
-        inputs = {**inputs, IMPACT_SPEED: np.maximum(inputs[IMPACT_SPEED], self.ranges[IMPACT_SPEED][0])}
+        if IMPACT_SPEED in self.inputs:
+            inputs = {**inputs, IMPACT_SPEED: np.maximum(inputs[IMPACT_SPEED], self.ranges[IMPACT_SPEED][0])}
         values = {name: inputs[name] for name in self.inputs} | dict(zip(SPIN, spin.T, strict=True))
         bound = energy_bound(self.design, self.bed_height, values, len(refit), self.across)
         x = np.column_stack([inputs[name] for name in self.inputs])
@@ -179,14 +153,17 @@ class TouchdownEmulator:
             found.duration[which[left]] = drawn.outputs[DURATION][left]
         rests = which[found.outcome[which] == TouchdownOutcome.CAPTURED]
         # Nothing is fitted to touchdowns that end at rest: how long and far they go is that of one of them.
+        if not len(rests):
+            return
         taken = self.rest[np.random.default_rng(seed).integers(len(self.rest), size=len(rests))]
         found.duration[rests], found.way[rests, :2] = taken[:, 0], taken[:, 1:]
+        found.length[rests] = np.linalg.norm(found.way[rests], axis=1)
 
 
 def fit_touchdowns(job: Job) -> str | None:
     """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
     runs = with_attitude(job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN))
-    why = ONE_SOIL if job.study.soil else _why_none(runs)
+    why = _why_none(job.study, runs)
     if why is not None:
         job.folder.write_json(TOUCHDOWN_EMULATOR_FILE, {"why": why})
         return why
@@ -212,11 +189,13 @@ def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
 
 
 def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
-    """Soil and lander as the study draws them, and what differs between touchdowns, over its range."""
+    """Soil and lander as the study draws them or runs have met them, and what else differs, over its range."""
     from lithobrake.chaos import LogUniform, Uniform
 
-    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL_TABLES)}
-    ranges = trained_ranges(runs)
+    kept = {name: law for name, law in inputs_met(job.design, runs).items() if not name.startswith(ARRIVAL_TABLES)}
+    # What is the same in all touchdowns says nothing of others; beyond it the emulator has no answer.
+    varies = [name for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items() if lower < upper]
+    ranges = {name: ends for name, ends in trained_ranges(runs).items() if name in varies}
     found = kept | {name: (LogUniform if name == IMPACT_SPEED else Uniform)(*ends) for name, ends in ranges.items()}
     terms = attitude_terms(job.study)
     of_attitude = {} if terms is None else terms.ranges
@@ -228,7 +207,7 @@ def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
     return runs if terms is None else replace(runs, inputs={**runs.inputs, **attitude_inputs_of(terms, runs.inputs)})
 
 
-def _why_none(runs: DesignRuns) -> str | None:
+def _why_none(study: Study, runs: DesignRuns) -> str | None:
     """Why there is nothing to fit an emulator to; None where there is enough."""
     from lithobrake.emulator.training_runs import FEWEST
 
@@ -236,7 +215,7 @@ def _why_none(runs: DesignRuns) -> str | None:
     begin = "The study has no emulator of its touchdowns: "
     if left.sum() < FEWEST:
         return f"{begin}{int(left.sum())} of {runs.run_count} left the ground, and it needs {FEWEST}."
-    if not (outcomes == TouchdownOutcome.CAPTURED).any():
+    if study.journey.touchdowns is None and not (outcomes == TouchdownOutcome.CAPTURED).any():
         return f"{begin}no lander came to rest."
     return None
 
@@ -250,58 +229,3 @@ def why_no_emulator(content: Mapping[str, Any]) -> str | None:
     """The reason that a file of an emulator holds in its place; None where there is an emulator."""
     why = content.get("why")
     return None if why is None else str(why)
-
-
-@dataclass(frozen=True)
-class Arrivals:
-    """Landers at their first touchdowns.
-
-    number: of the journey of each; rows: inputs of its first touchdown; site: columns of SITE_KEYS [count]; origin [m],
-    [count, 3], and axes, in rows, [count, 3, 3], of the frames of the touchdowns, body-fixed; clock [s]: as of the
-    partner; refit: of the emulator, which a lander keeps.
-    """
-
-    number: np.ndarray
-    rows: list[Row]
-    site: Mapping[str, np.ndarray]
-    origin: np.ndarray
-    axes: np.ndarray
-    clock: np.ndarray
-    refit: np.ndarray
-
-    @classmethod
-    def of(
-        cls, place: Site, number: np.ndarray, rows: list[Row], site: Mapping[str, np.ndarray], refit: np.ndarray
-    ) -> "Arrivals":
-        """Those of these rows at these places, by columns of SITE_KEYS [count]."""
-        origin, mean_axes = place.frames(site)
-        axes = first_axes(place.study, mean_axes, rows)
-        return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
-
-    @classmethod
-    def drawn(cls, design: DrawnDesign, first: int, count: int) -> "Arrivals":
-        """Journeys of a study from the number `first` on, each with one refit after the other."""
-        number = np.arange(first, first + count)
-        rows = design.with_run_count(first + count).rows[first:]
-        site = {key: values[first:] for key, values in design.site.sampled(first + count).items()}
-        return cls.of(design.site, number, rows, site, number % REFIT_COUNT)
-
-    def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
-        """Some of the landers, or some of them several times, with these refits."""
-        site = {key: values[which] for key, values in self.site.items()}
-        rows = [self.rows[one] for one in which.tolist()]
-        states = (self.origin[which], self.axes[which], self.clock[which])
-        return Arrivals(self.number[which], rows, site, *states, refit)
-
-    def column(self, name: str) -> np.ndarray:
-        """One input of the first touchdowns [count], in the file's unit."""
-        return np.array([row[name] for row in self.rows])
-
-    @property
-    def spin(self) -> np.ndarray:
-        """Angular velocity against the ground [rad/s], [count, 3], in the frames of the touchdowns."""
-        from lithobrake.geometry.attitude import about_z
-
-        of_bed = np.column_stack([self.column(name) for name in SPIN])
-        turns = [about_z(-angle) for angle in np.radians(self.column(IMPACT_AZIMUTH)).tolist()]
-        return np.array([turn.apply(one) for turn, one in zip(turns, of_bed, strict=True)]).reshape(-1, 3)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from lithobrake.chaos import smolyak_count
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
-from lithobrake.pipeline.paper.expansions import kept_inputs, points, replicate_count
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
 from lithobrake.pipeline.study_folder import StudyFolder
@@ -50,7 +50,7 @@ class PlannedRuns:
     """Distinct touchdowns of a study in which so many inputs are kept after the screening.
 
     A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
-    drawn, side: of a drawn study, which has none of the others.
+    drawn, side: first touchdowns of drawn landers, and their side runs.
     """
 
     kept_count: int
@@ -69,35 +69,44 @@ class PlannedRuns:
     def new(self) -> int:
         return self.total - len(self.known)
 
+    def beside(self, landers: "PlannedRuns") -> "PlannedRuns":
+        """The runs of the expansion beside those of drawn landers."""
+        return replace(self, known=self.known | landers.known, drawn=landers.drawn, side=landers.side)
+
 
 def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
     """The touchdowns with the inputs that the screening keeps; before it, those with one input and with all of them.
 
-    Of a drawn study those of its count; with a half width that is not met yet, also the most that there may be.
+    Of drawn landers those of their count; with a half width that is not met yet, also the most that there may be.
 
     screened: the folder has the screening of this study. known: keys of runs that have ended.
     """
-    study, inputs = drawn.study, tuple(drawn.inputs)
-    if study.design.method == "drawn":
-        return _possible_drawn(drawn, set(known))
+    study, inputs, ended = drawn.study, tuple(drawn.inputs), set(known)
+    if study.expansion is None:
+        return _possible_drawn(drawn, ended)
     if screened:
         from lithobrake.chaos import load
 
         choices = [kept_inputs(study, load(folder / SCREENING_FILE))]
     else:
         choices = [inputs[:1], inputs] if len(inputs) > 1 else [inputs]
-    ended = set(known)
-    return [_planned(drawn, kept, ended) for kept in choices]
+    found = [_planned(drawn, kept, ended) for kept in choices]
+    if not study.design.run_count:
+        return found
+    # The most landers go with the most inputs that may be kept.
+    of_landers = _possible_drawn(drawn, ended)
+    return [found[0].beside(of_landers[0]), found[-1].beside(of_landers[-1])]
 
 
 def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[str, float]]:
     """All inputs of up to `most` of the touchdowns, drawn by chance."""
     study = drawn.study
-    if study.design.method == "drawn":
+    if study.design.run_count:
         return drawn.rows[:most]
     points_of_runs = _planned_points(drawn, kept_count, most).tolist()
     return [
-        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed) for row in points_of_runs
+        draw(study, drawn.medians | dict(zip(drawn.inputs, row, strict=True)), study.seed, drawn.region)
+        for row in points_of_runs
     ]
 
 
@@ -149,7 +158,8 @@ def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> Planne
 
 def _point_count(drawn: DrawnDesign, design: str, kept_count: int) -> int:
     """Points of a design, counted without making them."""
-    section = drawn.study.design
+    section = drawn.study.expansion
+    assert section is not None
     if design.startswith("test"):
         return section.test_count
     if section.points != "smolyak":

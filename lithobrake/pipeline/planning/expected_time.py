@@ -60,12 +60,12 @@ BUSY = 0.7  # of the cores: a load above this is other work
 def expected_bytes(design: DrawnDesign, runs: PlannedRuns, soil: ExpectedSoil | None) -> dict[str, int]:
     """Bytes at most of the files of a finished study, by what they hold; what a program of one's own leaves apart."""
     study = design.study
-    samples, flights, journeys = study.monte_carlo, flight_count(study), journey_count(study)
+    flights, journeys = flight_count(study), followed_count(study)
     # The outcome takes one byte.
-    row = NUMBER * (len(design.inputs) + len(OUTPUTS) * (1 + samples.scatter)) + 1
+    row = NUMBER * (len(design.inputs) + len(OUTPUTS) * (1 + study.monte_carlo.scatter)) + 1
     found = {
-        "runs": LEDGER_RUN * runs.total * (1 if study.journey is None else TOUCHDOWNS),
-        "samples": 0 if study.journey is not None else samples.sample_count * row,
+        "runs": LEDGER_RUN * runs.total * (1 if study.journey.touchdowns == 1 else TOUCHDOWNS),
+        "samples": study.sample_count * row,
         "flights": FLIGHT_ROW * flights + JOURNEY_ROW * journeys + SHAPE_FACET * len(design.site.body.shape.faces),
         "report": REPORT_BYTES,
     }
@@ -79,20 +79,14 @@ def expected_bytes(design: DrawnDesign, runs: PlannedRuns, soil: ExpectedSoil | 
 
 def flight_count(study: Study) -> int:
     """Flights at most, with those of the expansion alone beside those with scatter."""
-    if study.journey is not None:
-        return 0
-    count = min(study.flight.flight_count or study.monte_carlo.sample_count, study.monte_carlo.sample_count)
+    count = min(study.flight.flight_count or study.sample_count, study.sample_count)
     return count * (1 + study.monte_carlo.scatter)
 
 
-def journey_count(study: Study) -> int:
-    """Journeys from bounce to bounce, on hard ground and, where it can be asked, on the soil."""
-    from lithobrake.pipeline.first_bounces.bounce_laws import why_no_soil
-
-    if study.journey is not None:
-        return 0
-    count = min(study.rest.count, study.monte_carlo.sample_count)
-    return count if why_no_soil(study) else 2 * count
+def followed_count(study: Study) -> int:
+    """Landers that a model follows to rest: the emulator, and hard ground with its equivalent of the soil."""
+    drawn = study.design.run_count > 0
+    return (study.journey.emulated_count or 0) * drawn + study.hard_ground.count * (1 + drawn)
 
 
 @cache
@@ -284,11 +278,11 @@ def flights_time(site: Site) -> float:
 
 
 def journeys_time(site: Site) -> float:
-    """Time [s] of all journeys from bounce to bounce."""
+    """Time [s] of all landers that a model follows."""
     study = site.study
     if study.flight.gravity == "exact":
-        return len(site.body.shape.faces) / FACETS * EXACT_JOURNEY * journey_count(study)
-    return JOURNEY * journey_count(study)
+        return len(site.body.shape.faces) / FACETS * EXACT_JOURNEY * followed_count(study)
+    return JOURNEY * followed_count(study)
 
 
 def spread(seconds: float) -> Span:

@@ -21,7 +21,7 @@ from lithobrake.analysis.half_width import (
     half_width_range,
 )
 from lithobrake.campaign import Record
-from lithobrake.pipeline.answer.run_answers import answer_words, answers_of
+from lithobrake.pipeline.answer.run_answers import answer_words, answers_of, answers_rest
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import journey_time, machine_pace, pour_time, run_time
@@ -92,14 +92,13 @@ class ExpectedHalfWidth:
 def expected_width(
     design: DrawnDesign, known: Mapping[str, Record], folder: StudyFolder, soil: ExpectedSoil | None = None
 ) -> ExpectedHalfWidth | None:
-    """What to expect of a drawn study; None for another method, and for one bed, which gives no interval.
+    """What to expect of the drawn landers; None where none is drawn, and for one bed, which gives no interval.
 
     known: runs that have ended, by key; folder: where they may have flown; soil: its beds, where it has any.
     """
     study = design.study
-    if study.design.method != "drawn" or study.bed_count == 1:
+    if not study.design.run_count or study.bed_count == 1:
         return None
-
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
     own = own if own >= FEWEST_ANSWERS and len(np.unique(bed)) > 1 else 0
@@ -114,7 +113,7 @@ def expected_width(
     found = foreseen(law, missing=missing)
     if found is None:
         return None
-    told = () if own else TOLD_OF_RETURNS if study.journey is None else TOLD_AT_REST
+    told = () if own else TOLD_AT_REST if answers_rest(study) else TOLD_OF_RETURNS
     widths = {percent(share): foreseen(AllOrNothing(share, share)) for share in told}
     lost = f"; {percent(missing, 1)} of all landings have no outcome" if missing else ""
     return ExpectedHalfWidth(
@@ -133,7 +132,7 @@ def expected_width(
 
 
 def expected_correlation(study: Study) -> float:
-    return CORRELATION if study.journey is None else JOURNEY_CORRELATION
+    return JOURNEY_CORRELATION if answers_rest(study) else CORRELATION
 
 
 def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
@@ -142,7 +141,7 @@ def law_before(study: Study, reach: float = 1.0) -> "tuple[RunLaw, str]":
     reach: fraction of the landers that reach the ground.
     """
     beds = f"mean correlation {expected_correlation(study):g} of two runs on one bed, as in earlier studies"
-    if study.journey is not None:
+    if answers_rest(study):
         who = "the landers" if reach == 1.0 else "those that reach the ground"
         return AllOrNothing(reach, LEAST_AT_REST * reach), (f"{assumed_at_rest(LEAST_AT_REST, who)}; {beds}")
     if study.design.half_width_of is not None:
@@ -167,7 +166,7 @@ def law_of_runs(values: np.ndarray, bed: np.ndarray) -> "tuple[RunLaw, str]":
 
 def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> float:
     """Fraction of the runs to come that will have no outcome: that of those that have ended, else as foreseen."""
-    if study.journey is not None:
+    if answers_rest(study):
         return 0.0
     if len(values) >= FEWEST_ANSWERS:
         return float(np.mean(~np.isfinite(values)))
@@ -224,10 +223,10 @@ class RunsABed:
 
 def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
     """Those of a drawn study on several beds of its own; None for any other. ended: runs of this study that have."""
-    if study.design.method != "drawn" or study.bed_count == 1 or soil is None:
+    if not study.design.run_count or study.bed_count == 1 or soil is None:
         return None
     pace = machine_pace() or 1.0
-    if study.journey is None:
+    if study.journey.touchdowns == 1:
         span, runs = run_time(soil, ended, pace), ("landing", "landings")
     else:
         span, runs = journey_time(soil, pace), ("journey", "journeys")

@@ -167,9 +167,9 @@ class PlannedGround:
 
 
 def planned_ground(design: DrawnDesign) -> PlannedGround | None:
-    """The ground of the first touchdowns of a study; None where it follows no journeys."""
+    """The ground of the first touchdowns; None where the study gives it, or draws no lander."""
     study = design.study
-    if study.journey is None:
+    if not study.has_local_ground or not study.design.run_count:
         return None
     strength, slope = np.array([[row[name] for name in GROUND[:2]] for row in design.rows]).T
     held = [min(STEEPEST_DEG, math.degrees(math.atan(friction_of(row) / LEAST_FRICTION))) for row in design.rows]

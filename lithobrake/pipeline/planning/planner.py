@@ -29,13 +29,14 @@ from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.stages import stages_of
+from lithobrake.pipeline.stages import STAGES
 from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
 # The title of the stage whose emulator tells what bounces would say.
 EMULATOR = "emulator"
+FOLLOWED = frozenset({"emulated", "hard_ground"})
 SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
@@ -57,8 +58,8 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
     why = None
-    if study.design.method == "paper":
-        why = 'their information follows from an emulator, which needs design.method = "drawn"'
+    if not study.design.run_count:
+        why = "their information follows from an emulator of drawn landers, and design.run_count is 0"
     elif EMULATOR in plan.stages:
         why = (
             "their information follows from the emulator, which does not exist yet; make it with: "
@@ -75,7 +76,7 @@ def plan_of(
     design: DrawnDesign, name: str, folder: StudyFolder, workers: int | None, *, on_cluster: bool = False
 ) -> Plan:
     study, keys = design.study, stage_keys(design.study)
-    old = [one for one in stages_of(study) if not folder.is_current(one.files(study), keys[one.name])]
+    old = [one for one in STAGES if not folder.is_current(one.files(study), keys[one.name])]
     stale = {stage.name: stage.title for stage in old}
     known = known_runs(study, folder)
     runs = tuple(possible_runs(design, folder, "screen" not in stale, known))
@@ -119,17 +120,19 @@ def _made(
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
-    if study.journey is not None:
-        touchdowns, journeys = journeys, touchdowns
+    if study.journey.touchdowns != 1:
+        landers = [min(one.new, one.drawn) if stale & MAKE_RUNS else 0 for one in runs]
+        journeys = min(landers), max(landers)
+        touchdowns = touchdowns[0] - journeys[0], touchdowns[1] - journeys[1]
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
         "touchdowns": touchdowns,
         "journeys to rest": journeys,
-        "samples": (study.monte_carlo.sample_count,) * 2 if "sample" in stale else (0, 0),
+        "samples": (study.sample_count,) * 2 if "sample" in stale else (0, 0),
         # How many samples leave the surface is known when they are drawn.
         "flights": (0, expected_time.flight_count(study) if "fly" in stale else 0),
-        "journeys": (expected_time.journey_count(study),) * 2 if "rest" in stale else (0, 0),
+        "journeys": (expected_time.followed_count(study),) * 2 if stale & FOLLOWED else (0, 0),
     }
 
 

@@ -10,14 +10,13 @@ from lithobrake.analysis.confidence import t_quantile
 from lithobrake.chaos import smolyak_count, term_count
 from lithobrake.pipeline.design.arrivals import smallest_width
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.bounce_laws import hard_ground_only, why_no_soil
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
 from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES
-from lithobrake.vocabulary.number_words import percent, span
+from lithobrake.vocabulary.number_words import percent
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
@@ -44,7 +43,6 @@ def study_warnings(design: DrawnDesign, soil: ExpectedSoil | None) -> list[str]:
         *touchdown,
         *_wide(study),
         *_terms(design),
-        *_bounces(study),
         *_few_beds(study),
         *_one_place(design),
     ]
@@ -117,14 +115,15 @@ def _lost(soil: ExpectedSoil) -> Iterator[str]:
 
 def _time_limit(study: Study, soil: ExpectedSoil) -> Iterator[str]:
     """Touchdowns that may be cut off; those of a journey go on for as long as that."""
-    if study.journey is not None:
+    limit = study.landing.time_limit
+    if limit is None:
         return
     times = [soil.touchdown_time(*landing) for landing in soil.landings[1:]]
-    share = sum(time > study.landing.time_limit for time in times) / len(times)
+    share = sum(time > limit for time in times) / len(times)
     if share > CUT_OFF:
         yield (
             f"About {percent(share)} of the touchdowns may last longer than landing.time_limit, "
-            f"{study.landing.time_limit:g} s, and then have no outcome (longest: about {max(times):.2g} s): raise it."
+            f"{limit:g} s, and then have no outcome (longest: about {max(times):.2g} s): raise it."
         )
 
 
@@ -154,42 +153,23 @@ def _wide(study: Study) -> Iterator[str]:
 
 def _terms(drawn: DrawnDesign) -> Iterator[str]:
     """Fits with hardly more runs than terms."""
-    design, count = drawn.study.design, len(drawn.inputs)
-    if design.method != "paper" or design.fit != "ols":
+    design, count = drawn.study.expansion, len(drawn.inputs)
+    if design is None or design.fit != "ols":
         return
     runs = design.screening_count or smolyak_count(count, design.screening_level)
     terms = term_count(count, design.screening_degree)
     if runs < RUNS_A_TERM * terms:
         yield (
             f"The screening fits {terms} terms to {runs} runs, and runs that do not rebound do not count: a fit "
-            f"with less than {RUNS_A_TERM:g} runs per term overfits; lower design.screening_degree, or add "
+            f"with less than {RUNS_A_TERM:g} runs per term overfits; lower expansion.screening_degree, or add "
             "runs."
-        )
-
-
-def _bounces(study: Study) -> Iterator[str]:
-    """Journeys of which the soil tells nothing, or little."""
-    why = why_no_soil(study)
-    if study.journey is not None:
-        return
-    if study.rest.count and why:
-        yield hard_ground_only(why)
-    elif study.rest.count and study.has_soil:
-        low, high = UNKNOWN_JOURNEYS
-        walls = study.bed.sides == "walls"
-        share = f", in studies so far {span(low, high)}" if walls else ""
-        lost, remedy = (", or leave the bed laterally", ", and widen the bed") if walls else ("", "")
-        yield (
-            f"Many journeys on the soil will have an unknown outcome{share}: their impacts are slower or flatter "
-            f"than those of the runs{lost}; extend impact.speed down to where landers are captured{remedy}."
         )
 
 
 def _few_beds(study: Study) -> Iterator[str]:
     """Beds that give no interval, or a wide one."""
-    if study.design.method != "drawn" or study.bed_count >= FEWEST_BEDS_OF_INTERVAL:
+    if not study.design.run_count or study.bed_count >= FEWEST_BEDS_OF_INTERVAL:
         return
-
     enough = FEWEST_BEDS_OF_INTERVAL
     if study.bed_count == 1:
         yield (
@@ -210,7 +190,7 @@ def _one_place(design: DrawnDesign) -> Iterator[str]:
     study = design.study
     if not design.one_place:
         return
-    if study.design.method == "drawn":
+    if study.design.run_count:
         yield (
             "All runs land at the same point of their beds: give impact.region, or a bed wider than "
             f"{smallest_width(study):.2g} m, in whose middle impact points are sampled."
@@ -235,9 +215,6 @@ MEASURED = ((15.0, 1 / 64), (30.0, 23 / 870), (75.0, 57 / 112), (85.0, 2 / 3))
 MEASURED_ROOM = 2.6
 # Below this angle [deg] landings are lost near where they come down, whatever the width of the bed.
 STEEP = 30.0
-# Least and largest share of journeys on soil with an unknown outcome in studies whose speed and incidence reach over
-# all impacts to come, between walls: 60 to 70 % of 2000 on beds of 2.2 and 1.3 m, 78 % of 4000 on beds of 0.7 m.
-UNKNOWN_JOURNEYS = (0.60, 0.78)
 
 
 def expected_loss(landings: "Sequence[tuple[Lander, Landing]]", width: float) -> float:

@@ -1,5 +1,6 @@
 """The speed and spin that no lander leaves with: what energy allows."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -8,6 +9,7 @@ import numpy as np
 
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander, stored_bed
@@ -76,16 +78,26 @@ def farthest(
     if study.bed.sides == "walls":
         # No two places of a box are farther apart than its diagonal.
         return float(np.hypot(*study.bed.width))
-    limit = study.landing.time_limit
+    limit = _time_limit(study)
     return speed * limit + 0.5 * downhill * limit**2
 
 
-def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
+def _time_limit(study: Study) -> float:
+    return study.journey.duration if study.landing.time_limit is None else study.landing.time_limit
+
+
+def across_of(study: Study, folder: StudyFolder) -> float | None:
+    """Longest way of a first touchdown along the ground [m], where no time limit bounds it; None where one does."""
+    return None if study.landing.time_limit is not None else DesignRuns.load(folder, "drawn").longest_way
+
+
+def bound_numbers(design: DrawnDesign, bed_height: float, across: float | None = None) -> dict[str, float]:
     """The numbers of `energy_bound`, for whoever follows the uncertain inputs alone.
 
-    height: of the bed [m]; across: the box [m], and time_limit: in which a lander comes downhill where there is none
-    [s], each 0 without the other; smallest, largest: squared radii of gyration [m2] at the medians, which go with these
-    powers of mass and diameter; and the medians of whatever the bound depends on, by dotted key.
+    across: as of `energy_bound`. The result has height: of the bed [m]; across: that or the box [m], and time_limit: in
+    which a lander comes downhill where there is neither [s], each 0 without the other; smallest, largest: squared radii
+    of gyration [m2] at the medians, which go with these powers of mass and diameter; and the medians of whatever the
+    bound depends on, by dotted key.
     """
     study, known = design.study, design.medians
     smallest, largest = (float(one[0]) for one in gyrations(design, {key: np.array([known[key]]) for key in known}))
@@ -93,8 +105,8 @@ def bound_numbers(design: DrawnDesign, bed_height: float) -> dict[str, float]:
     names = (IMPACT_SPEED, *SPIN, "surface.slope_deg", "surface.gravity", "lander.mass", "lander.diameter")
     return {
         "height": bed_height,
-        "across": float(farthest(study, 0.0, 0.0)),
-        "time_limit": 0.0 if study.bed.sides == "walls" else study.landing.time_limit,
+        "across": float(farthest(study, 0.0, 0.0)) if across is None else across,
+        "time_limit": 0.0 if study.bed.sides == "walls" or across is not None else _time_limit(study),
         "smallest": smallest,
         "largest": largest,
         "mass_power": -1.0 if has_inertia else 0.0,
@@ -113,7 +125,9 @@ def energy_warning(design: DrawnDesign, records: "Sequence[Record]", bed_height:
     if not left:
         return None
     inputs = {name: np.array([one.inputs[name] for one in left]) for name in design.medians}
-    bound = energy_bound(design, bed_height, inputs, len(left))
+    ways = [math.hypot(one.outputs.get("displacement_x", 0.0), one.outputs.get("displacement_y", 0.0)) for one in left]
+    across = max(ways) if design.study.landing.time_limit is None else None
+    bound = energy_bound(design, bed_height, inputs, len(left), across)
     speed, spin = (np.array([one.outputs[name] for one in left]) for name in ("speed_out", "spin_out"))
     ratio = (speed**2 + (bound.gyration * spin) ** 2) / np.maximum(bound.speed**2, np.finfo(float).tiny)
     over = ratio > 1.0 + SLACK

@@ -77,7 +77,7 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
 
 def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
     study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
-    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate))
+    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate), design.region)
     return {name: float(value) for name, value in drawn.items()}
 
 
@@ -113,12 +113,6 @@ def known_runs(study: Study, folder: StudyFolder) -> dict[str, campaign.Record]:
         for entry in records
         if entry.status == "done" or (entry.status == "failed" and entry.attempts > tries)
     }
-
-
-def make_drawn_runs(job: Job) -> None:
-    # Before the landings, since it may be a reason not to make them.
-    say_gravity(job)
-    make_rows(job, "drawn", [job.design.rows])
 
 
 def make_side_runs(job: Job) -> None:
@@ -165,7 +159,7 @@ def landing_files(study: Study) -> list[str]:
 
 
 def telling_files(study: Study) -> list[str]:
-    return [TELLING] if study.has_soil and study.design.method == "drawn" else []
+    return [TELLING] if study.has_soil and study.design.run_count else []
 
 
 def landing_dependencies(study: Study) -> dict[str, Any]:
@@ -174,9 +168,9 @@ def landing_dependencies(study: Study) -> dict[str, Any]:
 
 def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
-    if design.study.design.method == "paper":
-        # The paper's method has no first drawn run; its landing is that of the medians.
-        return touchdown_model.draw(design.study, design.medians, design.study.seed)
+    if not design.study.design.run_count:
+        # Without a lander that is drawn the landing is that of the medians.
+        return touchdown_model.draw(design.study, design.medians, design.study.seed, design.region)
     return design.shown_row
 
 

@@ -15,7 +15,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study.units import run_units
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.quantities import OUTPUTS, TO_REST
 
 # What is known of every run, whatever its inputs and outputs; times stand in the ledger alone: they never repeat.
 PLAIN_COLUMNS = ("key", "outcome", "reason")
@@ -90,6 +90,12 @@ class DesignRuns:
     def output(self, name: str) -> np.ndarray:
         """One output, shape [run_count]."""
         return self.outputs.get(name, np.full(self.run_count, np.nan))
+
+    @property
+    def longest_way(self) -> float:
+        """Longest way of a touchdown along the ground [m]; 0 where the runs do not say."""
+        along, aside, *_ = (self.output(name) for name in TO_REST)
+        return float(np.nanmax(np.nan_to_num(np.hypot(along, aside)), initial=0.0))
 
     def columns(self, names: Sequence[str]) -> np.ndarray:
         """These inputs in columns, shape [run_count, len(names)]."""

@@ -15,7 +15,7 @@ from scipy.special import ndtri
 from lithobrake.files.oem_reader import message_states
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
-from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
+from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_setting, bed_files, pour_seed, touchdown_keys
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
@@ -308,7 +308,7 @@ def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
 
 
-QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {"method": "drawn"}}
+QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {}, "journey": {"touchdowns": 1}}
 SOIL = ("grain.young_modulus", "grain.friction", "lander.restitution")
 ARRIVAL = ("bed", *PLACE, "impact.azimuth_deg", *ORIENTATION)
 REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
@@ -405,13 +405,13 @@ def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
 
 def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
     arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
-    study = check_tables(QUICK | {"design": {"method": "paper"}, "impact": {**QUICK["impact"], **arrival}}, Path())
-    draws = [draw(study, medians(study), seed) for seed in range(50)]
+    study = check_tables(QUICK | {"impact": {**QUICK["impact"], **arrival}}, Path())
+    draws = [draw(study, medians(study), seed, None) for seed in range(50)]
     assert 8.0 < np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0])).max() <= 10.0
     # The error is drawn after all else, which is as it was without it.
     given = {**QUICK["impact"], "orientation": [1, 0, 0, 0]}
-    without = check_tables(QUICK | {"design": {"method": "paper"}, "impact": given}, Path())
-    before, no_attitude = draw(without, medians(without), 3), dict.fromkeys(ORIENTATION, 0.0)
+    without = check_tables(QUICK | {"impact": given}, Path())
+    before, no_attitude = draw(without, medians(without), 3, None), dict.fromkeys(ORIENTATION, 0.0)
     assert before | no_attitude == draws[3] | no_attitude
 
 
@@ -449,6 +449,14 @@ def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
     assert all(0 <= seed < 2**53 for seed in seeds.values())
 
 
+def test_a_study_may_give_the_seed_of_its_first_bed() -> None:
+    study = drawn(bed={"seed": 7})
+    assert [pour_seed(study, bed) for bed in range(3)] == [7, 8, 9]
+    assert pour_seed(drawn(seed=5, bed={"seed": 7}), 0) == 7
+    assert bed_dependencies(study)["seed"] == 7
+    assert bed_setting(study) == bed_setting(drawn())
+
+
 def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
     study = drawn(50)
     rows, pairs = DrawnDesign(study).rows, DrawnDesign(study).rows_of("soil_pairs")
@@ -460,7 +468,7 @@ def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:
 
 
 def test_twins_come_down_a_little_beside_and_nothing_else_differs() -> None:
-    study = drawn(50, design={"method": "drawn", "side_runs": True, "twin_shift": 2e-4})
+    study = drawn(50, design={"side_runs": True, "twin_shift": 2e-4})
     rows, pairs = DrawnDesign(study).rows[:12], DrawnDesign(study).rows_of("twins")
     assert len(pairs) == 12
     shift = columns(pairs, *PLACE) - columns(rows, *PLACE)

@@ -238,9 +238,8 @@ def test_what_a_run_refuses_a_plan_refuses_in_its_words(changes: dict[str, str],
     ({"lander": {"restitution": 0.95}}, 'lander.restitution has no effect: contact.pair_rule = "smaller"'),
     ({"grain": {"young_modulus": {"distribution": "uniform", "lower": 1e5, "upper": 1e8}}},
      "grain.young_modulus is uniform from 100000 to 1e+08: 90 % of its values are above 1e+07"),
-    ({"design": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
-    ({"design": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
-    ({"rest": {"count": 10}}, "Journeys from bounce to bounce are on hard ground only"),
+    ({"expansion": {"screening_level": 1, "screening_degree": 1, "screening_count": None}}, None),
+    ({"expansion": {"screening_level": 2, "screening_degree": 3}}, "The screening fits 56 terms to 61 runs"),
     ({"bed": {"bed_count": 1}}, "All runs land at the same point of the same bed"),
 ])  # fmt: skip
 def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str | None) -> None:
@@ -250,7 +249,7 @@ def test_what_an_analyst_should_know_is_said(changes: dict[str, Any], said: str 
     assert said in found if said else "The screening fits" not in found
 
 
-SEQUENCE = {"method": "drawn", "run_count": 144}
+SEQUENCE = {"run_count": 144}
 
 
 def drawn(*, design: dict[str, Any] | None = None, **changes: dict[str, Any]) -> Study:

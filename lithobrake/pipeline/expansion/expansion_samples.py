@@ -9,6 +9,7 @@ import numpy as np
 from lithobrake.analysis import OutcomeModel, sample_inputs
 from lithobrake.chaos import basis_matrix, input_tables, sobol_sequence
 from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.expansion.expansions import runs_of_designs
 from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, REFIT_COUNT, save_explorer
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -17,7 +18,7 @@ from lithobrake.results.table import ExplorerTables
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.file_names import REFINED_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import IMPACT_SPEED, PAPER_DESIGNS
+from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
@@ -69,7 +70,7 @@ def draw_samples(job: Job) -> None:
 
     study, inputs = job.study, job.design.inputs
     refined = load(job.folder / REFINED_FILE)
-    x = sample_inputs(inputs, study.monte_carlo.sample_count, sampling_seed(study, "samples"))
+    x = sample_inputs(inputs, study.sample_count, sampling_seed(study, "samples"))
     smooth = _evaluate(refined, x[:, [list(inputs).index(name) for name in refined.input_names]], job)
     job.progress(0, 1, "chances of the outcomes")
     random = np.random.Generator(np.random.PCG64(sampling_seed(study, "capture")))
@@ -88,7 +89,7 @@ def outcome_model(job: Job) -> "OutcomeModel":
     Raises ValueError when no run has ended.
     """
     inputs = job.design.inputs
-    runs = [DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS]
+    runs = runs_of_designs(job).values()
     x = np.concatenate([one.columns(list(inputs)) for one in runs])
     outcomes = [outcome for one in runs for outcome in one.outcomes]
     names = tuple(TouchdownOutcome)

@@ -1,31 +1,30 @@
-"""Journeys of the samples of an expansion, which is asked again at every impact."""
+"""The refined expansion, asked about every impact of a lander."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.first_bounces.bounce_laws import inputs_at
-from lithobrake.pipeline.first_bounces.bounces_to_rest import first_velocity, follow
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.paper.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, Samples, outgoing, rolling_spin
+from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, outgoing, rolling_spin
 from lithobrake.vocabulary.file_names import REFINED_FILE
 
 if TYPE_CHECKING:
     from lithobrake.analysis import OutcomeModel
     from lithobrake.chaos import Surrogate
-    from lithobrake.smallbody import Bounce, Impacts, Rebounds
+    from lithobrake.smallbody import Impacts, Rebounds
 
 
 @dataclass(frozen=True)
 class SoilBounce:
-    """The refined expansion as a bounce of smallbody.hop.
+    """The refined expansion as a bounce.
 
     inputs    of each lander, by dotted key in the file's units, each of shape [lander_count]: the soil that a lander
               has met at first is the soil that it meets again
-    ranges    of the runs; an impact outside them is not answered
+    ranges    of runs and first impacts; an impact outside them is not answered
     scatter   drawn anew at each impact; None: none
 
     Of speed, incidence, spin and effective acceleration at an impact those enter that are inputs of the
@@ -69,18 +68,12 @@ def soil_bounce(job: Job, inputs: dict[str, np.ndarray]) -> SoilBounce:
     from lithobrake.chaos import load
 
     refined = load(job.folder / REFINED_FILE)
-    # In the refined runs the inputs that the screening drops are at their medians, and have no range.
-    ranges = DesignRuns.load(job.folder, "screening").ranges(inputs)
+    # In the refined runs the inputs that the screening drops are at their medians, and have no range. First impacts are
+    # drawn from the distributions for which the expansion stands, which runs need not cover to their ends.
+    of_runs = DesignRuns.load(job.folder, "screening").ranges(inputs)
+    ranges = {
+        name: (min(lower, inputs[name].min()), max(upper, inputs[name].max()))
+        for name, (lower, upper) in of_runs.items()
+    }
     scatter = Scatter.of(job, refined) if job.study.monte_carlo.scatter else None
     return SoilBounce(refined, outcome_model(job), inputs, ranges, scatter)
-
-
-def follow_expansion_samples(job: Job) -> None:
-    follow(job, "screening", _soil)
-
-
-def _soil(job: Job, samples: Samples) -> "tuple[np.ndarray, Bounce]":
-    """Spin after the first impact, of the size that the expansion gives about the axis of rolling, and the bounce."""
-    spin = rolling_spin(first_velocity(samples), np.maximum(samples.output("spin_out"), 0.0))
-    inputs = {name: samples.inputs[samples.known, index] for index, name in enumerate(samples.input_names)}
-    return spin, soil_bounce(job, inputs)

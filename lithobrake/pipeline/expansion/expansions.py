@@ -12,6 +12,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.landings import drawn_rows, make_rows, say_gravity
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
+from lithobrake.study.design_sections import ExpansionSection
 from lithobrake.vocabulary.file_names import REFINED_FILE, SCORES_FILE, SCREENING_FILE
 from lithobrake.vocabulary.quantities import OUTPUTS, PAPER_DESIGNS
 
@@ -19,18 +20,25 @@ if TYPE_CHECKING:
     from lithobrake.chaos import Distribution, Surrogate
 
 
+def section_of(study: Study) -> ExpansionSection:
+    """[expansion] of a study that has one."""
+    assert study.expansion is not None
+    return study.expansion
+
+
 def kept_inputs(study: Study, screening: "Surrogate") -> tuple[str, ...]:
     """The smallest set of inputs that together explain the asked share of every deciding output.
 
     Among sets of one size the one whose weakest output is explained best is taken; the first in order breaks a tie.
     """
-    columns = [screening.output_names.index(name) for name in study.design.kept_outputs]
+    section = section_of(study)
+    columns = [screening.output_names.index(name) for name in section.kept_outputs]
     for size in range(1, len(screening.input_names) + 1):
         groups = list(combinations(screening.input_names, size))
         shares = [min(np.asarray(screening.sobol_group(group))[columns]) for group in groups]
         best = int(np.argmax(shares))
         # All inputs together explain everything, but for rounding.
-        if shares[best] >= study.design.kept_share or size == len(screening.input_names):
+        if shares[best] >= section.kept_share or size == len(screening.input_names):
             return groups[best]
     raise AssertionError("a design has at least one input")
 
@@ -44,7 +52,7 @@ def points(drawn: DrawnDesign, design: str, kept: Sequence[str]) -> np.ndarray:
     # Of its own for each design, so that test points are independent of training points.
     seed = hashed_seed(study.seed, design)
     if design.startswith("test"):
-        x = sample_inputs(varied, study.design.test_count, seed=seed)
+        x = sample_inputs(varied, section_of(study).test_count, seed=seed)
     else:
         x = _training_points(study, design, varied, seed)
     # All inputs stand in every row, so that a run that two designs share has one key and is made once.
@@ -57,7 +65,7 @@ def _training_points(study: Study, design: str, varied: "dict[str, Distribution]
     """The points of a design to which an expansion is fitted, [point_count, len(varied)]."""
     from lithobrake.chaos import fekete, latin_hypercube, smolyak, sobol_sequence
 
-    section = study.design
+    section = section_of(study)
     if section.points == "smolyak":
         return smolyak(varied, level=getattr(section, f"{design}_level"))
     count = getattr(section, f"{design}_count")
@@ -67,7 +75,12 @@ def _training_points(study: Study, design: str, varied: "dict[str, Distribution]
 
 
 def replicate_count(study: Study, design: str) -> int:
-    return 1 if design.startswith("test") else study.design.replicate_count
+    return 1 if design.startswith("test") else section_of(study).replicate_count
+
+
+def runs_of_designs(job: Job) -> dict[str, DesignRuns]:
+    """The runs of all designs, by their names."""
+    return {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
 
 
 def fit_screening(job: Job) -> None:
@@ -90,24 +103,24 @@ def _fit(job: Job, design: str, runs: DesignRuns, names: Sequence[str]) -> "Surr
     """The expansion of the runs that have outputs. Raises ValueError, with the outcomes, when they are too few."""
     from lithobrake.chaos import fit, term_count
 
-    study, found = job.study, int(runs.has_outputs.sum())
-    degree = getattr(study.design, f"{design}_degree")
-    least_squares = study.design.fit == "ols"
+    section, found = section_of(job.study), int(runs.has_outputs.sum())
+    degree = getattr(section, f"{design}_degree")
+    least_squares = section.fit == "ols"
     # The sparse fits choose as many terms as their runs support.
     terms = term_count(len(names), degree) if least_squares else 1
     if found < terms:
         counts = ", ".join(f"{count} {name}" for name, count in runs.outcome_counts().items())
         reason = next((f"; the first failure: {reason}" for reason in runs.reasons if reason), "")
-        measure = "level" if study.design.points == "smolyak" else "count"
+        measure = "level" if section.points == "smolyak" else "count"
         raise ValueError(
             f"of {runs.run_count} {design} runs {found} have outputs ({counts}), fewer than the {terms} terms that are "
-            f"fitted; raise design.{design}_{measure}, lower design.{design}_degree, or choose an impact that rebounds"
-            f"{reason}"
+            f"fitted; raise expansion.{design}_{measure}, lower expansion.{design}_degree, or choose an impact that "
+            f"rebounds{reason}"
         )
     inputs, what = job.design.inputs, f"{design} fit, outputs"
     job.progress(0, len(OUTPUTS), what)
     chosen = {name: inputs[name] for name in names}
-    method = None if study.design.fit == "best" else study.design.fit
+    method = None if section.fit == "best" else section.fit
     return fit(
         chosen,
         runs.columns(names),
@@ -123,9 +136,9 @@ def score_all(job: Job) -> None:
     from lithobrake.chaos import load
 
     screening, refined = load(job.folder / SCREENING_FILE), load(job.folder / REFINED_FILE)
-    runs = {design: DesignRuns.load(job.folder, design) for design in PAPER_DESIGNS}
+    runs = runs_of_designs(job)
     job.progress(0, 1, "scores with their intervals")
-    scores = {design: _score(screening if design == "screening" else refined, runs[design]) for design in PAPER_DESIGNS}
+    scores = {design: _score(screening if design == "screening" else refined, one) for design, one in runs.items()}
     scores["test_screening"] = _score(screening, runs["test_all"])
     job.folder.write_json(SCORES_FILE, scores)
 

@@ -1,0 +1,97 @@
+"""Every delivery option: the landers of the study with other arrivals, followed to their ends."""
+
+from typing import Any
+
+import numpy as np
+
+from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import with_side_down
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
+from lithobrake.pipeline.journeys.first_arrivals import Arrivals
+from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, on_hard_ground
+from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
+from lithobrake.study import Study
+from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.design_sections import SIDE
+from lithobrake.study.lander_section import directions_of_sides
+from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END
+
+SITE = "site."
+
+
+def option_files(study: Study) -> list[str]:
+    """What the stage writes: nothing where the study has no options to choose from."""
+    return [AIM_FILE] if study.aim.names else []
+
+
+def option_dependencies(study: Study) -> Any:
+    return [study.aim.grid, study.aim.sides, study.aim.lander_count, hard_ground_dependencies(study)]
+
+
+def follow_options(job: Job) -> None:
+    """Follow the landers of every option and write aim.csv, one option after the other.
+
+    All have the same landers: soil, bed, site and refit of each are drawn once, and only what is chosen differs. With
+    [hard_ground] they are followed on hard ground too.
+    """
+    begin = option_arrivals(job.design)
+    rows, emulator_file = [], job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)
+    if why_no_emulator(emulator_file) is None:
+        emulator = TouchdownEmulator.read(job.design, job.folder)
+        # At most a tenth as many landings as the journeys had touchdowns, so that the cost stays theirs.
+        found = follow_emulated(job, emulator, begin, "landers at the delivery options", most_landings(job))
+        rows += _rows(job, "soil", found.landers)
+    else:
+        rows += _rows(job, "soil", None)
+    if job.study.hard_ground.count:
+        hard = on_hard_ground(job.design, begin, "options")
+        rows += _rows(job, "hard", follow(job, begin, hard, "landers at the delivery options, hard ground"))
+    write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
+
+
+def _rows(job: Job, ground: str, landers: Landers | None) -> list[list[Any]]:
+    """Rows of aim.csv; without landers nothing is known of any."""
+    count = job.study.aim.lander_count * REFIT_COUNT
+    if landers is None:
+        total = count * len(job.study.aim.aims())
+        return [[ground, one // count, one % REFIT_COUNT, UNKNOWN_END, 0.0, ""] for one in range(total)]
+    columns = (landers.begin.refit, landers.end, landers.time, landers.ways_from_aims)
+    return [
+        [ground, one // count, refit, end, time, way if end == JourneyEnd.AT_REST else ""]
+        for one, (refit, end, time, way) in enumerate(zip(*(column.tolist() for column in columns), strict=True))
+    ]
+
+
+def option_arrivals(design: DrawnDesign) -> Arrivals:
+    """The landers of all options, one option after the other."""
+    study, place = design.study, design.site
+    options = study.aim.aims()
+    one = Arrivals.drawn(design, len(design.rows), study.aim.lander_count * REFIT_COUNT)
+    count = len(one.rows)
+    rows, site = [], {key: np.tile(values, len(options)) for key, values in one.site.items()}
+    for number, option in enumerate(options):
+        chosen = {arrival_key(name): value for name, value in option.items()}
+        for name, value in chosen.items():
+            if name.startswith(SITE):
+                site[name.removeprefix(SITE)][number * count : (number + 1) * count] = value
+        side = chosen.pop(SIDE, None)
+        attitudes = [{}] * count if side is None else _attitudes(study, study.aim.sides[int(side)], one)
+        of_impact = {name: value for name, value in chosen.items() if not name.startswith(SITE)}
+        rows += [row | of_impact | attitude for row, attitude in zip(one.rows, attitudes, strict=True)]
+    numbers, refit = (np.tile(values, len(options)) for values in (one.number, one.refit))
+    return Arrivals.of(place, numbers, rows, site, refit)
+
+
+def _attitudes(study: Study, side: str, landers: Arrivals) -> list[dict[str, float]]:
+    random = np.random.default_rng(hashed_seed(study.seed, "attitudes of options"))
+    directions, count = np.array(directions_of_sides(study.lander)[side]), len(landers.rows)
+    down = directions[random.integers(len(directions), size=count)]
+    turned = with_side_down(down, landers.column(IMPACT_AZIMUTH), random.random(count))
+    return [dict(zip(ORIENTATION, one, strict=True)) for one in turned.tolist()]

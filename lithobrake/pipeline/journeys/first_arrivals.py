@@ -1,0 +1,90 @@
+"""Landers at their first touchdowns: those of the study, further ones, and those that are flown to the ground."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from lithobrake.geometry.attitude import about_z
+from lithobrake.pipeline.design.arrivals import first_axes
+from lithobrake.pipeline.design.descents import Descents
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.site import Site
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, SPIN
+
+Row = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Arrivals:
+    """Landers at their first touchdowns.
+
+    number: of the journey of each; rows: inputs of its first touchdown; site: columns of SITE_KEYS [count]; origin [m],
+    [count, 3], and axes, in rows, [count, 3, 3], of the frames of the touchdowns, body-fixed; clock [s]: as of the
+    partner; refit: of the emulator, which a lander keeps.
+    """
+
+    number: np.ndarray
+    rows: list[Row]
+    site: Mapping[str, np.ndarray]
+    origin: np.ndarray
+    axes: np.ndarray
+    clock: np.ndarray
+    refit: np.ndarray
+
+    @classmethod
+    def of(
+        cls, place: Site, number: np.ndarray, rows: list[Row], site: Mapping[str, np.ndarray], refit: np.ndarray
+    ) -> "Arrivals":
+        """Those of these rows at these places, by columns of SITE_KEYS [count]."""
+        origin, mean_axes = place.frames(site)
+        axes = first_axes(place.study, mean_axes, rows)
+        return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
+
+    @classmethod
+    def of_rows(cls, site: Site, rows: list[Row], first: int) -> "Arrivals":
+        """Journeys with these first touchdowns, numbered from `first` on, each with one refit after the other."""
+        number = np.arange(first, first + len(rows))
+        columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
+        return cls.of(site, number, rows, columns, number % REFIT_COUNT)
+
+    @classmethod
+    def drawn(cls, design: DrawnDesign, first: int, count: int) -> "Arrivals":
+        """Journeys of a study from the number `first` on."""
+        return cls.of_rows(design.site, design.with_run_count(first + count).rows[first:], first)
+
+    @classmethod
+    def of_descents(cls, descents: Descents, rows: list[Row], beds: list[int]) -> "Arrivals":
+        """Journeys at the ends of their flights to the ground; rows: of those that touch down.
+
+        Of the others the rows hold the bed alone, and places are where the flights ended.
+        """
+        touching, start = iter(rows), descents.flights.start
+        all_rows = [
+            next(touching) if down else {"bed": float(bed)}
+            for down, bed in zip(descents.touches_down.tolist(), beds, strict=True)
+        ]
+        number = np.arange(len(beds))
+        # The spin period and mass are those that the flights had; the aim is that of the study.
+        site = descents.site.sampled(len(beds)) | {"mass": start.mass, "spin_period": start.spin_period}
+        states = (descents.flights.position, descents.axes, descents.clock)
+        return cls(number, all_rows, site, *states, number % REFIT_COUNT)
+
+    def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
+        """Some of the landers, or some of them several times, with these refits."""
+        site = {key: values[which] for key, values in self.site.items()}
+        rows = [self.rows[one] for one in which.tolist()]
+        states = (self.origin[which], self.axes[which], self.clock[which])
+        return Arrivals(self.number[which], rows, site, *states, refit)
+
+    def column(self, name: str) -> np.ndarray:
+        """One input of the first touchdowns [count], in the file's unit; 0 of a lander that never touches down."""
+        return np.array([row.get(name, 0.0) for row in self.rows])
+
+    @property
+    def spin(self) -> np.ndarray:
+        """Angular velocity against the ground [rad/s], [count, 3], in the frames of the touchdowns."""
+        of_bed = np.column_stack([self.column(name) for name in SPIN])
+        turns = [about_z(-angle) for angle in np.radians(self.column(IMPACT_AZIMUTH)).tolist()]
+        return np.array([turn.apply(one) for turn, one in zip(turns, of_bed, strict=True)]).reshape(-1, 3)

@@ -1,1 +1,0 @@
-"""The published method: polynomial chaos at one impact point on one bed."""
