@@ -22,8 +22,8 @@ from lithobrake.pipeline.job import Job, Silent
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
-from ..pipeline.journeys.bouncing_lander import bounce, journey_tables
 from ..pipeline.expansion.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
+from ..pipeline.journeys.bouncing_lander import bounce, journey_tables
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
 from ..synthetic_landings import Truth
 

@@ -157,7 +157,8 @@ def test_an_end_of_an_input_moves_every_number(page: Page, first: Path) -> None:
     # What is read is what the law gives there, as soon as all draws are made.
     share = page.value(
         "(() => { const { explorer } = explorers;"
-        "const found = explorer.at([[0.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]); return shareWords(explorer, found); })()"
+        "const found = explorer.at([[0.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
+        "return shareWords(explorer, found); })()"
     )
     page.value(
         "new Promise((done) => { const look = () => document.querySelector('#explorer .share').textContent === "

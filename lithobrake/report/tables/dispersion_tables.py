@@ -139,7 +139,7 @@ def ground_ends(data: PageData) -> PageTable:
         if any(key in table.ends and table.ends[key].count for table in found.values())
     ]
     if any(table.unknown for table in found.values()):
-        rows.append(["unknown outcome", *(percent(table.unknown, data.digits) for table in found.values())])
+        rows.append(["(of all: unknown outcome)", *(percent(table.unknown, data.digits) for table in found.values())])
     if any(table.slid.count for table in found.values()):
         slid = (_share(table.slid, data.digits) for table in found.values())
         rows.append(["(of all: slid along the ground at some time)", *slid])
