@@ -12,12 +12,13 @@ import pytest
 from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import STAGES, StudyFolder, stage_keys
 from lithobrake.pipeline.answer.run_answers import scope
+from lithobrake.pipeline.answer.sample_results import limited_shares, return_fraction
 from lithobrake.pipeline.answer.study_summary import study_tables
+from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.expansion.expansions import kept_inputs, points
 from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.expansion.expansions import kept_inputs, points
-from lithobrake.pipeline.answer.expansion_results import limited_shares, return_fraction
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES
@@ -97,8 +98,8 @@ def test_json_without_nan(tmp_path: Path) -> None:
 
 def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
     study = changed()
-    one = draw(study, medians(study), 5)
-    assert one == draw(study, medians(study), 5)
+    one = draw(study, medians(study), 5, None)
+    assert one == draw(study, medians(study), 5, None)
     drawn = {name: value for name, value in one.items() if medians(study).get(name) != value}
     assert drawn == {"bed": 0.0, **dict(zip(ORIENTATION, [1.0, 0.0, 0.0, 0.0], strict=True))}
 
@@ -106,7 +107,7 @@ def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
 def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
     region = {"x": [-0.1, 0.1], "y": [0.0, 0.05]}
     study = changed(bed={"bed_count": 3}, impact={"region": region, "azimuth_deg": "random", "orientation": "random"})
-    draws = [draw(study, medians(study), seed) for seed in range(3000)]
+    draws = [draw(study, medians(study), seed, place_region(study)) for seed in range(3000)]
     places = np.array([[one[name] for name in PLACE] for one in draws])
     assert np.bincount([round(one["bed"]) for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
     assert places.min(axis=0) == pytest.approx([-0.1, 0.0], abs=1e-3)
@@ -120,7 +121,7 @@ def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
 def test_one_more_bed_takes_its_share_of_runs_and_leaves_the_others_as_they_are() -> None:
     random = {"azimuth_deg": "random", "orientation": "random"}
     two, three = (changed(bed={"bed_count": count}, impact=random) for count in (2, 3))
-    pairs = [(draw(two, medians(two), seed), draw(three, medians(three), seed)) for seed in range(900)]
+    pairs = [(draw(two, medians(two), seed, None), draw(three, medians(three), seed, None)) for seed in range(900)]
     moved = [after for before, after in pairs if before != after]
     assert {one["bed"] for one in moved} == {2.0}
     assert len(moved) == pytest.approx(300, abs=45)
@@ -201,8 +202,8 @@ def test_drawn_velocities_have_the_drawn_speed_and_elevation_and_impossible_draw
 def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_last_that_flew() -> None:
     outcomes = ("clear", "captured", "left_sideways", "outside", "time_limit", "clear", "captured", "clear")
     flown = [{"sample": "0", "status": "impact"}, {"sample": "5", "status": "escaped"}]
-    found = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=True)
-    assert found.sample_count == 6
+    found = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), "One bed.", holds=True)
+    assert (found.sample_count, found.level, found.why) == (6, 0.95, "One bed.")
     table = found.outcomes
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped", "partner")
     assert [table[name].count for name in ends] == [1, 1, 1, 1, 1, 0, 1, 0]
@@ -212,14 +213,14 @@ def test_shares_have_a_class_for_each_end_no_interval_and_no_sample_after_the_la
     assert table["left_sideways"].upper_limit == pytest.approx(1.0 - 0.05 ** (1 / 51))
     assert table["captured"].upper_limit is None
     # What is captured where the site pushes outwards is lifted off again.
-    away = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), holds=False)
+    away = limited_shares(made_samples(*outcomes), flown, Counter(clear=50, captured=1), "One bed.", holds=False)
     assert away.outcomes["returns"].count == 1
 
 
 def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> None:
     study = changed(site={"latitude_deg": 75.0})
     flown = [{"sample": "0", "status": "impact"}] * 3
-    table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, holds=True)
+    table = limited_shares(made_samples(*["clear"] * 3, "captured"), flown, {"clear": 40}, None, holds=True)
     found = return_fraction(study, table, 40)
     assert (found.share.lower, found.share.upper, found.next_bed, found.share.level) == (None, None, None, 0.9)
     assert found.why == scope(study).why

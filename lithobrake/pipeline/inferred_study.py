@@ -162,7 +162,7 @@ class InferredStudy:
         if np.isfinite(upper[0, speed]):
             design = DrawnDesign(self.study)
             height, across = height_of_beds(self.study, self.folder), across_of(self.study, self.folder)
-            bound = energy_bound(design, height, dict(zip(design.inputs, x.T, strict=True)), len(x), across)
+            bound = energy_bound(design, height, dict(zip(runs.inputs, x.T, strict=True)), len(x), across)
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
 

@@ -15,11 +15,11 @@ import numpy as np
 import lithobrake
 from lithobrake.dem import ConvexHull
 from lithobrake.pipeline import StudyFolder
+from lithobrake.pipeline.answer.expansion_results import write_summary
 from lithobrake.pipeline.answer.study_summary import write_drawn_summary
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.answer.expansion_results import write_summary
 from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
@@ -38,12 +38,12 @@ GRAIN_COUNT = 12
 DRAWN: dict[str, dict[str, Any]] = {
     "design": {"run_count": 96, "side_runs": True}, "bed": {"bed_count": 12}, "impact": ARRIVAL,
     "site": {"latitude_deg": 50.0}, "monte_carlo": {"sample_count": 1000},
-    "flight": {"flight_count": 200, "duration": 240.0}, "rest": {"count": 20, "duration": 3600.0},
+    "flight": {"flight_count": 200, "duration": 240.0}, "hard_ground": {"count": 20},
     "limit_states": {"fast": "speed_out > 0.05"},
 }  # fmt: skip
 PAPER: dict[str, dict[str, Any]] = {
-    **UNCERTAIN, "design": TWO_STEPS, "monte_carlo": {"sample_count": 400, "scatter": True},
-    "flight": {"flight_count": 100, "duration": 3600.0}, "rest": {"count": 20, "duration": 7200.0},
+    **UNCERTAIN, "design": {"run_count": 0}, "expansion": TWO_STEPS, "monte_carlo": {"sample_count": 400, "scatter": True},
+    "flight": {"flight_count": 100, "duration": 3600.0}, "hard_ground": {"count": 20},
 }  # fmt: skip
 
 

@@ -28,9 +28,9 @@ def script() -> dict[str, Any]:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study with scatter, journeys on both grounds, and an expansion of each kind of fit to choose from."""
     tables = models.small_study()
-    tables["design"] |= {"fit": "best", "screening_level": 2}
+    tables["expansion"] |= {"fit": "best", "screening_level": 2}
     tables["monte_carlo"]["scatter"] = True
-    tables["rest"] = {"count": 10}
+    tables["hard_ground"] = {"count": 10}
     tables["impact"]["speed"] = {"distribution": "uniform", "lower": 0.1, "upper": 0.2}
     out = tmp_path_factory.mktemp("keys") / "out"
     lithobrake.run(tables, out, workers=1, model=models.bounce, report=False)

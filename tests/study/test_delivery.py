@@ -102,11 +102,10 @@ def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], word
     assert words.replace("'", '"') in refused(given).replace("'", '"')
 
 
-def test_a_delivery_by_states_needs_a_journey() -> None:
-    tables = deepcopy(TABLES) | {"delivery": FLOWN}
-    del tables["journey"]
-    with pytest.raises(StudyError, match=r"delivery\.frame goes with \[journey\]"):
-        check_tables(tables | {"surface": {"gravity": 5e-5}}, Path())
+def test_landers_that_are_flown_to_the_ground_take_the_acceleration_of_where_they_are() -> None:
+    said = refused(FLOWN, surface={"gravity": 5e-5}, journey={"touchdowns": 1})
+    assert "surface.gravity is 5e-05, and landers that fly to the ground from a state take the acceleration" in said
+    assert checked(FLOWN, journey={"touchdowns": 1}).has_local_ground
     assert "delivery.frame goes with states or [delivery.release]" in refused(SURFACE | {"frame": "icrf"})
 
 

@@ -24,24 +24,17 @@ from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
 from lithobrake.vocabulary.quantities import BEDS, FLIGHT, OUTPUTS, PERIODS_TRAVELLED, RUN, TO_REST, TOUCHDOWN, quantity
 
 TABLES: dict[str, Any] = tomllib.loads(template())
-DRAWN_TABLES = TABLES | {"design": {"method": "drawn"}}
 
 
 def study(changes: dict[str, dict[str, Any]]) -> Study:
-    tables = DRAWN_TABLES | {name: {**DRAWN_TABLES.get(name, {}), **keys} for name, keys in changes.items()}
+    tables = TABLES | {name: {**TABLES.get(name, {}), **keys} for name, keys in changes.items()}
     return check_tables(tables, Path())
 
 
-def test_the_drawn_method_draws_what_is_left_open() -> None:
+def test_landers_draw_what_is_left_open() -> None:
     found = study({})
     assert (found.impact.azimuth_deg, found.impact.orientation) == ("random", "random")
     assert (found.design.run_count, found.bed_count, found.design.side_runs) == (240, 12, False)
-
-
-def test_sequence_is_an_alias_of_the_drawn_method() -> None:
-    alias = study({"design": {"method": "sequence"}})
-    assert alias == study({})
-    assert alias.model_dump()["design"]["method"] == "drawn"
 
 
 def test_what_is_given_is_kept() -> None:
@@ -55,10 +48,8 @@ def test_an_error_of_pointing_is_about_the_attitude_as_given_even_if_that_is_lef
     assert study({"impact": {"pointing_error_deg": 3.0}}).impact.orientation == (1.0, 0.0, 0.0, 0.0)
 
 
-def test_the_papers_method_has_its_defaults_still() -> None:
-    found = check_tables(DRAWN_TABLES | {"design": {"method": "paper"}}, Path())
-    assert (found.impact.azimuth_deg, found.impact.orientation) == (0.0, (1.0, 0.0, 0.0, 0.0))
-    assert found.bed_count == 1
+def test_a_study_without_drawn_landers_has_one_bed() -> None:
+    assert study({"design": {"run_count": 0}, "expansion": {}}).bed_count == 1
 
 
 def test_beds_follow_from_the_runs_within_limits() -> None:
@@ -69,9 +60,7 @@ def test_beds_follow_from_the_runs_within_limits() -> None:
 
 
 REFUSED_KEYS: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
-    ({"design": {"refined_level": 3, "fit": "ols"}},
-     ['design.fit, design.refined_level go with design.method = "paper", and it is "drawn"']),
-    ({"monte_carlo": {"scatter": True}}, ['monte_carlo.scatter is true and goes with design.method = "paper"']),
+    ({"monte_carlo": {"scatter": True}}, ["monte_carlo.scatter is true, and there is no [expansion]"]),
     ({"design": {"run_count": 20}, "bed": {"bed_count": 21}}, ["bed.bed_count is 21, and design.run_count 20"]),
     ({"design": {"half_width": 0.1, "half_width_of": "fast"}}, ['design.half_width_of is "fast"; allowed: a name of']),
     ({"design": {"half_width_of": "fast"}, "limit_states": {"fast": "returns"}},
@@ -81,8 +70,10 @@ REFUSED_KEYS: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
     ({"design": {"half_width": 0.02, "largest_run_count": 100}},
      ["design.largest_run_count is 100; allowed: at least design.run_count, 240"]),
     ({"design": {"half_width": 0.02}, "bed": {"bed_count": 1}}, ["design.half_width is 0.02, and runs on one bed"]),
-    ({"design": {"method": "paper", "half_width": 0.02}},
-     ['design.half_width goes with design.method = "drawn", and it is "paper"']),
+    ({"design": {"run_count": 0, "half_width": 0.02}, "expansion": {}, "bed": {"bed_count": 12}},
+     ["design.half_width asks landers drawn from the laws of the inputs, and design.run_count is 0"]),
+    ({"design": {"run_count": 0, "side_runs": True}, "expansion": {}},
+     ["design.side_runs asks landers drawn from the laws of the inputs, and design.run_count is 0; raise it"]),
     ({"design": {"run_count": "many"}}, ["design.run_count is", "whole number"]),
     ({"design": {"side_runs": "yes"}}, ["design.side_runs is", "true or false"]),
     ({"design": {"side_runs": True, "twin_shift": 0.0}}, ["design.twin_shift is 0", "above 0 [m]"]),
@@ -93,7 +84,7 @@ REFUSED_KEYS: list[tuple[dict[str, dict[str, Any]], list[str]]] = [
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED_KEYS, ids=[words[0] for _, words in REFUSED_KEYS])
-def test_what_does_not_go_with_the_drawn_method_is_refused_in_one_sentence(
+def test_what_does_not_go_together_is_refused_in_one_sentence(
     changes: dict[str, dict[str, Any]], words: list[str]
 ) -> None:
     with pytest.raises(StudyError) as refusal:
@@ -106,7 +97,7 @@ def test_what_does_not_go_with_the_drawn_method_is_refused_in_one_sentence(
 def test_tables_that_are_none_are_refused_as_ever() -> None:
     for name in ("bed", "impact", "design"):
         with pytest.raises(StudyError, match=f"{name} is 3"):
-            check_tables(DRAWN_TABLES | {name: 3}, Path())
+            check_tables(TABLES | {name: 3}, Path())
 
 
 REFUSED_CONDITIONS: list[tuple[str, str]] = [
@@ -150,9 +141,9 @@ def test_other_things_than_texts_under_names_are_refused() -> None:
     assert "limit_states.too fast is no name" in refusal({"too fast": "returns"})
 
 
-def test_a_method_without_drawn_runs_is_refused() -> None:
-    said = refusal({"fast": "returns"}, design={"method": "paper"})
-    assert 'limit_states.fast goes with design.method = "drawn", and it is "paper"' in said
+def test_a_study_without_drawn_landers_has_no_limit_states() -> None:
+    said = refusal({"fast": "returns"}, design={"run_count": 0}, expansion={})
+    assert "[limit_states] asks landers drawn from the laws of the inputs, and design.run_count is 0" in said
 
 
 def test_a_study_keeps_its_conditions_by_name() -> None:
@@ -270,7 +261,7 @@ def test_a_copy_replaces_nothing(tmp_path: Path) -> None:
 
 def test_every_input_of_a_run_has_its_unit() -> None:
     study = check_tables(tomllib.loads(template()), Path())
-    inputs, units = draw(study, medians(study), 1), input_units()
+    inputs, units = draw(study, medians(study), 1, None), input_units()
     # The number of the bed that a run draws counts nothing.
     assert set(inputs) - set(units) == {"bed"}
     assert (units["grain.young_modulus"], units["grain.friction"], units["impact.incidence_deg"]) == ("Pa", "-", "deg")

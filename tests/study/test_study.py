@@ -123,7 +123,9 @@ REFUSED = [
     ("grain.friction", table("uniform", lower=0.3), ["uniform takes exactly the numbers lower, upper"]),
     ("grain.youngs_modulus", 1e7, ["grain.youngs_modulus is not a known key", "did you mean young_modulus?"]),
     ("grian", {}, ["grian is not a known key", "did you mean grain?"]),
-    ("surface", None, ["surface is missing, and so is [journey]"]),
+    ("journey", None, ["[journey] is missing, which says how far landers are followed; add it: write touchdowns = 1"]),
+    ("journey.touchdowns", 0, ["journey.touchdowns is 0", "at least 1 and at most 1000"]),
+    ("rest.count", 100, ["rest is a key of an older version; write [hard_ground]"]),
     ("site", 3, ["site is 3", "write [site]"]),
     ("impact.incidence_deg", 95.0, ["below 90 [deg]"]),
     ("impact.azimuth_deg", "randm", ['or "random"']),
@@ -173,22 +175,29 @@ REFUSED = [
     ("bed.diameter", table("constant", value=0.6), ["bed.diameter reaches to 0.6 m", "0.183 m"]),
     ("bed.diameter", table("constant", value=0.1, upper=3.0), ["bed.diameter.upper is not a known key"]),
     ("contact.pair_rule", "smalest", ["did you mean smaller?"]),
-    ("design.screening_degree", 9, ["design.screening_degree is 9", "2002 terms", "61 nodes"]),
-    ("design.points", "sobol", ["did you mean sobol_sequence?"]),
-    ("design.points", "latin_hypercube", ["design.screening_count is missing", "design.refined_count is missing"]),
-    ("design.refined_count", 50, ["design.refined_count does not go with", '"smolyak" takes levels']),
-    ("design.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
-    ("design.method", "paperr", ["allowed: drawn or paper", "did you mean paper?"]),
-    ("design.run_count", 100, ['design.run_count goes with design.method = "drawn", and it is "paper"']),
+    ("expansion.screening_degree", 9, ["expansion.screening_degree is 9", "2002 terms", "61 nodes"]),
+    ("expansion.points", "sobol", ["did you mean sobol_sequence?"]),
+    (
+        "expansion.points",
+        "latin_hypercube",
+        ["expansion.screening_count is missing", "expansion.refined_count is missing"],
+    ),
+    ("expansion.refined_count", 50, ["expansion.refined_count does not go with", '"smolyak" takes levels']),
+    ("expansion.replicate_count", 2, ["draw nothing by chance", "impact.region"]),
+    ("design.method", "paper", ["design.method is a key of an older version", "[expansion] with design.run_count = 0"]),
+    ("design.screening_level", 2, ["design.screening_level is a key of an older version; write it in [expansion]"]),
+    ("design.run_count", 1, ["design.run_count is 1; allowed: at least 2, or 0 with [expansion]"]),
+    ("expansion", None, ["design.run_count is 0; allowed: at least 2, or 0 with [expansion]"]),
+    ("monte_carlo.sample_count", 50, ["monte_carlo.sample_count is 50; allowed: 0, or at least 100; raise it"]),
     ("impact.pointing_error_deg", 200.0, ["above 0 and at most 180 [deg]"]),
-    ("design.replicate_count", 0, ["at least 1 and at most 1000"]),
-    ("design.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
+    ("expansion.replicate_count", 0, ["at least 1 and at most 1000"]),
+    ("expansion.fit", "least squares", ["allowed: ols, lars, omp, gaussian_process or best"]),
     ("monte_carlo.scatter", "yes", ['monte_carlo.scatter is "yes"; allowed: true or false; write it without']),
     ("grain.friction", table("choice", values=[0.3, 0.9]), ["discrete choices are not supported"]),
     (
         "grain.young_modulus",
         table("log_normal", mean=16.0, std=1.0),
-        ["which has no end", "log_uniform", "design.points"],
+        ["which has no end", "log_uniform", "expansion.points"],
     ),
     ("grain.friction", table("exponential", rate=2.0), ["grain.friction is exponential, which has no end"]),
     ("impact.spin_x", table("normal", mean=0.0, std=0.1), ["impact.spin_x is normal, which has no end"]),
@@ -216,13 +225,17 @@ REFUSED = [
     ("lander.mass", [[[[[[1]]]]]], ["lander.mass is [[[[...]]]]"]),
     ("lander.mass", table(["uniform"]), ["lander.mass is", "did you mean uniform?"]),  # type: ignore[arg-type]
     ("lander.mass", "x" * 5000, ["(5002 characters)"]),
-    ("design.kept_outputs", "speed_out", ['design.kept_outputs is "speed_out"; allowed: a list', "square brackets"]),
+    (
+        "expansion.kept_outputs",
+        "speed_out",
+        ['expansion.kept_outputs is "speed_out"; allowed: a list', "square brackets"],
+    ),
     ("title", 3, ["title is 3; allowed: text; write it in quotation marks"]),
     ("impact.orientation", [0, 0, 0, 0], ["a quaternion of length 0", "allowed: 0.001 to 1000", "[1, 0, 0, 0]"]),
     ("impact.orientation", [1e-300, 0, 0, 0], ["a quaternion of length 1e-300"]),
     ("impact.orientation", [1e300, 1e300, 0, 0], ["a quaternion of length 1.41e+300"]),
     ("site.spin_period", 1e-200, ["site.spin_period reaches down to 1e-200 s", "at least 1 s", "write seconds"]),
-    ("design.kept_outputs", [], ["design.kept_outputs is []", "at least 1 entry"]),
+    ("expansion.kept_outputs", [], ["expansion.kept_outputs is []", "at least 1 entry"]),
     ("solver.inputs", {"spring": 1.0}, ["solver.command is missing"]),
     ("solver.function", "0123456789abcdef", ["solver.function is not a known key"]),
     ("solver", {"command": "python3", "inputs": {"a$b": 1.0}}, ["solver.inputs.a$b is no name", "letters, digits"]),
@@ -274,20 +287,21 @@ def test_the_boulders_of_a_study_are_those_of_its_beds() -> None:
     assert "boulders" not in bed_setting(check_tables(TABLES, Path()))
 
 
-SOBOL = {"design.points": "sobol_sequence", "design.screening_count": 100, "design.refined_count": 100}
+SOBOL = {"expansion.points": "sobol_sequence", "expansion.screening_count": 100, "expansion.refined_count": 100}
 ACCEPTED = [
     {"grain.friction": table("exponential", rate=2.0), **SOBOL},
-    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "design.points": "fekete"},
+    {"lander.mass": table("log_normal", mean=1.0, std=0.1), **SOBOL, "expansion.points": "fekete"},
     {"site.latitude_deg": table("uniform", lower=-10.0, upper=10.0),
      "site.mass": table("gamma", shape=9.0, scale=6e10)},
-    {"design.replicate_count": 3, "impact.orientation": "random"},
-    {"design.replicate_count": 2, "bed.bed_count": 2, "design.fit": "best", "monte_carlo.scatter": True},
+    {"expansion.replicate_count": 3, "impact.orientation": "random"},
+    {"expansion.replicate_count": 2, "bed.bed_count": 2, "expansion.fit": "best", "monte_carlo.scatter": True},
     {"grain.restitution": 1.0}, {"bed.grain_count": 100.0}, {"lander.inertia": [0.001, 0.002, 0.003]},
     {"lander.mass": 1e6, "solver.command": "python3", "impact.speed": 900.0},
     {"site.north_error": table("normal", mean=0.0, std=50.0), "site.east_error": 590.0},
     {"impact.incidence_deg": table("truncated_normal", mean=30.0, std=5.0, lower=10.0, upper=50.0)},
     {"impact.azimuth_deg": "random", "impact.orientation": "random"},
-    {"impact.region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]}, "impact.azimuth_deg": table("uniform", lower=0, upper=90)},
+    {"impact.place": None, "impact.region": {"x": [-0.1, 0.1], "y": [0.0, 0.1]},
+     "impact.azimuth_deg": table("uniform", lower=0, upper=90)},
     {"surface.gravity": table("uniform", lower=-1e-5, upper=5e-5), "bed.settle_gravity": 2e-5},
 ]  # fmt: skip
 
@@ -330,26 +344,24 @@ def test_ground_that_repeats_is_wide_enough_and_holds_on_its_slope(changes: dict
     assert problems({"bed.sides": "periodic"}) == []
 
 
-def test_beds_repeat_unless_the_method_is_that_of_the_paper() -> None:
-    tables = {key: value for key, value in TABLES.items() if key != "design"}
-    sides = [
-        check_tables(tables | design, Path()).bed.sides
-        for design in ({}, {"design": {"method": "drawn"}}, {"design": {"method": "paper"}})
-    ]
-    assert sides == ["periodic", "periodic", "walls"]
+def test_beds_repeat_unless_the_file_has_walls_and_walls_hold_no_lander_beyond_its_first_touchdown() -> None:
+    sides = {key: value for key, value in TABLES["bed"].items() if key != "sides"}
+    assert check_tables(TABLES | {"bed": sides}, Path()).bed.sides == "periodic"
+    (said,) = problems({"journey.touchdowns": None, "surface.gravity": None, "bed.settle_gravity": 1e-5})
+    assert 'set bed.sides = "periodic", or journey.touchdowns = 1' in said
 
 
-def test_no_scenario_of_the_drawn_method_has_an_edge_to_leave_over() -> None:
+def test_no_scenario_with_drawn_landers_has_an_edge_to_leave_over() -> None:
     studies = [read_study(path) for path in STUDIES]
-    assert {study.bed.sides for study in studies if study.design.method == "drawn"} == {"periodic"}
-    assert sum(study.design.method == "drawn" for study in studies) >= 6
+    assert {study.bed.sides for study in studies if study.design.run_count} == {"periodic"}
+    assert sum(bool(study.design.run_count) for study in studies) >= 6
 
 
 def test_counts_must_reach_the_terms_of_least_squares_only() -> None:
-    few = {**SOBOL, "design.screening_count": 20}
+    few = {**SOBOL, "expansion.screening_count": 20}
     (said,) = problems(few)
-    assert "it has 21 terms, more than the 20 points of design.screening_count; lower the degree or raise" in said
-    assert problems({**few, "design.fit": "omp"}) == []
+    assert "it has 21 terms, more than the 20 points of expansion.screening_count; lower the degree or raise" in said
+    assert problems({**few, "expansion.fit": "omp"}) == []
 
 
 def test_all_problems_are_said_at_once() -> None:
@@ -357,8 +369,8 @@ def test_all_problems_are_said_at_once() -> None:
 
 
 def test_a_list_with_a_wrong_entry_is_told_once() -> None:
-    assert [text.split(" is ")[0] for text in problems({"design.kept_outputs": ["speed"]})] == [
-        "study.toml: design.kept_outputs.0"
+    assert [text.split(" is ")[0] for text in problems({"expansion.kept_outputs": ["speed"]})] == [
+        "study.toml: expansion.kept_outputs.0"
     ]
 
 

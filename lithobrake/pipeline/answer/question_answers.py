@@ -67,7 +67,7 @@ def _one(
                 f"limit_states.{name} uses {output}, which no run has; have the program that simulates the touchdowns "
                 "return it, or leave the limit state out"
             )
-    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).inputs
+    failing, inputs = failing_runs(state, runs, fates), DrawnDesign(study).lawful_inputs
     if not np.isfinite(failing).any():
         raise ValueError(
             f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "

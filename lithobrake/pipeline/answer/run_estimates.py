@@ -148,10 +148,7 @@ def _moved(one: run_results.CountedShare, share: float) -> run_results.CountedSh
 
 def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
-    inputs = DrawnDesign(study).inputs
-    if study.soil:
-        # On the soils of regions the grains of a run follow another law than the study gives for [grain].
-        inputs = {name: law for name, law in inputs.items() if not name.startswith(GRAIN)}
+    inputs = DrawnDesign(study).lawful_inputs
     terms = analysis.regression_terms(inputs, runs.columns(list(inputs)))
     bed, why = runs.inputs["bed"], run_answers.why_no_interval(study)
     return analysis.share_estimate(share, bed, terms=terms, like_missing=run_answers.left_in_flight(runs), why=why)

@@ -19,6 +19,7 @@ from lithobrake.results.model_results import SampledOutput, SampleResults
 from lithobrake.results.run_results import CountedShare, ReturnFraction, SampleShares
 from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import Estimates
+from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import ESTIMATES_FILE, SAMPLE_FLIGHTS_FILE
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL, LEVEL, QUANTILES
@@ -47,12 +48,17 @@ def sample_results(job: Job) -> SampleResults:
 
 
 def return_fraction_of_samples(job: Job, found: SampleShares) -> ReturnFraction:
-    """The return fraction of a study that draws no landers: that of the samples of its expansion.
+    """The return fraction of a study that draws no landers: that of the samples of its expansion."""
+    return return_fraction(job.study, found, sum(ended_runs(job).values()))
+
+
+def return_fraction(study: Study, found: SampleShares, run_count: int) -> ReturnFraction:
+    """The return fraction of samples of an expansion that was fitted to so many runs.
 
     Without an interval, since neither other beds nor the error of the expansion are known.
     """
     share, missing = (found.outcomes[name].share.value for name in ("returns", "missing"))
-    over, run_count = scope(job.study), sum(ended_runs(job).values())
+    over = scope(study)
     return ReturnFraction(
         share=Estimate(share, None, None, why_missing=over.why),
         from_=f"{found.sample_count} samples of an expansion fitted to {run_count} landings {over.landings}",

@@ -27,7 +27,11 @@ from lithobrake.pipeline.answer.journey_ends import (
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
 from lithobrake.pipeline.answer.run_answers import described, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, SPLIT, no_return_fraction, parts_of_journeys
-from lithobrake.pipeline.answer.sample_results import return_fraction_of_samples, sample_results
+from lithobrake.pipeline.answer.sample_results import (
+    return_fraction_of_known,
+    return_fraction_of_samples,
+    sample_results,
+)
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.job import Job
@@ -243,12 +247,11 @@ def _of_samples(job: Job, found: Results) -> Results:
     if not job.study.sample_count:
         return found
     samples = sample_results(job)
-    outcomes = samples.shares.outcomes
-    known = samples.shares.sample_count - outcomes["missing"].count
-    share = outcomes["returns"].count / known if known else None
-    returns = replace(found.returns, emulator=share)
+    returns = found.returns
     if not found.journeys:
         returns = return_fraction_of_samples(job, samples.shares)
+    elif job.study.expansion is None:
+        returns = replace(returns, emulator=return_fraction_of_known(samples.shares))
     return replace(found, samples=samples, returns=returns)
 
 

@@ -70,7 +70,7 @@ class ServedStudy:
         if self._has(TOUCHDOWN_EMULATOR_FILE):
             found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
         elif self._has(EMULATOR_FILE):
-            found.append(ServedModel("emulator", self.inputs, LANDING, self.emulated))
+            found.append(ServedModel("emulator", tuple(self._emulator.runs.inputs), LANDING, self.emulated))
         return found
 
     def _has(self, emulator: str) -> bool:
@@ -142,7 +142,8 @@ class ServedStudy:
         Raises ValueError for other inputs, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        values = self.design.medians | dict(zip(self.inputs, point, strict=True))
+        inputs = list(self._emulator.runs.inputs)
+        values = self.design.medians | dict(zip(inputs, point, strict=True))
         _refuse(self.study, values)
         for name in values.keys() & given.keys():
             if given[name] != values[name]:
@@ -153,7 +154,7 @@ class ServedStudy:
         _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
         x = np.array([point])
         across = across_of(self.study, self.folder)
-        bound = energy_bound(self.design, self._bed_height, dict(zip(self.inputs, x.T, strict=True)), 1, across)
+        bound = energy_bound(self.design, self._bed_height, dict(zip(inputs, x.T, strict=True)), 1, across)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})

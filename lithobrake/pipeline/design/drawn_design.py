@@ -187,6 +187,18 @@ class DrawnDesign:
         """The uncertain inputs without place and azimuth, which each run draws by itself."""
         return {name: law for name, law in self.inputs.items() if name not in (*PLACE, IMPACT_AZIMUTH)}
 
+    @property
+    def met_on_the_way(self) -> tuple[str, ...]:
+        """Numbers of a touchdown that follow no law of the study: soils of regions, and the arrival after a flight."""
+        soils = {f"{GRAIN}{key}" for soil in self.study.soil.values() for key in soil.grain.values()}
+        return (*sorted(soils), *(ARRIVAL if self.is_flown else ()))
+
+    @property
+    def lawful_inputs(self) -> "dict[str, Distribution]":
+        """The uncertain inputs that all first touchdowns draw by the law that the study gives."""
+        met = GRAIN if self.study.soil else None
+        return {name: law for name, law in self.inputs.items() if met is None or not name.startswith(met)}
+
     def with_run_count(self, count: int) -> "DrawnDesign":
         """The design of the same study with so many runs, which has all runs of one with fewer."""
         return DrawnDesign(self.study.with_run_count(count), self.site)

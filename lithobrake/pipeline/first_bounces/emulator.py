@@ -13,6 +13,7 @@ import numpy as np
 from lithobrake.analysis import sample_inputs
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
+from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import (
     EnergyBound,
@@ -61,7 +62,16 @@ def fit_emulator(job: Job) -> None:
     height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
     bound = energy_bound(job.design, height, values, runs.run_count, across)
     outputs = outputs_of_runs(runs, RIDERS)
-    fitted(job, job.design.inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+    inputs = inputs_met(job.design, runs)
+    fitted(job, inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+
+
+def inputs_met(design: DrawnDesign, runs: DesignRuns) -> "dict[str, Distribution]":
+    """The inputs of touchdowns with their laws: those of the study, or the values that the runs have met."""
+    from lithobrake.chaos import Empirical
+
+    varied = [name for name in design.met_on_the_way if np.ptp(runs.inputs[name]) > 0.0]
+    return design.inputs | {name: Empirical(runs.inputs[name].tolist()) for name in varied}
 
 
 def why_no_emulator(content: Mapping[str, Any]) -> str | None:
@@ -237,8 +247,14 @@ def draw_emulator_samples(job: Job) -> None:
 
     So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
     """
-    study = job.study
-    x = sample_inputs(job.design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
+    study, design = job.study, job.design
+    if design.met_on_the_way:
+        # Of landers behind those of the study: what these meet follows from where they come down.
+        first = len(design.beds)
+        rows = design.with_run_count(first + study.sample_count).rows[len(design.rows) :]
+        x = inputs_of(rows, list(inputs_met(design, DesignRuns.load(job.folder, "drawn"))))
+    else:
+        x = sample_inputs(design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
     drawn_samples(job, x, "draws").save(job.folder)
     write_explorer(job)
 
@@ -248,10 +264,10 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
 
     purpose: of the random numbers.
     """
-    study, inputs = job.study, job.design.inputs
+    study, models = job.study, refits(job)
+    inputs = list(models[0].runs.inputs)
     height, across = height_of_beds(study, job.folder), across_of(study, job.folder)
     bound = energy_bound(job.design, height, dict(zip(inputs, x.T, strict=True)), len(x), across)
-    models = refits(job)
     names: list[str] = []
     outputs, outcome = np.empty((len(x), 0)), np.empty(len(x), dtype=np.uint8)
     for number, model in enumerate(models):
@@ -263,4 +279,4 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
         if not names:
             names, outputs = list(table), np.empty((len(x), len(table)))
         outputs[part], outcome[part] = np.column_stack(list(table.values())), drawn.outcome
-    return Samples(list(inputs), names, x, outputs, outcome)
+    return Samples(inputs, names, x, outputs, outcome)

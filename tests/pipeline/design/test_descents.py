@@ -15,7 +15,7 @@ from scipy.special import ndtri
 from lithobrake.files.oem_reader import message_states
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
-from lithobrake.pipeline.design.dependencies import bed_files, pour_seed, touchdown_keys
+from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_setting, bed_files, pour_seed, touchdown_keys
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
@@ -406,12 +406,12 @@ def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
 def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
     arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
     study = check_tables(QUICK | {"impact": {**QUICK["impact"], **arrival}}, Path())
-    draws = [draw(study, medians(study), seed) for seed in range(50)]
+    draws = [draw(study, medians(study), seed, None) for seed in range(50)]
     assert 8.0 < np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0])).max() <= 10.0
     # The error is drawn after all else, which is as it was without it.
     given = {**QUICK["impact"], "orientation": [1, 0, 0, 0]}
     without = check_tables(QUICK | {"impact": given}, Path())
-    before, no_attitude = draw(without, medians(without), 3), dict.fromkeys(ORIENTATION, 0.0)
+    before, no_attitude = draw(without, medians(without), 3, None), dict.fromkeys(ORIENTATION, 0.0)
     assert before | no_attitude == draws[3] | no_attitude
 
 
@@ -447,6 +447,14 @@ def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
     assert len(set(seeds.values())) == len(seeds)
     assert seeds == {(seed, bed): pour_seed(drawn(700, seed=seed), bed) for seed, bed in seeds}
     assert all(0 <= seed < 2**53 for seed in seeds.values())
+
+
+def test_a_study_may_give_the_seed_of_its_first_bed() -> None:
+    study = drawn(bed={"seed": 7})
+    assert [pour_seed(study, bed) for bed in range(3)] == [7, 8, 9]
+    assert pour_seed(drawn(seed=5, bed={"seed": 7}), 0) == 7
+    assert bed_dependencies(study)["seed"] == 7
+    assert bed_setting(study) == bed_setting(drawn())
 
 
 def test_soil_pairs_have_another_soil_and_arrive_alike() -> None:

@@ -33,7 +33,7 @@ from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ...synthetic_landings import STRONG
-from ..ball_studies import PAPERS, drawn, write_ball
+from ..ball_studies import drawn, write_ball
 from ..journeys.bouncing_lander import TABLES, bounce, journey_tables
 from ..synthetic_lander import SOIL, SyntheticLander, synthetic_tables
 
@@ -359,7 +359,7 @@ def test_a_folder_without_an_emulator_is_refused(tmp_path: Path) -> None:
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of a program, with an emulator of its runs in the folder beside it."""
     changes = {
-        PAPERS: drawn(24),
+        **drawn(24),
         'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }': "friction = 0.2",
     }
     path = write_ball(tmp_path_factory.mktemp("plan") / "study.toml", changes)

@@ -15,9 +15,9 @@ from lithobrake.chaos import coefficient_changes, load
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import StudyFolder, stage_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.expansion.expansions import points
+from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
@@ -43,20 +43,24 @@ Path("outputs.json").write_text(json.dumps({{"outputs": outputs}}))
 """
 STUDY = """
 solver = { command = "PYTHON program.py" }
-impact = { speed = { distribution = "uniform", lower = 0.1, upper = 0.2 }, incidence_deg = 30.0 }
+impact = { speed = { distribution = "uniform", lower = 0.1, upper = 0.2 }, incidence_deg = 30.0, azimuth_deg = 0.0 }
 surface = { gravity = 5e-5 }
 bed = { grain_count = 100, width = [0.6, 0.6], diameter = { distribution = "constant", value = 0.08 } }
 grain = { density = 2500.0, young_modulus = 1e7, poisson_ratio = 0.25, restitution = 0.5, friction = 0.5 }
 monte_carlo = { sample_count = 20_000, scatter = true }
 flight = { flight_count = 10, duration = 3600.0 }
+hard_ground = { count = 200 }
 [lander]
 shape = "sphere"
 diameter = 0.1
 mass = 1.0
 restitution = { distribution = "uniform", lower = 0.4, upper = 0.8 }
 friction = { distribution = "log_normal", mean = -1.0, std = 0.1 }
+[journey]
+touchdowns = 1
 [design]
-method = "paper"
+run_count = 0
+[expansion]
 points = "sobol_sequence"
 screening_count = 20
 screening_degree = 2
@@ -68,9 +72,9 @@ test_count = 8
 """
 
 
-def changed(**design: Any) -> Study:
+def changed(**expansion: Any) -> Study:
     tables = paper_tables()
-    tables["design"].update(design)
+    tables["expansion"].update(expansion)
     return check_tables(tables, Path())
 
 
@@ -106,7 +110,7 @@ def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> N
     tables = paper_tables()
     tables["impact"]["orientation"] = "random"
     before = stage_keys(check_tables(tables, Path()))
-    tables["design"]["replicate_count"] = 3
+    tables["expansion"]["replicate_count"] = 3
     after = stage_keys(check_tables(tables, Path()))
     assert [name for name in before if before[name] == after[name]] == ["bed", "landing"]
 
@@ -122,7 +126,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_points_run_twice_tell_the_scatter(out: Path) -> None:
-    results = open_study(out).summary["results"]
+    results = open_study(out).summary["results"]["expansion"]
     screening = results["designs"]["screening"]
     assert (screening["point_count"], screening["replicate_count"], screening["run_count"]) == (20, 2, 40)
     assert results["designs"]["test_all"]["run_count"] == 8
@@ -158,33 +162,34 @@ def test_samples_have_the_scatter_and_are_kept_without_it(out: Path) -> None:
     assert scatter[:, 0].std() > 0.5 * SCATTER
 
 
-def test_the_page_gives_no_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
+def test_no_share_has_an_interval_that_would_hold_for_these_runs_only(out: Path) -> None:
     results = open_study(out).summary["results"]
-    shares = [value for value in results["shares"].values() if isinstance(value, dict)]
-    shares += [one for one in (results["rest"]["soil"] or {}).values() if isinstance(one, dict) and "share" in one]
+    table, analysis = results["samples"]["shares"], results["expansion"]
+    shares = [value for value in table.values() if isinstance(value, dict)]
     assert len(shares) > 9
-    assert results["returns"]["missing"] == results["shares"]["missing"]["share"]
+    assert results["returns"]["missing"] == table["missing"]["share"]
+    assert (results["samples"]["model"], table["level"]) == ("expansion", 0.95)
     # What bounces on hard ground has met neither the bed nor the expansion: its shares have the sampling error alone.
-    settled = results["rest"]["hard"]["settled"]
-    assert settled["lower"] <= settled["share"] <= settled["upper"]
+    at_rest = results["hard_ground"]["hard"]["at_rest"]
+    assert at_rest["lower"] <= at_rest["share"] <= at_rest["upper"]
     assert all(share["lower"] is share["upper"] is None for share in shares)
-    assert results["shares"]["why"] == results["returns"]["why"]
+    assert table["why"] == results["returns"]["why"]
     assert results["headline"][0].startswith("With the touchdowns of this study's own program: ")
     assert results["headline"][1] == results["returns"]["why"]
-    refined = results["refined"]["sobol_total"]["speed_out"]
+    refined = analysis["refined"]["sobol_total"]["speed_out"]
     main = max(refined, key=lambda name: refined[name])
     (said,) = (one for one in results["headline"] if "truncation error" in one)
     assert f" {main}, " in said
     assert f"{refined[main]:.2f}" in said
-    total, bounds = (results["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
+    total, bounds = (analysis["screening"][key]["speed_out"] for key in ("sobol_total", "sobol_total_interval"))
     assert all(bounds[name][0] <= total[name] <= bounds[name][1] for name in total)
-    assert all("q2_interval" in score for table in results["scores"].values() for score in table.values())
+    assert all("q2_interval" in score for one in analysis["scores"].values() for score in one.values())
 
 
 EXACT = 1e-12
 ALL = ("live/law.js", "live/flown.js", "live/explore.js")
 TWO_STEPS = {
-    "method": "paper", "run_count": None, "screening_level": 2, "screening_degree": 2, "refined_level": 2,
+    "screening_level": 2, "screening_degree": 2, "refined_level": 2,
     "refined_degree": 2, "kept_share": 0.9, "kept_outputs": ["speed_out"], "test_count": 12,
 }  # fmt: skip
 UNCERTAIN: dict[str, dict[str, Any]] = {
@@ -192,7 +197,8 @@ UNCERTAIN: dict[str, dict[str, Any]] = {
               "restitution": {"distribution": "uniform", "lower": 0.3, "upper": 0.9},
               "young_modulus": {"distribution": "log_uniform", "lower": 1e6, "upper": 1e8}, "rolling_friction": 0.1,
               "density": 2500.0},
-    "impact": {"speed": {"distribution": "uniform", "lower": 0.1, "upper": 0.2}, "region": None},
+    "impact": {"speed": {"distribution": "uniform", "lower": 0.1, "upper": 0.2}, "region": None, "azimuth_deg": 0.0,
+               "place": {"x": 0.0, "y": 0.0}, "orientation": [1.0, 0.0, 0.0, 0.0]},
 }  # fmt: skip
 
 
@@ -211,7 +217,7 @@ def land(values: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def tables() -> dict[str, Any]:
-    return synthetic_tables(design=TWO_STEPS, monte_carlo={"scatter": True}, **UNCERTAIN)
+    return synthetic_tables(design={"run_count": 0}, expansion=TWO_STEPS, monte_carlo={"scatter": True}, **UNCERTAIN)
 
 
 @pytest.fixture(scope="module")
@@ -278,7 +284,7 @@ def test_the_whole_law_of_the_explorer_is_that_of_the_samples(results: StudyResu
         if (row >= 0 && explorer.canLeave()) speed += explorer.y[facts.speed];
       });
       return [sum(returns) / sum(known), sum(left) / sum(known), speed / sum(left)];""", given)  # fmt: skip
-    share, samples = results.summary["results"]["shares"], results.samples
+    share, samples = results.summary["results"]["samples"]["shares"], results.samples
     left = samples["outcome"] == "clear"
     speed = samples["speed_out"][left]
     # The study has the chance of so many samples and flights; the refits of the page widen a share by less.
@@ -288,7 +294,7 @@ def test_the_whole_law_of_the_explorer_is_that_of_the_samples(results: StudyResu
 
 
 def test_sliders_are_those_of_the_kept_inputs(results: StudyResults, given: dict[str, Any]) -> None:
-    facts, kept = given["facts"], results.summary["results"]["kept_inputs"]
+    facts, kept = given["facts"], list(results.results.expansion.kept_inputs)
     assert [facts["inputNames"][place] for place in facts["moved"]] == kept
     assert kept == ["grain.restitution", "impact.speed"]
     page = unescape((results.folder / "report" / "index.html").read_text(encoding="utf-8"))

@@ -15,6 +15,9 @@ from lithobrake.chaos import Uniform, fit, smolyak
 from lithobrake.pipeline import Job, StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, proportion, rest_results
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.expansion.expansion_journeys import SoilBounce, follow_expansion_samples
+from lithobrake.pipeline.expansion.expansion_samples import Scatter
+from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.first_bounces.bounce_laws import (
     FRICTIONS,
     INTERCEPT,
@@ -27,9 +30,6 @@ from lithobrake.pipeline.first_bounces.bounces_to_rest import COLUMNS as REST
 from lithobrake.pipeline.first_bounces.bounces_to_rest import Sites, arc_rows, rest_dependencies, sliding_friction
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
-from lithobrake.pipeline.expansion.expansion_journeys import SoilBounce, follow_expansion_samples
-from lithobrake.pipeline.expansion.expansion_samples import Scatter
-from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples, rolling_spin
 from lithobrake.pipeline.site import Site
