@@ -1,9 +1,9 @@
 """Where the landers end: flights, ellipses, journeys until they rest, and regions that hold shares of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from lithobrake.results.run_results import CountedShare, Level, SampleShares
+from lithobrake.results.run_results import CountedShare, SampleShares
 from lithobrake.vocabulary.estimate import INLINE, Inlined
 from lithobrake.vocabulary.plain_text import short_repr
 
@@ -128,54 +128,30 @@ class WithoutScatter:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GroundResults(Inlined):
-    """Ends of landers that were followed on other ground (docs/flights.md): hard, equivalent, expansion. Quantiles are of
-    the landers at rest, and absent if there are none.
-    """
+class FollowedLanders:
+    """Landers that were followed on other ground (docs/flights.md): hard ground, hard ground that is equivalent to the
+    soil, or the soil by the refined expansion. They are others than those of the journeys, with the same
+    distributions."""
 
-    sample_count: int
+    count: int
     """landers followed"""
-    outcomes: Mapping[str, CountedShare] = field(metadata=INLINE)
+    ends: Mapping[str, CountedShare]
+    """how they ended, as results.ends: fractions of all, without those whose end is unknown"""
+    unknown: CountedShare
+    """landers whose end is unknown: at an impact that the model has no answer to, or pushed off the ground at rest"""
     slid: CountedShare
-    """samples that slid along the ground, whatever their end"""
-    time_s: Mapping[str, float] | None = None
-    """time until rest [s], by level, as "quantile_0.5" """
-    path_length: Mapping[str, float] | None = None
-    """sum of the straight lines between impacts [m], by level"""
-    rebounds: Mapping[str, float] | None = None
-    """impacts after which the lander continued, by level"""
-    slid_length: Mapping[str, float] | None = None
-    """distance along the ground, in contact with it [m], by level"""
-    slid_time_s: Mapping[str, float] | None = None
-    """duration of the sliding [s], part of time_s, by level"""
+    """landers that slid along the ground, whatever their end"""
+    quantiles: Mapping[str, Mapping[str, float]]
+    """of the landers at rest, by number and level: time_s, distance, touchdowns, path_length, slid_length and
+    slid_time_s (rest.csv), as "quantile_0.5"; empty if none is at rest"""
     ellipses: LandingEllipses | None
-    outside_too_slow: CountedShare
-    """samples with unknown outcome because the impact was slower than all runs"""
+    """of the landers at rest; null for few"""
+    regions: tuple[RestRegion, ...]
+    """smallest regions that hold 50 and 95 % of the landers at rest; empty for few, or on one line"""
     of: str
-    """which trajectories the table describes and what they depend on, in words: hard ground uses no soil, bed or
-    emulator of the study"""
-    interval: Level | None = field(default=None, metadata=INLINE)
-    """of the shares; none on the equivalent ground, and on the soil of a paper study"""
-    regions: tuple[RestRegion, ...] = ()
-    """smallest regions that hold 50 and 95 % of the landers at rest; empty for fewer than five, or on one line"""
+    """which landers the table describes and what they depend on, in words"""
+    level: float
+    """probability that the bounds of this table stand for"""
+    why: str | None
+    """why the fractions have no interval, in a sentence; null where they have one"""
     __repr__ = short_repr
-
-    @property
-    def counts(self) -> dict[str, CountedShare]:
-        """Every share of the table by its key."""
-        return {**self.outcomes, "slid": self.slid, "outside_too_slow": self.outside_too_slow}
-
-    def with_counts(self, counts: Mapping[str, CountedShare], interval: Level) -> "GroundResults":
-        """The same with other shares, by the keys of `counts`, and what their bounds stand for."""
-        outcomes = dict(counts)
-        slid, slow = outcomes.pop("slid"), outcomes.pop("outside_too_slow")
-        return replace(self, outcomes=outcomes, slid=slid, outside_too_slow=slow, interval=interval)
-
-    @property
-    def quantiles(self) -> dict[str, Mapping[str, float]]:
-        """The quantiles of the landers at rest, by key and level; empty where there is none."""
-        found = {
-            "time_s": self.time_s, "path_length": self.path_length, "rebounds": self.rebounds,
-            "slid_length": self.slid_length, "slid_time_s": self.slid_time_s,
-        }  # fmt: skip
-        return {key: one for key, one in found.items() if one is not None}

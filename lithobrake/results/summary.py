@@ -75,7 +75,7 @@ class Results:
     """the emulator of the first touchdown; null if too few landers leave for one, or none was drawn"""
     emulated: journey_results.EmulatedJourneys | None
     """landers that the emulator of all touchdowns followed to rest; null with journey.emulated_count = 0"""
-    hard_ground: Mapping[str, dispersion.GroundResults]
+    hard_ground: Mapping[str, dispersion.FollowedLanders]
     """landers that were followed on other ground: hard, equivalent (hard ground with the restitution of the soil) and
     expansion (the soil by the refined expansion); empty with hard_ground.count = 0"""
     aim: AimResults | None

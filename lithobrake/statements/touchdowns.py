@@ -260,12 +260,10 @@ def disagreement(returns: "ReturnFraction") -> str | None:
     )
 
 
-def followed(ground: str, count: int, model: str) -> str:
-    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
+def followed(ground: str, count: int) -> str:
+    """Which landers the numbers of a ground describe, and what of the study they depend on."""
     if ground == "hard":
-        return (
-            f"{count} journeys on the hard ground of [rest], from the impacts of the study file, without soil, bed or "
-            "emulator"
-        )
-    on = "" if ground == "soil" else " on hard ground with the restitution that the soil implies"
-    return f"{count} journeys of {model} samples{on}"
+        return f"{count} landers on the hard ground of [hard_ground], without soil, bed or emulator"
+    if ground == "expansion":
+        return f"{count} landers by the refined expansion, which is asked about every impact"
+    return f"{count} landers on hard ground with the restitution that the soil implies"

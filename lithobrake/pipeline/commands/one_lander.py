@@ -24,6 +24,7 @@ from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TOUCHDOWN
 
@@ -272,11 +273,11 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
 
 def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
     facts, there = _facts(journeys.touchdowns[lander][-1], landing), None
-    end, site = str(journeys.landers.end[lander]) or None, journeys.design.site
-    if end is None:
+    word, site = str(journeys.landers.end[lander]), journeys.design.site
+    if not word:
         latitude, longitude = site.body.shape.latitude_longitude(journeys.landers.position[lander])
         there = float(latitude), float(longitude)
-    return facts.line(facts.to_next(there, site.aim_radius, end))
+    return facts.line(facts.to_next(there, site.aim_radius, JourneyEnd(word) if word else None))
 
 
 def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:

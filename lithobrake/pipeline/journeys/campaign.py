@@ -124,8 +124,7 @@ class Journeys:
         return incoming
 
     def row(self, lander: int) -> list[Any]:
-        """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side.
-        """
+        """Where a journey ended; what is not on the ground has no place there, what does not rest no side."""
         landers, end = self.landers, str(self.landers.end[lander])
         place: list[Any] = ["", "", "", "", "", ""]
         if end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and landers.is_down[lander]:
