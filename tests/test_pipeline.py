@@ -106,7 +106,9 @@ def test_draws_are_given_by_the_seed_and_what_is_fixed_is_not_drawn() -> None:
 
 def test_nuisances_are_drawn_in_their_ranges_and_evenly() -> None:
     region = {"x": [-0.1, 0.1], "y": [0.0, 0.05]}
-    study = changed(bed={"bed_count": 3}, impact={"region": region, "azimuth_deg": "random", "orientation": "random"})
+    study = changed(
+        bed={"bed_count": 3}, impact={"place": None, "region": region, "azimuth_deg": "random", "orientation": "random"}
+    )
     draws = [draw(study, medians(study), seed, place_region(study)) for seed in range(3000)]
     places = np.array([[one[name] for name in PLACE] for one in draws])
     assert np.bincount([round(one["bed"]) for one in draws]).tolist() == pytest.approx([1000] * 3, abs=100)
@@ -231,9 +233,9 @@ def test_the_answer_says_over_what_it_holds_and_flights_do_not_narrow_it() -> No
 @pytest.mark.parametrize(("bed", "impact", "where"), [
     ({}, {}, "On this bed, at this impact point"),
     ({"bed_count": 6}, {}, "At this impact point"),
-    ({}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
-    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
-    ({"bed_count": 6}, {"region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
+    ({}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "On this bed"),
+    ({"bed_count": 6}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}}, "In this attitude"),
+    ({"bed_count": 6}, {"place": None, "region": {"x": [0.0, 0.1], "y": [0.0, 0.1]}, "orientation": "random"},
      "On these 6 beds, at random impact points and attitudes"),
 ])  # fmt: skip
 def test_the_scope_names_what_all_runs_have_in_common(bed: dict[str, Any], impact: dict[str, Any], where: str) -> None:

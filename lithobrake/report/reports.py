@@ -11,13 +11,11 @@ from lithobrake.report.content import Content, PageSection, PageTable, Panel, Pl
 from lithobrake.report.figures.body_figures import agreement_figure, sites_figure
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
 from lithobrake.report.figures.style import STYLE, figure_style
-from lithobrake.report.pages.drawn_page import drawn_content
 from lithobrake.report.pages.html import data_files, page, picture_files
-from lithobrake.report.pages.journey_page import journey_content
-from lithobrake.report.pages.paper_page import paper_content
-from lithobrake.report.tables.paper_tables import provenance
+from lithobrake.report.pages.study_page import study_content
+from lithobrake.report.tables.dispersion_tables import provenance_table
 from lithobrake.results import open_study
-from lithobrake.results.page_data import DrawnPage, JourneyPage, PaperPage, page_results
+from lithobrake.results.page_data import page_results
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.site_results import SiteCell, SiteMap, SiteSpread
 from lithobrake.statements import comparison as compared
@@ -50,27 +48,20 @@ def write_report(folder: Path, progress: Callable[[int, int], None] = lambda don
     Raises ValueError when a file that the report reads is missing.
     """
     data = page_results(open_study(folder))
-    content = _content(data)
+    content = study_content(data)
     drawn = drawn_panels(folder / "report", content.plots, progress)
     pictures = [
         (name, f"Figure {number}. {panel.title}")
         for number, (panel, names) in enumerate((one for one in drawn.values() if one[1]), start=1)
         for name in names
     ]
-    origin = [data_files(folder), picture_files(folder, pictures), *provenance(data)]
+    origin = [data_files(folder), picture_files(folder, pictures), provenance_table(data)]
     files = PageSection("Files", tables=origin, texts={"The study file": data.study_text}, is_printed=False)
     whole = replace(content, sections=[*content.sections, files])
     panels = {name: panel for name, (panel, _) in drawn.items()}
     path = folder / "report" / "index.html"
     write_whole(path, page(data.study["title"] or folder.name, facts(data), whole, panels))
     return path
-
-
-def _content(data: PaperPage | DrawnPage | JourneyPage) -> Content:
-    """What the page of a study has, by its method."""
-    if isinstance(data, JourneyPage):
-        return journey_content(data)
-    return drawn_content(data) if isinstance(data, DrawnPage) else paper_content(data)
 
 
 def drawn_panels(

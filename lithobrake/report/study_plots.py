@@ -11,8 +11,8 @@ from lithobrake.report.figures.place_map import draw_map
 from lithobrake.report.figures.run_figures import draw_parts, draw_rebounds, part_handles
 from lithobrake.report.figures.share_figures import RestSpread, draw_counts, draw_shares, draw_spread
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.pages import drawn_page, journey_page, shared_plots
-from lithobrake.results.page_data import DrawnPage, JourneyPage, PaperPage, page_results
+from lithobrake.report.pages import first_touchdown, study_page
+from lithobrake.results.page_data import PageData, PageJourneys, page_results
 from lithobrake.statements.journeys import END_ROWS
 from lithobrake.statements.labels import END_WORDS
 from lithobrake.vocabulary.plain_text import in_lines
@@ -38,40 +38,43 @@ class StudyPlots:
         """Where the landers end, in metres about the aim point, with the smallest regions that hold 50 and 95 % of
         those at rest and of the first impacts.
 
-        Of a study of single landings: the impacts after the first bounce. Where they lie far apart: the half of the
-        body around the aim point.
+        Of a study of first touchdowns: the next impacts of its samples. Where they lie far apart: the half of the body
+        around the aim point.
         """
         page = self._page
-        shown = journey_page.place_map(page) if isinstance(page, JourneyPage) else shared_plots.impacts(page)
+        if page.samples is not None and not page.to_rest:
+            shown = first_touchdown.impacts(page)
+        else:
+            shown = study_page.end_map(page, self._journeys("map"))
         with _axes(ax, (6.2, 6.2)) as axes:
             draw_map(axes, shown)
         return axes
 
     def ends(self, ax: Axes | None = None) -> Axes:
-        """How the journeys end, or what becomes of the landings after the first bounce: shares with intervals."""
+        """How the journeys end, or what becomes of the landings after the first touchdown: shares with intervals."""
         page = self._page
         with _axes(ax, (7.2, 2.4)) as axes:
-            if isinstance(page, JourneyPage):
-                draw_shares(axes, journey_page.end_shares(page), "all journeys")
+            if page.to_rest:
+                draw_shares(axes, study_page.end_shares(page), "all journeys")
             else:
-                draw_shares(axes, shared_plots.impact_shares(page), shared_plots.whole_words(page))
+                draw_shares(axes, first_touchdown.outcome_shares(page), first_touchdown.whole_words(page))
         return axes
 
     def times(self, ax: Axes | None = None) -> Axes:
         """The distribution function of the time to rest, with its median and 95th percentile and their intervals."""
-        return self._spread("times", journey_page.time_spread, ax)
+        return self._spread("times", study_page.time_spread, ax)
 
     def distances(self, ax: Axes | None = None) -> Axes:
         """The same of the distance from the aim point of the landers at rest."""
-        return self._spread("distances", journey_page.distance_spread, ax)
+        return self._spread("distances", study_page.distance_spread, ax)
 
     def tilts(self, ax: Axes | None = None) -> Axes:
         """The same of the tilt of the side that is down; a ball has none."""
-        return self._spread("tilts", journey_page.tilt_spread, ax)
+        return self._spread("tilts", study_page.tilt_spread, ax)
 
     def sides(self, ax: Axes | None = None) -> Axes:
         """Which side of the lander is down at rest, by its own axes: shares with intervals; a ball has none."""
-        shares = journey_page.side_shares(self._journeys("sides"))
+        shares = study_page.side_shares(self._journeys("sides"))
         if not shares:
             raise ValueError(_NO_SIDES.format("sides"))
         with _axes(ax, (7.2, 2.4)) as axes:
@@ -87,47 +90,44 @@ class StudyPlots:
         return self._counts("contacts", "contacts with the ground", ax)
 
     def variance(self, ax: Axes | None = None) -> Axes:
-        """What decides the ends of the journeys, or the outputs of single landings: parts of each variance."""
+        """Parts of the variance of the ends of the journeys, or of the outputs of first touchdowns."""
         page = self._page
-        if isinstance(page, PaperPage):
-            raise ValueError(f"{self._study.folder} is of a paper study, without parts of the variance")
-        shares, rows = page.results.variance_shares, drawn_page.RETURNS_ROW
-        if isinstance(page, JourneyPage):
+        shares, rows = page.results.variance_shares, first_touchdown.RETURNS_ROW
+        if page.to_rest:
             shares, rows = {name: one for name, one in page.results.end_variance_shares.items() if one}, END_ROWS
         known = [one for one in shares.values() if one]
         if not known:
-            raise ValueError(f"the runs of {self._study.folder} do not tell the parts of the variance")
+            raise ValueError(f"plot.variance shows parts of a variance, which {self._study.folder} has none of")
         with _axes(ax, (7.2, 1.4 + 0.7 * len(shares))) as axes:
             draw_parts(axes, shares, rows)
             axes.legend(handles=part_handles(known), loc="upper left", bbox_to_anchor=(1.0, 1.0))
         return axes
 
     def rebounds(self, ax: Axes | None = None) -> Axes:
-        """Speed and elevation after the touchdown of each landing that left, or of each first one of a journey."""
+        """Speed and elevation after the first touchdown of each lander that left."""
         page = self._page
-        if isinstance(page, PaperPage):
-            raise ValueError(f"{self._study.folder} is of a paper study, without drawn landings")
-        landings = drawn_page.landings_of_runs(page)
+        self._journeys("rebounds")
+        landings = first_touchdown.landings_of_runs(page)
         with _axes(ax, (5.2, 4.2)) as axes:
-            draw_rebounds(axes, landings, drawn_page.quantiles_of_runs(page))
+            draw_rebounds(axes, landings, first_touchdown.quantiles_of_runs(page))
             axes.set_xlim(left=0.0)
         return axes
 
     @cached_property
-    def _page(self) -> PaperPage | DrawnPage | JourneyPage:
+    def _page(self) -> PageData:
         return page_results(self._study)
 
-    def _journeys(self, name: str) -> JourneyPage:
-        """The study as one of journeys. Raises ValueError where it is none."""
-        page = self._page
-        if not isinstance(page, JourneyPage):
+    def _journeys(self, name: str) -> PageJourneys:
+        """The drawn landers. Raises ValueError where none was drawn."""
+        found = self._page.journeys
+        if found is None:
             raise ValueError(
-                f"plot.{name} shows journeys to rest, which {self._study.folder} has none of; it has plot.map, "
-                "plot.ends and, unless it is of a paper study, plot.variance and plot.rebounds"
+                f"plot.{name} shows drawn landers, which {self._study.folder} has none of; it has plot.map and "
+                "plot.ends"
             )
-        return page
+        return found
 
-    def _spread(self, name: str, spread: Callable[[JourneyPage], RestSpread | None], ax: Axes | None) -> Axes:
+    def _spread(self, name: str, spread: Callable[[PageJourneys], RestSpread | None], ax: Axes | None) -> Axes:
         """A distribution function over the landers at rest."""
         found = spread(self._journeys(name))
         if found is None:
@@ -141,7 +141,7 @@ class StudyPlots:
 
     def _counts(self, name: str, label: str, ax: Axes | None) -> Axes:
         """Bars of a count over the journeys."""
-        table = self._journeys(name).journeys
+        table = self._journeys(name).table
         with _axes(ax, (5.2, 3.6)) as axes:
             draw_counts(axes, table[name], table["end"], END_WORDS)
             axes.set(xlabel=label, ylabel="journeys")

@@ -129,29 +129,37 @@ class WithoutScatter:
 
 @dataclass(frozen=True, kw_only=True)
 class FollowedLanders:
-    """Landers that were followed on other ground (docs/flights.md): hard ground, hard ground that is equivalent to the
-    soil, or the soil by the refined expansion. They are others than those of the journeys, with the same
-    distributions."""
+    """Ends of landers that were followed on other ground than that of the study (docs/flights.md). Quantiles are of the
+    landers at rest, and empty if there are none.
+    """
 
     count: int
     """landers followed"""
     ends: Mapping[str, CountedShare]
-    """how they ended, as results.ends: fractions of all, without those whose end is unknown"""
-    unknown: CountedShare
-    """landers whose end is unknown: at an impact that the model has no answer to, or pushed off the ground at rest"""
+    """by end, as in results.ends"""
+    unknown: float
+    """fraction of the landers with unknown outcome"""
     slid: CountedShare
     """landers that slid along the ground, whatever their end"""
-    quantiles: Mapping[str, Mapping[str, float]]
-    """of the landers at rest, by number and level: time_s, distance, touchdowns, path_length, slid_length and
-    slid_time_s (rest.csv), as "quantile_0.5"; empty if none is at rest"""
+    time_s: Mapping[str, float]
+    """time until rest [s], by level, as "quantile_0.5" """
+    distance_m: Mapping[str, float]
+    """distance from the aim point [m], by level"""
+    path_length: Mapping[str, float]
+    """sum of the straight lines between impacts [m], by level"""
+    touchdowns: Mapping[str, float]
+    """impacts, by level"""
+    slid_length: Mapping[str, float]
+    """distance along the ground, in contact with it [m], by level"""
+    slid_time_s: Mapping[str, float]
+    """duration of the sliding [s], part of time_s, by level"""
     ellipses: LandingEllipses | None
-    """of the landers at rest; null for few"""
     regions: tuple[RestRegion, ...]
-    """smallest regions that hold 50 and 95 % of the landers at rest; empty for few, or on one line"""
+    """smallest regions that hold 50 and 95 % of the landers at rest; empty for fewer than five, or on one line"""
     of: str
-    """which landers the table describes and what they depend on, in words"""
-    level: float
-    """probability that the bounds of this table stand for"""
+    """which trajectories the table describes and what they depend on, in words"""
+    level: float | None
+    """probability that the bounds of the shares stand for; null where they have none"""
     why: str | None
-    """why the fractions have no interval, in a sentence; null where they have one"""
+    """why the shares have no interval, in a sentence; null where they have one"""
     __repr__ = short_repr

@@ -183,7 +183,8 @@ class Level:
 
 @dataclass(frozen=True)
 class ReturnFraction(LandingFraction):
-    """Return fraction of the first touchdowns: landings that impact again within flight.duration, or are captured where the site holds them.
+    """Return fraction of the first touchdowns: landings that impact again within flight.duration, or are captured where
+    the site holds them.
 
     Bounds are over beds and impact points not in the study, for all possible ends of the landings without an outcome.
     """

@@ -96,8 +96,8 @@ class StudyTables(StudyFiles):
 
     @cached_property
     def rest(self) -> "Table":
-        """Where samples end after all bounces, on each ground (docs/flights.md)."""
-        columns = ("ground", *_PLACES)
+        """Where landers end on other ground than that of the study (docs/flights.md)."""
+        columns = ("ground", "journey", "end", "latitude_deg", "longitude_deg")
         return self._table("journey", self._rows(file_names.REST_FILE, columns), columns, FLIGHT)
 
     @cached_property

@@ -1,15 +1,14 @@
 """The answer of a study in sentences, as summary.json and the page have it, and the numbers beside it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from lithobrake.results.journey_results import JourneyRest
 from lithobrake.statements import labels, touchdowns
 from lithobrake.statements.captions import place_words
 from lithobrake.statements.ends import (
     Scope,
     at_rest,
+    hard_ground_ends,
     held_over,
     journey_counts,
     journey_ends,
@@ -19,33 +18,27 @@ from lithobrake.statements.ends import (
     sample_ends,
     unknown_outcome,
 )
-from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
-from lithobrake.statements.expansion import error_words, noise, telling_sentences
+from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
+from lithobrake.statements.expansion import TellingNumbers, error_words, noise, telling_sentences
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
 from lithobrake.statements.limits import rare_warnings
 from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.number_words import LEVEL, fixed, number, part, percent, time_limit, with_interval
-from lithobrake.vocabulary.outcomes import JourneyEnd, JourneyStatus, SampleOutcome
+from lithobrake.vocabulary.outcomes import JourneyEnd
 
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
     from lithobrake.results.journey_results import RestQuantiles
-    from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage, RunsPage
+    from lithobrake.results.page_data import PageData, PageExpansion, PageJourneys
     from lithobrake.results.run_results import CountedShare
-    from lithobrake.results.summary import DrawnResults, PaperResults
-    from lithobrake.statements.expansion import TellingNumbers
-
-FIRST = "Of the first touchdown alone"
+    from lithobrake.results.summary import Results
 
 
-def landing_answer(scope: Scope, results: "DrawnResults") -> list[str]:
-    """What becomes of the landers, over what that holds, what is missing, and what the site does to those that lie."""
-    rest = results.rest
-    ends = landing_ends(scope, results) if results.ends is None else journey_ends(scope, results)
-    if results.ends is not None and isinstance(rest, JourneyRest):
-        ends = [*ends, *rest_sentences(rest), *sky(results.sky), *soils(results.soils)]
+def study_answer(scope: Scope, results: "Results") -> list[str]:
+    """What becomes of the landers, over what that holds, what is missing, and what else the study asks for."""
     return [
-        *ends,
+        *_main_answer(scope, results),
+        *hard_ground_ends(results.hard_ground, scope.journey_time),
         *(one.statement for one in results.limit_states.values()),
         *([results.emulated.statement] if results.emulated and results.emulated.statement else []),
         *([results.aim.statement] if results.aim else []),
@@ -53,41 +46,51 @@ def landing_answer(scope: Scope, results: "DrawnResults") -> list[str]:
     ]
 
 
-def landing_headline(results: "DrawnResults") -> list[str]:
-    """The answer, and the most informative numbers behind it."""
+def _main_answer(scope: Scope, results: "Results") -> list[str]:
+    """The fraction at rest where landers are followed to rest, otherwise the return fraction."""
+    if not scope.to_rest or results.rest is None:
+        return landing_ends(scope, results) if results.ends else sample_ends(scope, results)
+    return [
+        *journey_ends(scope, results),
+        *rest_sentences(results.rest),
+        *sky(results.sky),
+        *soils(results.soils),
+    ]
+
+
+def study_headline(scope: Scope, results: "Results") -> list[str]:
+    """The answer, and the most informative numbers of the first touchdown behind it."""
+    behind = [*_landing_numbers(results)] if results.ends else []
+    if results.expansion:
+        behind += telling_sentences(results, has_scatter=scope.has_scatter)
+    if scope.to_rest:
+        behind = [f"First touchdown: {said[:1].lower()}{said[1:]}" for said in behind]
+    return [*results.answer, *behind]
+
+
+def _landing_numbers(results: "Results") -> list[str]:
+    """How the first touchdowns of the landers ended, their rebound speed, and what explains and predicts it."""
     emulator, speed, shares = results.emulator, results.spreads.get("speed_out"), results.variance_shares["speed_out"]
-    behind = [
+    return [
         touchdowns.touchdown_outcomes(results.runs.outcomes, results.runs.count, "landings"),
         *([touchdowns.output_spread("speed_out", speed)] if speed else []),
         *([touchdowns.output_variance("speed_out", shares)] if shares else []),
         *([emulator.statement] if emulator else []),
         *([f"{emulator.warning}."] if emulator and emulator.warning else []),
     ]
-    if results.ends is not None:
-        behind = [f"First touchdown: {said[:1].lower()}{said[1:]}" for said in behind]
-    return [*results.answer, *behind]
 
 
-def sample_answer(scope: Scope, results: "PaperResults", missing: Sequence[SampleOutcome]) -> list[str]:
-    """The answer of an expansion; missing: outcomes of samples after which nothing is known."""
-    return [*sample_ends(scope, results, missing), *results.site.sentences]
-
-
-def sample_headline(scope: Scope, results: "PaperResults") -> list[str]:
-    """The answer of an expansion, and the most informative numbers behind it."""
-    return [*results.answer, *telling_sentences(results, has_scatter=scope.has_scatter)]
-
-
-def page_answer(data: "RunsPage") -> str:
-    """The return fraction, as a page begins."""
-    returns, alone = data.results.returns, "other beds, impact points or attitudes would change it"
-    more = f", without an interval: {alone}" if returns.share.lower is None else ""
-    return f"{with_interval(returns.share, level=data.level)} of the landings {action(data)}{more}."
-
-
-def journey_page_answer(data: "JourneyPage") -> str:
-    """How many landers come to rest, as a page begins."""
-    return f"{at_rest(data.ends[JourneyEnd.AT_REST].share, data.study['journey']['duration'], level=LEVEL)}."
+def page_answer(data: "PageData") -> str:
+    """The answer in one sentence, as a page begins."""
+    results = data.results
+    if data.to_rest:
+        rests = results.ends[JourneyEnd.AT_REST].share
+        return f"{at_rest(rests, data.study['journey']['duration'], level=LEVEL)}."
+    if data.journeys is None:
+        return results.answer[0]
+    alone = "other beds, impact points or attitudes would change it"
+    more = f", without an interval: {alone}" if results.returns.share.lower is None else ""
+    return f"{with_interval(results.returns.share, level=data.level)} of the landings {action(data)}{more}."
 
 
 def action(data: "PageData") -> str:
@@ -95,36 +98,32 @@ def action(data: "PageData") -> str:
     return returning(data.study["flight"]["duration"], holds=data.results.site.holds)
 
 
-def landing_details(data: "DrawnPage") -> list[str]:
-    """Where the study lands, and what the page has nowhere else: over what its answer holds, how the body turns."""
+def page_details(data: "PageData") -> str:
+    """Where the study lands, over what its answer holds, and how the body turns."""
     returns, site = data.results.returns, data.results.site
-    over = held_over(random_attitude=data.study["impact"]["orientation"] == "random")
-    begin = f"The fractions are from {returns.from_}"
-    said = [f"{begin}.", returns.why] if returns.why else [f"{begin} and hold {over}."]
-    return [" ".join([place_words(data), *said, *site.sentences])]
+    if data.to_rest:
+        # That the site holds no lander stands among the warnings.
+        said = [f"The fractions are from {journey_counts(data.results)}.", site.rotation or ""]
+    elif data.journeys is None:
+        said = list(data.results.answer[1:])
+    else:
+        over = held_over(random_attitude=data.study["impact"]["orientation"] == "random")
+        begin = f"The fractions are from {returns.from_}"
+        said = [f"{begin}.", returns.why] if returns.why else [f"{begin} and hold {over}."]
+        said += site.sentences
+    return " ".join(filter(None, [place_words(data), *said]))
 
 
-def sample_details(data: "PageData") -> list[str]:
-    """The same of the samples of an expansion: what its answer says behind its first sentence."""
-    return [" ".join([place_words(data), *data.results.answer[1:]])]
-
-
-def journey_details(data: "JourneyPage") -> list[str]:
-    """The same of journeys; that the site holds no lander stands among the warnings."""
-    said = [place_words(data), f"The fractions are from {journey_counts(data.results)}.", data.results.site.rotation]
-    return [" ".join(filter(None, said))]
-
-
-def page_warnings(data: "DrawnPage") -> list[str]:
-    """What makes the numbers of the page weaker than they look."""
-    return [*landing_warnings(data.results, data.emulator.warning), *rare_warnings(data.rare)]
-
-
-def journey_warnings(data: "JourneyPage") -> list[str]:
-    """The same of journeys; warnings of runs are of first touchdowns."""
-    site = data.results.site.warning
-    of_first = [f"{FIRST}: {words[:1].lower()}{words[1:]}" for words in landing_warnings(data.results)]
-    return [*([site] if site else []), *of_first]
+def page_warnings(data: "PageData") -> list[str]:
+    """What makes the numbers of the page weaker than they look; to rest, warnings of runs are of first touchdowns."""
+    results = data.results
+    if data.journeys is None:
+        return []
+    of_runs = landing_warnings(results, results.emulator.warning if results.emulator else None)
+    if data.to_rest:
+        of_runs = [f"Of the first touchdown alone: {words[:1].lower()}{words[1:]}" for words in of_runs]
+        of_runs = [*([results.site.warning] if results.site.warning else []), *of_runs]
+    return [*of_runs, *rare_warnings(data.rare)]
 
 
 @dataclass(frozen=True)
@@ -137,10 +136,19 @@ class Tile:
     outcome: str = ""
 
 
-def landing_tiles(data: "DrawnPage") -> list[Tile]:
-    """Who comes to rest, the rebound speed, and what the emulator makes of it."""
+def page_tiles(data: "PageData") -> list[Tile]:
+    """The numbers beside the answer: of the landers at rest, of their first touchdown, or of the expansion."""
+    if data.to_rest and data.journeys is not None:
+        return _rest_tiles(data, data.journeys)
+    if data.journeys is None:
+        return _expansion_tiles(data.expansion, data.results) if data.expansion else []
+    return _landing_tiles(data)
+
+
+def _landing_tiles(data: "PageData") -> list[Tile]:
+    """Who comes to rest on hard ground, the rebound speed, and what the emulator makes of it."""
     results = data.results
-    found = _at_rest(data)
+    found = _hard_ground_tiles(data)
     if "speed_out" in results.spreads:
         median = results.spreads["speed_out"].quantiles["0.5"]
         shown = median.on_scale(lambda value: CENTIMETRES * value)
@@ -154,7 +162,7 @@ def landing_tiles(data: "DrawnPage") -> list[Tile]:
         words = words if is_found else "effect of the soil on the variance of the rebound speed"
         interval = labels.share_interval(parts.soil)
         found.append(Tile(value, "%" if is_found else unit, f"{words} ({interval})"))
-    band = data.emulator.scores.outputs.get("speed_out")
+    band = results.emulator.scores.outputs.get("speed_out") if results.emulator else None
     if band:
         held = f"within the {percent(touchdowns.BAND)} bands of the emulator"
         words = f"of the rebound speeds on {touchdowns.left_out(results.runs.beds)} lay {held}"
@@ -162,31 +170,27 @@ def landing_tiles(data: "DrawnPage") -> list[Tile]:
     return found
 
 
-def _at_rest(data: "DrawnPage") -> list[Tile]:
-    """Which landers come to rest after all bounces, on the soil or else on hard ground; none where it was not asked."""
-    limit = time_limit(data.study["rest"]["duration"])
-    for ground, table in data.results.rest.grounds.items():
-        share, _, ends = with_interval(table.outcomes[JourneyStatus.SETTLED].share).partition(" %")
-        unknown = table.outcomes[JourneyStatus.OUTSIDE].share.value
-        lost = f"; {unknown_outcome(unknown)}" if unknown > 0.0 else ""
-        return [
-            Tile(
-                share, "%", f"at rest within {limit}, bounce after bounce on {labels.GROUND_WORDS[ground]}{ends}{lost}"
-            )
-        ]
+def _hard_ground_tiles(data: "PageData") -> list[Tile]:
+    """Which landers come to rest on the first ground that they were followed on; none where that was not asked."""
+    limit = time_limit(data.study["journey"]["duration"])
+    for ground, table in data.results.hard_ground.items():
+        share, _, ends = with_interval(table.ends[JourneyEnd.AT_REST].share).partition(" %")
+        lost = f"; {unknown_outcome(table.unknown)}" if table.unknown > 0.0 else ""
+        return [Tile(share, "%", f"at rest within {limit} on {labels.GROUND_WORDS[ground]}{ends}{lost}")]
     return []
 
 
-def sample_tiles(data: "PaperPage", telling: "TellingNumbers") -> list[Tile]:
+def _expansion_tiles(data: "PageExpansion", results: "Results") -> list[Tile]:
     """The rebound speed of an expansion, how touchdowns ended, its dominant input, and how accurate it is."""
+    telling = TellingNumbers.of(data.results, results.samples)
     main, score, speed = telling.main_input, telling.score, telling.speed
     index = (
         f"{labels.input_words(main.name)}: largest total index of the rebound speed in the refined expansion"
-        f"{labels.bracket(*main.interval, fixed, level=PAPER_LEVEL)}, without truncation error{noise(main.noise_share)}"
+        f"{labels.bracket(*main.interval, fixed, level=EXPANSION_LEVEL)}, without truncation error"
+        f"{noise(main.noise_share)}"
     )
-    accuracy = (
-        f"rebound speed, new runs, all inputs varied{labels.bracket(*score.q2_interval, fixed, level=PAPER_LEVEL)}"
-    )
+    ends = labels.bracket(*score.q2_interval, fixed, level=EXPANSION_LEVEL)
+    accuracy = f"rebound speed, new runs, all inputs varied{ends}"
     beside = f"; {telling.failed} more runs failed" if telling.failed else ""
     found = [
         Tile(str(telling.left_count), f"of {telling.ended.total()}", f"touchdowns left the surface{beside}"),
@@ -199,13 +203,13 @@ def sample_tiles(data: "PaperPage", telling: "TellingNumbers") -> list[Tile]:
     return [Tile(middle, "cm/s", f"rebound speed, median; 5th to 95th percentile {low} to {high}"), *found]
 
 
-def journey_tiles(data: "JourneyPage") -> list[Tile]:
+def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
     """When and where landers rest, and the likeliest end other than that; every other end where none does."""
-    count, rest = len(data.journeys["end"]), data.at_rest
-    others = {name: one for name, one in data.ends.items() if name != JourneyEnd.AT_REST}
+    count, rest = len(journeys.table["end"]), journeys.rest
+    others = {name: one for name, one in data.results.ends.items() if name != JourneyEnd.AT_REST}
     if not rest.time_s.median.is_known:
         return [_end(name, one, count) for name, one in others.items()]
-    size, unit = time_unit(data)
+    size, unit = time_unit(rest)
     likeliest = max(others, key=lambda name: (others[name].share.value, others[name].share.upper or 0.0))
     return [
         _quantile(rest.time_s, unit, "median time to rest", size),

@@ -4,14 +4,13 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.results.journey_results import JourneyRest
-from lithobrake.statements.ends import at_rest, unknown_outcome
+from lithobrake.statements.ends import hard_ground_ends
 from lithobrake.statements.labels import BODIES, region
-from lithobrake.vocabulary.number_words import HOUR, counted, intervals, number, percent, thousands, with_interval
-from lithobrake.vocabulary.outcomes import JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.number_words import HOUR, counted, intervals, number, percent, thousands
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
-    from lithobrake.results.page_data import PageData, SampledPage
+    from lithobrake.results.page_data import PageData, PageSamples
     from lithobrake.results.site_results import BedNumbers
 
 
@@ -99,56 +98,39 @@ def _float(value: object) -> float:
     return float(value)
 
 
-def impact_map(data: "SampledPage") -> str:
-    """The map about the aim point; empty without impacts."""
-    if not len(data.facet):
+def impact_map(samples: "PageSamples") -> str:
+    """The map of the next impacts about the aim point; empty without impacts."""
+    if not len(samples.facet):
         return ""
-    flown = f"{thousands(data.flights.row_count)} flown samples of the {data.model}"
-    shared = f"{thousands(len(data.facet))} impacts of {flown}"
-    found = [one for one in data.results.regions if one.share > 0.9]
+    flown = f"{thousands(samples.flights.row_count)} flown samples of the {samples.results.model}"
+    shared = f"{thousands(len(samples.facet))} impacts of {flown}"
+    found = [one for one in samples.results.regions if one.share > 0.9]
     if not found:
         return f"{shared}: too few for a region that holds {percent(0.95)} of them."
     return f"{shared}; {region(found[0], 'them')}."
 
 
-def outcomes(data: "SampledPage") -> str:
-    """What becomes of the landings after the first bounce, on which body."""
+def outcomes(data: "PageData") -> str:
+    """What becomes of the landings after the first touchdown, on which body."""
     site = data.results.site
     extents = " x ".join(f"{length:.0f}" for length in site.extents_m)
     outward = site.effective_acceleration_outward
     direction = "outward" if outward > 0 else "inward"
-    bars = f"Bars: fractions of the landings with their {intervals(data.level)}. " if has_interval(data) else ""
+    bars = f"Bars: fractions of the landings with their {intervals(data.level)}. " if data.has_interval else ""
     return (
         f"{bars}The body: {number(site.mass_kg)} kg, {extents} m, one turn in {site.spin_period_s / HOUR:.4g} h; at "
         f"the site gravity and rotation together amount to {number(abs(outward), 2)} m/s2 {direction}."
     )
 
 
-def has_interval(data: "PageData") -> bool:
-    """Whether the runs tell how sure the share is."""
-    return data.results.returns.share.lower is not None
+def body(samples: "PageSamples") -> str:
+    """The body with the next impacts."""
+    return f"{counted(len(samples.facet), 'impact')} on the shape that the flights used." if len(samples.facet) else ""
 
 
-def body(data: "SampledPage") -> str:
-    """The body with its impacts."""
-    return f"{counted(len(data.facet), 'impact')} on the shape that the flights used." if len(data.facet) else ""
-
-
-def rest(data: "SampledPage") -> str:
-    """Where landers rest after all bounces."""
-    table = data.results.rest
-    if isinstance(table, JourneyRest) or table.hard is None:
-        return ""
-    limit, status = data.study["rest"]["duration"], JourneyStatus.SETTLED
-    said = f"From bounce to bounce {at_rest(table.hard.outcomes[status].share, limit, ' on hard ground', 'landings')}"
-    if table.soil is None:
-        return f"{said}; unknown on the soil: {table.why_no_soil}."
-    on_soil = table.soil.outcomes
-    return (
-        f"{said}, {with_interval(on_soil[status].share, data.digits)} on the soil. On the soil "
-        f"{unknown_outcome(on_soil[JourneyStatus.OUTSIDE].share.value, data.digits)} because an impact was outside the "
-        f"training range of the {data.model} or the sampled rebound was unphysical."
-    )
+def hard_ground(data: "PageData") -> str:
+    """Where landers rest on other ground; empty where none was followed there."""
+    return " ".join(hard_ground_ends(data.results.hard_ground, data.study["journey"]["duration"], data.digits))
 
 
 def whole(looked_at: int, sample_count: int) -> str:

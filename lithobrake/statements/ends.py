@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from lithobrake.statements.labels import END_WORDS, FAILED, RUN_WORDS
+from lithobrake.statements.labels import END_WORDS, FAILED, GROUND_WORDS, RUN_WORDS
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
     LEVEL,
@@ -17,17 +17,19 @@ from lithobrake.vocabulary.number_words import (
     time_limit,
     with_interval,
 )
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 
 if TYPE_CHECKING:
+    from lithobrake.results.dispersion import FollowedLanders
     from lithobrake.results.run_results import CountedShare, ReturnFraction, RunResults
-    from lithobrake.results.summary import DrawnResults, PaperResults
+    from lithobrake.results.summary import Results
 
 # What a study on one bed, at one impact point or in one attitude leaves open.
 OTHERS = "Another bed, impact point or attitude would change the result; this study cannot show by how much"
 # With fewer beds intervals are wide, and how much beds differ is hardly known.
 FEW_BEDS = 12
-GROUNDS = {"soil": "on the soil", "hard": "on hard ground"}
+# Samples after whose outcome nothing is known.
+MISSING_SAMPLES = (SampleOutcome.LEFT_SIDEWAYS, SampleOutcome.TIME_LIMIT, SampleOutcome.OUTSIDE)
 REMEDIES = {
     TouchdownOutcome.LEFT_SIDEWAYS: "a wider bed (bed.width, with bed.grain_count) or a steeper impact "
     "(impact.incidence_deg)",
@@ -43,7 +45,8 @@ class Scope:
     """Over what the numbers of a study hold, and the times [s] after which its flights and journeys end.
 
     has_soil: whether its touchdowns are simulated; one_place: whether all runs have one impact point; has_scatter:
-    whether the samples of an expansion have the scatter of the runs; journey_time: None without journeys.
+    whether the samples of an expansion have the scatter of the runs; to_rest: whether landers are drawn and followed to
+    rest, and not for their first touchdown alone.
     """
 
     has_soil: bool
@@ -52,8 +55,8 @@ class Scope:
     random_attitude: bool
     has_scatter: bool
     flight_time: float
-    rest_time: float
-    journey_time: float | None
+    journey_time: float
+    to_rest: bool
 
     @property
     def where(self) -> str:
@@ -103,9 +106,9 @@ def returning(limit: float, *, holds: bool) -> str:
     return f"{again} or are captured where the ground holds them" if holds else again
 
 
-def at_rest(one: Estimate, limit: float, where: str = "", of: str = "landers", level: float | None = None) -> str:
+def at_rest(one: Estimate, limit: float, where: str = "", level: float | None = None, digits: int = 0) -> str:
     """Which fraction comes to rest within a time [s]; level: of the interval, where it is to be named."""
-    return f"{with_interval(one, level=level)} of the {of} come to rest{where} within {time_limit(limit)}"
+    return f"{with_interval(one, digits, level=level)} of the landers come to rest{where} within {time_limit(limit)}"
 
 
 def assumed_at_rest(least: float, of: str) -> str:
@@ -160,15 +163,14 @@ def described(outcomes: Sequence[str], total: int) -> str:
     return f"the {out_of(len(outcomes), total, 'landings')} that {words or 'have this number'}"
 
 
-def landing_ends(scope: Scope, results: "DrawnResults") -> list[str]:
-    """What becomes of landings after their first bounce, and over what that holds."""
-    returns, rest = results.returns, _after_all_bounces(scope, results)
-    # The level of an interval is named once in a sentence.
-    share = with_interval(returns.share, level=None if "interval" in rest else returns.share.level)
-    said = f"{rest}{share}{'' if rest else ' of the landings'} {returning(scope.flight_time, holds=results.site.holds)}"
+def landing_ends(scope: Scope, results: "Results") -> list[str]:
+    """What becomes of landers after their first touchdown, and over what that holds."""
+    returns, holds = results.returns, results.site.holds
+    none = "" if holds else "None of the landings remains at the site; "
+    share = with_interval(returns.share, level=returns.share.level)
+    said = f"{none}{share}{'' if none else ' of the landings'} {returning(scope.flight_time, holds=holds)}"
     missing = missing_landings(results.runs, returns)
-    ways = ", ".join(_other_ways(results.shares.outcomes, scope.flight_time, holds=results.site.holds))
-    others = f"Of all landings {ways}."
+    others = f"Of all landings {', '.join(_other_ways(results.shares.outcomes, scope.flight_time, holds=holds))}."
     if returns.why is not None:
         return [f"{scope.where}: {said}; from {returns.from_}.", returns.why, *missing, others]
     return [f"{said}, {held_over(random_attitude=scope.random_attitude)}; from {returns.from_}.", *missing, others]
@@ -180,29 +182,28 @@ def held_over(*, random_attitude: bool) -> str:
     return f"over the input distributions of the study file and for {more} outside the study"
 
 
-def sample_ends(scope: Scope, results: "PaperResults", missing: Sequence[SampleOutcome]) -> list[str]:
-    """What becomes of the samples of an expansion; missing: outcomes after which nothing is known."""
-    outcomes, holds, limit = results.shares.outcomes, results.site.holds, scope.flight_time
+def sample_ends(scope: Scope, results: "Results") -> list[str]:
+    """What becomes of the samples of a model, where no lander is drawn; nothing without samples."""
+    if results.samples is None:
+        return []
+    outcomes, holds, limit = results.samples.shares.outcomes, results.site.holds, scope.flight_time
     again = f"{with_interval(outcomes['returns'].share, 1)} of the landings {returning(limit, holds=holds)}"
     said = [f"{scope.where}: {again}; {', '.join(_other_ways(outcomes, limit, alone=1, holds=holds))}.", scope.why]
     if outcomes["missing"].count:
-        kinds = ", ".join(f"{percent(outcomes[one].share.value, 1)} {one.label}" for one in missing)
+        kinds = ", ".join(f"{percent(outcomes[one].share.value, 1)} {one.label}" for one in MISSING_SAMPLES)
         who = f"{percent(outcomes['missing'].share.value, 1)} of the samples"
         said.append(if_missing(who, kinds, results.returns.if_missing, 1))
     return said
 
 
-def _after_all_bounces(scope: Scope, results: "DrawnResults") -> str:
-    """Which landings come to rest, on the soil or else on hard ground; of none where journeys were not asked for."""
-    grounds = results.rest.grounds
-    ground = next((ground for ground in GROUNDS if ground in grounds), None)
-    if ground is None:
-        return "" if results.site.holds else "None of the landings remains at the site; "
-    outcomes = grounds[ground].outcomes
-    settled, unknown = outcomes[JourneyStatus.SETTLED].share, outcomes[JourneyStatus.OUTSIDE].share.value
-    lacking = f" ({unknown_outcome(unknown)})" if unknown > 0.0 else ""
-    rests = at_rest(settled, scope.rest_time, f" {GROUNDS[ground]}", "landings", LEVEL)
-    return f"{rests}{lacking}; "
+def hard_ground_ends(grounds: "Mapping[str, FollowedLanders]", limit: float, digits: int = 0) -> list[str]:
+    """How many landers come to rest on other ground than that of the study within a time [s]."""
+    said = []
+    for ground, found in grounds.items():
+        rests = at_rest(found.ends[JourneyEnd.AT_REST].share, limit, f" on {GROUND_WORDS[ground]}", digits=digits)
+        lost = f"; {unknown_outcome(found.unknown, digits)}" if found.unknown > 0.0 else ""
+        said.append(f"{rests}{lost}.")
+    return said
 
 
 def _other_ways(
@@ -221,17 +222,14 @@ def _other_ways(
     return [f"{with_interval(outcomes[name].share, alone)} {words}" for name, words in ways.items()]
 
 
-def journey_ends(scope: Scope, results: "DrawnResults") -> list[str]:
+def journey_ends(scope: Scope, results: "Results") -> list[str]:
     """How many landers come to rest, from how many journeys, and how the others end."""
-    ends = results.ends
-    if ends is None or scope.journey_time is None:
-        return []
-    rests = ends[JourneyEnd.AT_REST].share
-    said = f"{at_rest(rests, scope.journey_time, level=LEVEL)} ({journey_counts(results)}).{_others(ends)}"
+    rests = results.ends[JourneyEnd.AT_REST].share
+    said = f"{at_rest(rests, scope.journey_time, level=LEVEL)} ({journey_counts(results)}).{_others(results.ends)}"
     return [said] if rests.why_missing is None else [said, rests.why_missing]
 
 
-def journey_counts(results: "DrawnResults") -> str:
+def journey_counts(results: "Results") -> str:
     """How many journeys there are, of how many landings on how many beds."""
     beds = results.runs.beds
     return f"{results.journeys} journeys, {results.touchdowns} simulated landings, {counted(beds, 'bed')}"
@@ -249,14 +247,14 @@ def _others(ends: "Mapping[str, CountedShare]") -> str:
     return f" Other ends: {', '.join(listed)}." if listed else ""
 
 
-def landing_warnings(results: "DrawnResults", *more: str | None) -> list[str]:
+def landing_warnings(results: "Results", *more: str | None) -> list[str]:
     """What makes the numbers of the landings weaker than they look; more: what else does."""
     runs, site = results.runs, results.site
     found = [runs.warning, _few_beds(results), *more, site.gravity_warning]
     return [as_sentence(words) for words in found if words]
 
 
-def _few_beds(results: "DrawnResults") -> str | None:
+def _few_beds(results: "Results") -> str | None:
     beds = results.runs.beds
     if results.returns.share.lower is None or beds >= FEW_BEDS:
         return None

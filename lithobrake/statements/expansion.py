@@ -3,10 +3,9 @@
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from lithobrake.results.model_results import ExpansionResults, OutputErrors
-from lithobrake.results.summary import PaperResults
+from lithobrake.results.model_results import ExpansionAnalysis, ExpansionResults, OutputErrors, SampleResults
 from lithobrake.statements import touchdowns
 from lithobrake.statements.labels import PAPER_OUTPUTS, bracket, input_words, output
 from lithobrake.vocabulary.constants import CENTIMETRES
@@ -24,9 +23,12 @@ from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
     from lithobrake.results.model_results import DesignCounts
-    from lithobrake.results.page_data import PaperPage
+    from lithobrake.results.page_data import PageExpansion
+    from lithobrake.results.summary import Results
 
 SPEED = "speed_out"
+# What SampleResults.model says of samples of the refined expansion.
+MODEL = "expansion"
 # Of the intervals of indices and scores, which are those of [Landings-PCE].
 LEVEL = 0.95
 QUANTILES = ("quantile_0.05", "quantile_0.5", "quantile_0.95")
@@ -70,12 +72,13 @@ class TellingNumbers:
     score: OutputErrors
 
     @classmethod
-    def of(cls, results: PaperResults) -> "TellingNumbers":
-        """Those of the results of a study."""
+    def of(cls, results: ExpansionAnalysis, samples: SampleResults | None) -> "TellingNumbers":
+        """Those of the expansions of a study, and of the samples of the refined one, if any."""
         ended: Counter[str] = Counter()
         for design in results.designs.values():
             ended.update(design.outcomes)
-        failed, speed = ended.pop("failed", 0), results.monte_carlo.outputs.get(SPEED)
+        failed = ended.pop("failed", 0)
+        speed = samples.outputs.get(SPEED) if samples and samples.model == MODEL else None
         quantiles = None if speed is None else speed.quantiles
         return cls(ended, failed, quantiles, _main_input(results.refined), results.scores["test_all"][SPEED])
 
@@ -93,10 +96,11 @@ def _main_input(refined: ExpansionResults) -> MainInput:
     return MainInput(name, total[name], (low, high), refined.degree, tuple(equals), refined.fits[SPEED].noise_share)
 
 
-def telling_sentences(results: "PaperResults", *, has_scatter: bool) -> list[str]:
-    """The most informative numbers behind the answer; has_scatter: whether samples have the scatter of the runs."""
-
-    telling = TellingNumbers.of(results)
+def telling_sentences(results: "Results", *, has_scatter: bool) -> list[str]:
+    """The most informative numbers of an expansion; has_scatter: whether samples have the scatter of the runs."""
+    if results.expansion is None:
+        return []
+    telling = TellingNumbers.of(results.expansion, results.samples)
     ended = dict(telling.ended) | ({"failed": telling.failed} if telling.failed else {})
     said = [touchdowns.touchdown_outcomes(ended, telling.ended.total(), "touchdowns")]
     if telling.speed:
@@ -156,9 +160,9 @@ def _mape(mape: float | None) -> str:
     return f"MAPE {'undefined' if mape is None else f'{mape:.2g} %'}"
 
 
-def counts(data: "PaperPage") -> str:
-    """The figure of what the designs cost."""
-    table, design, designs = data.results.node_counts, data.study["design"], data.results.designs
+def counts(data: "PageExpansion", study: Mapping[str, Any]) -> str:
+    """The figure of what the designs cost; study: the tables of its file."""
+    table, design, designs = data.results.node_counts, study["expansion"], data.results.designs
     level, inputs = design["screening_level"], len(data.results.screening.inputs)
     grid = design["points"] == "smolyak"
     place = f"at level {level}" if grid else f"of degree {design['screening_degree']}"
@@ -180,15 +184,15 @@ def _runs(design: "DesignCounts") -> str:
     return f"{design.run_count} runs" + (f" ({points} points, {count} times each)" if count > 1 else "")
 
 
-def sobol(data: "PaperPage") -> str:
-    """The figure of the inputs that matter."""
+def sobol(data: "PageExpansion", study: Mapping[str, Any]) -> str:
+    """The figure of the inputs that matter; study: the tables of its file."""
     screening = data.results.screening
     leaders = [_leader(name, screening) for name in PAPER_OUTPUTS]
     shares = {name: screening.fits[name].noise_share for name in PAPER_OUTPUTS}
     scatter = [f"{percent(share)} for the {output(name).words}" for name, share in shares.items() if share is not None]
     rest = f"; scatter that no input explains is {listing(scatter)} of the variance of the runs" if scatter else ""
     kept = listing([input_words(name) for name in data.results.kept_inputs])
-    share = min(data.results.kept_share[name] for name in data.study["design"]["kept_outputs"])
+    share = min(data.results.kept_share[name] for name in study["expansion"]["kept_outputs"])
     return as_sentence(
         f"{listing(leaders)}{rest}; the second step keeps {kept}, which together account for at least "
         f"{percent(share)} of the explained variance of each output that the selection uses"
@@ -208,7 +212,7 @@ def _leader(name: str, screening: "ExpansionResults") -> str:
     )
 
 
-def errors(data: "PaperPage") -> str:
+def errors(data: "PageExpansion") -> str:
     """The figure of how good the expansion is."""
     kept, every = (_explained(data.scores[stage]) for stage in ("test_kept", "test_all"))
     return (
@@ -225,18 +229,3 @@ def _explained(table: "Mapping[str, OutputErrors]") -> str:
         words = "an undefined Q2" if table[name].q2 is None else f"Q2 = {q2(table[name])}"
         parts.append(f"{words} for the {output(name).words} ({_mape(table[name].mape)})")
     return listing(parts)
-
-
-def samples(data: "PaperPage") -> str:
-    """The figure of what may come out."""
-    table = data.results.monte_carlo
-    total, leaving = table.sample_count, table.leaving_count
-    if not leaving:
-        return touchdowns.none_leaves(total)
-    speed, angle = table.outputs["speed_out"].quantiles, table.outputs["elevation_out"].quantiles
-    low, high = (number(CENTIMETRES * speed[level]) for level in (QUANTILES[0], QUANTILES[2]))
-    least, most = (number(output("elevation_out").factor * angle[level]) for level in (QUANTILES[0], QUANTILES[2]))
-    return (
-        f"{touchdowns.leaving_samples(total, leaving, 'refined expansion')}; the middle {percent(0.9)} of these at "
-        f"{low} to {high} cm/s and {least} to {most} deg above the surface. Dots are the runs of all designs."
-    )

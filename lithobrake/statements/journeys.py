@@ -21,8 +21,9 @@ from lithobrake.vocabulary.quantities import SKY_WORDS
 
 if TYPE_CHECKING:
     from lithobrake.results.journey_results import EmulatedJourneys, JourneyRest, SkyResults, SoilResults
-    from lithobrake.results.page_data import JourneyPage
+    from lithobrake.results.page_data import PageData, PageJourneys
     from lithobrake.results.run_results import CountedShare
+    from lithobrake.results.summary import Results
 
 # What the ends of journeys vary in, in a sentence and as rows of a figure.
 END_SIGNS = {
@@ -128,34 +129,34 @@ def journey_ends_so_far(counts: Mapping[str, int], total: int, touchdowns: int, 
     return f"journeys: {ended} ended{more}{': ' if found else ''}{', '.join(found)}; {touchdowns} touchdowns"
 
 
-def has_places(data: "JourneyPage") -> bool:
+def has_places(results: "Results") -> bool:
     """Whether any lander ended on the ground of the body."""
-    return any(data.ends[end].count for end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY))
+    return any(results.ends[end].count for end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY))
 
 
-def rest_map(data: "JourneyPage") -> str:
-    """The map about the aim point."""
-    if not has_places(data):
+def rest_map(results: "Results", rest: "JourneyRest") -> str:
+    """The map of the ends about the aim point."""
+    if not has_places(results):
         return ""
-    rest, said = data.at_rest, []
+    said = []
     if rest.regions:
         shares = " and ".join(percent(one.share) for one in rest.regions)
         said.append(f"Lines: the smallest regions that hold {shares} of the landers at rest.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
-    if data.results.delivery is not None and data.results.delivery.regions:
+    if results.delivery is not None and results.delivery.regions:
         said.append("Blue: the same for the first impacts.")
-    if len(data.results.soils) > 1:
+    if len(results.soils) > 1:
         said.append("Dotted: boundaries of soil regions, to within a degree.")
     return " ".join(said) or "Each dot is a lander."
 
 
-def outcomes(data: "JourneyPage", *, has_map: bool) -> str:
+def outcomes(results: "Results", *, has_map: bool) -> str:
     """The shares of the ends; has_map: whether the whole body stands beside them."""
-    if not has_places(data):
+    if not has_places(results):
         return ""
-    said = f"Shares of {len(data.journeys['end'])} journeys"
-    said += f" with their {intervals()}." if data.ends[JourneyEnd.AT_REST].share.lower is not None else "."
+    said = f"Shares of {results.journeys} journeys"
+    said += f" with their {intervals()}." if results.ends[JourneyEnd.AT_REST].share.lower is not None else "."
     if not has_map:
         return said
     return (
@@ -164,9 +165,9 @@ def outcomes(data: "JourneyPage", *, has_map: bool) -> str:
     )
 
 
-def times(data: "JourneyPage") -> str:
+def times(rest: "JourneyRest") -> str:
     """The figure of times and distances."""
-    said = times_and_distances(data.at_rest)
+    said = times_and_distances(rest)
     more = (
         f"Dots: median and 95th percentile; bars: their {intervals()} over beds and impact points, dotted where a "
         "bound is unknown."
@@ -174,21 +175,21 @@ def times(data: "JourneyPage") -> str:
     return " ".join([*said, more]) if said else ""
 
 
-def counts(data: "JourneyPage") -> str:
+def counts(data: "PageJourneys") -> str:
     """The figure of touchdowns and contacts."""
-    total, journeys = data.journeys["touchdowns"].sum(), len(data.journeys["end"])
+    total, journeys = data.table["touchdowns"].sum(), len(data.table["end"])
     return (
         f"{journeys} journeys with {total:.0f} touchdowns, {two_digits(total / journeys)} each. A touchdown is one "
         "simulated landing and may have several contacts with hops between them."
     )
 
 
-def attitude(data: "JourneyPage") -> str:
+def attitude(rest: "JourneyRest") -> str:
     """The figure of sides and tilts."""
-    tilt = data.at_rest.tilt_deg
-    if not data.at_rest.faces or tilt is None or not tilt.median.is_known:
+    tilt = rest.tilt_deg
+    if not rest.faces or tilt is None or not tilt.median.is_known:
         return ""
-    name, most = by_share(data.at_rest.faces)[0]
+    name, most = by_share(rest.faces)[0]
     return (
         f"The side {name} is down most often, for {with_interval(most.share)} of the landers at rest. Tilt of its "
         f"axis from the plumb line: median {quantile(tilt.median)} deg, 95th percentile {quantile(tilt.q95)} deg. "
@@ -196,9 +197,9 @@ def attitude(data: "JourneyPage") -> str:
     )
 
 
-def end_variance(data: "JourneyPage") -> str:
+def end_variance(results: "Results") -> str:
     """The figure of what decides the ends; empty where the journeys cannot tell."""
-    known = {name: one for name, one in data.results.end_variance_shares.items() if one}
+    known = {name: one for name, one in results.end_variance_shares.items() if one}
     said = [variance_parts(f"{END_SIGNS[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
     if said:
         said.append(
@@ -209,17 +210,17 @@ def end_variance(data: "JourneyPage") -> str:
     return " ".join(said)
 
 
-def first_variance(data: "JourneyPage") -> str:
-    """The figure of the parts of the variance; empty where it has none."""
-    if not any(data.results.variance_shares.values()):
+def first_variance(data: "PageData") -> str:
+    """The figure of the parts of the variance at the first touchdown, where inputs may be correlated."""
+    if data.to_rest and not any(data.results.variance_shares.values()):
         return ""
     correlations: Iterable[tuple[str, str, float]] = (data.study.get("delivery") or {}).get("correlations") or ()
     pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
     more = f" The parts assume independent inputs, but {pairs} are correlated: read their parts together."
-    return variance(data) + (more if pairs else "")
+    return variance(data.results) + (more if pairs else "")
 
 
-def time_unit(data: "JourneyPage") -> tuple[float, str]:
+def time_unit(rest: "JourneyRest") -> tuple[float, str]:
     """The unit of a column of times to rest [s], and its sign: minutes where nearly all are below five hours."""
-    late = data.at_rest.time_s.q95
+    late = rest.time_s.q95
     return (HOUR, "h") if late.is_known and late.value >= 5.0 * HOUR else (MINUTE, "min")

@@ -13,7 +13,6 @@ from lithobrake.vocabulary.outcomes import (
     RETURNS,
     FlightStatus,
     JourneyEnd,
-    JourneyStatus,
     SampleOutcome,
     TouchdownOutcome,
 )
@@ -83,36 +82,16 @@ OUTCOME_WORDS: dict[str, str] = {
     RETURNS: "return fraction (impact again, or captured where the ground holds them)",
     "missing": "unknown outcome",
 }
-# What became of a lander after all bounces, in a table.
-JOURNEY_WORDS: dict[str, str] = {
-    JourneyStatus.SETTLED: "at rest",
-    JourneyStatus.LOFTED: "captured, then lifted off by rotation",
-    JourneyStatus.OUTSIDE: "unknown outcome: impact outside the training range of the {model}, or unphysical rebound",
-    "outside_too_slow": "(of these: impact slower than in any run)",
-    JourneyStatus.SLIDING: "still sliding after {limit}",
-    JourneyStatus.BOUNCING: "still bouncing after a thousand bounces",
-    JourneyStatus.FLYING: "not at rest after {limit}",
-    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
-    JourneyStatus.PARTNER: "on the partner",
-    "slid": "(of all: slid along the ground at some time)",
-}
 # Beside a bar; other words of OUTCOME_WORDS are short enough.
 SHORT_OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "impact within {limit}",
     FlightStatus.FLYING: "flying after {limit}",
     FlightStatus.PARTNER: "on the partner",
 }
-SHORT_JOURNEY_WORDS: dict[str, str] = {
-    JourneyStatus.SETTLED: "at rest",
-    JourneyStatus.LOFTED: "lifted off again",
-    JourneyStatus.OUTSIDE: "unknown outcome",
-    JourneyStatus.SLIDING: "still sliding",
-    JourneyStatus.BOUNCING: "still bouncing",
-    JourneyStatus.FLYING: "not at rest, {limit}",
-    JourneyStatus.ESCAPED: JourneyStatus.ESCAPED.label,
-    JourneyStatus.PARTNER: "on the partner",
-}
-GROUND_WORDS = {"soil": "soil", "hard": "hard ground", "equivalent": "hard ground like the soil"}
+# Ground on which landers are followed beside that of the study.
+GROUND_WORDS = {
+    "hard": "hard ground", "equivalent": "hard ground like the soil", "expansion": "soil by the expansion",
+}  # fmt: skip
 BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
 # The parts of a variance, in the order of its bar.
 PART_WORDS = {

@@ -3,8 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.statements.captions import has_interval
-from lithobrake.statements.expansion import LEVEL as PAPER_LEVEL
+from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.journeys import emulator, sides_down
 from lithobrake.statements.labels import GROUND_WORDS, region, two_digits
 from lithobrake.statements.touchdowns import left_out
@@ -12,10 +11,13 @@ from lithobrake.vocabulary.number_words import LEVEL, as_sentence, intervals, nu
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 if TYPE_CHECKING:
-    from lithobrake.results.dispersion import FlightResults, GroundResults
-    from lithobrake.results.page_data import DrawnPage, JourneyPage, RunsPage
+    from lithobrake.results.dispersion import FlightResults, FollowedLanders
+    from lithobrake.results.journey_results import DeliveryResults, JourneyRest
+    from lithobrake.results.model_results import SampleResults
+    from lithobrake.results.page_data import PageData
     from lithobrake.results.questions import LimitStateResult, RareLimitState
-    from lithobrake.results.run_results import LandingShares, SampleShares, SideRuns, VarianceParts
+    from lithobrake.results.run_results import RunShares, SideRuns, VarianceParts
+    from lithobrake.results.summary import Results
 
 NOT_KNOWN = "Without intervals: other beds, impact points or attitudes would change these numbers."
 
@@ -25,13 +27,15 @@ def in_brackets(level: float = LEVEL, more: str = "") -> str:
     return f"In brackets {intervals(level)}{more}."
 
 
-def outcomes_of_landings(shares: "LandingShares", model: str, part_count: int) -> str:
-    """Outcomes of the runs, beside what the emulator gives; part_count: rows that add up to the whole."""
-    flown = 0 if shares.emulator is None else shares.emulator.flight_count
+def outcomes_of_landings(shares: "RunShares", samples: "SampleResults | None", part_count: int) -> str:
+    """Outcomes of the first touchdowns, and of samples of a model; part_count: rows that add up to the whole."""
     said = [
         f"Of all landings, from {thousands(shares.flight_count)} flights of the runs; the first {part_count} rows add "
-        f"up to {percent(1.0)}. Last column: {thousands(flown)} propagated samples of the {model}."
+        f"up to {percent(1.0)}."
     ]
+    if samples is not None:
+        flown = thousands(samples.shares.flight_count)
+        said.append(f"Last column: {flown} propagated samples of the {samples.model}.")
     if shares.outcomes["missing"].count:
         said.append(
             "Landings with unknown outcome are treated like those that left in flight across the edge of the bed; "
@@ -40,17 +44,16 @@ def outcomes_of_landings(shares: "LandingShares", model: str, part_count: int) -
     return " ".join([*said, *([shares.why] if shares.why else [])])
 
 
-def outcomes_of_samples(
-    shares: "LandingShares | SampleShares", alone: "SampleShares | None", level: float, *, has_limits: bool
-) -> str:
-    """Outcomes of the samples of an expansion; alone: those without scatter; has_limits: whether any has a limit."""
+def outcomes_of_samples(samples: "SampleResults", *, has_limits: bool) -> str:
+    """Outcomes of the samples of an expansion; has_limits: whether any has a limit."""
+    shares, alone = samples.shares, samples.without_scatter
     said = [f"Shares of {shares.sample_count} samples, {shares.flight_count} of them propagated. {shares.why}"]
     if has_limits:
-        said.append(f'"At most": no run had this outcome; upper limit at {percent(level)} confidence.')
+        said.append(f'"At most": no run had this outcome; upper limit at {percent(EXPANSION_LEVEL)} confidence.')
     if alone is not None:
         said.append(
             "The first shares include the run-to-run scatter; those without scatter are of the expansion alone, from "
-            f"{alone.sample_count} samples."
+            f"{alone.shares.sample_count} samples."
         )
     return " ".join(said)
 
@@ -76,46 +79,45 @@ def flights(found: "FlightResults") -> str:
     return " ".join(said)
 
 
-def after_all_bounces(found: "Mapping[str, GroundResults]", why_no_soil: str | None) -> str:
+def on_other_ground(found: "Mapping[str, FollowedLanders]") -> str:
     """Which journeys the columns are of."""
-    of = "; ".join(f"{GROUND_WORDS[ground]}: {table.of}" for ground, table in found.items())
-    why = f" No trajectories on the soil: {why_no_soil}." if why_no_soil else ""
+    of = "; ".join(f"{GROUND_WORDS[ground]}: {one.of}" for ground, one in found.items())
+    why = next((f" {as_sentence(one.why)}" for one in found.values() if one.why), "")
     return f"From the first impact. {as_sentence(of)}{why}"
 
 
-def hard_ground(rest: Mapping[str, Any]) -> str:
-    """The laws of bounces and slides; rest: the section of the study file."""
+def hard_ground(section: Mapping[str, Any]) -> str:
+    """The laws of bounces and slides; section: [hard_ground] of the study file."""
     slides = "slides on by Coulomb friction, on soil that of hull and grain,"
-    if rest["rolling_friction"] is not None:
-        slides = f"rolls on like a sphere against a resistance of {rest['rolling_friction']:g} of the normal force,"
+    if section["rolling_friction"] is not None:
+        slides = f"rolls on like a sphere against a resistance of {section['rolling_friction']:g} of the normal force,"
     return (
-        f"Hard ground: restitution {rest['normal_restitution']:g} normal, {rest['tangential_restitution']:g} "
-        f"tangential, friction {rest['friction']:g}; at rest where a rebound rises less than "
-        f"{rest['rest_height']:g} m. Hard ground like the soil samples the restitution that the soil implies at "
+        f"Hard ground: restitution {section['normal_restitution']:g} normal, {section['tangential_restitution']:g} "
+        f"tangential, friction {section['friction']:g}; at rest where a rebound rises less than "
+        f"{section['rest_height']:g} m. Hard ground like the soil samples the restitution that the soil implies at "
         "each speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. A "
         f"captured lander {slides} from facet to facet until it rests or leaves the ground again; this law "
-        "was not fitted to landings, and on soil the slide starts from rest, because the runs have no velocity after "
-        "capture."
+        "was not fitted to landings."
     )
 
 
-def outputs(data: "RunsPage") -> str:
+def outputs(data: "PageData") -> str:
     """Mean and quantiles of the landings that left."""
     speed = data.results.spreads.get("speed_out")
     of = "the landings that left" if speed is None else speed.of
-    if not has_interval(data):
+    if not data.has_interval:
         return f"Of {of}. {NOT_KNOWN}"
     held = "over the input distributions and for beds, impact points and attitudes outside the study"
     return f"Of {of}, {held}. {in_brackets(data.level)}"
 
 
-def directions(data: "RunsPage") -> str:
+def directions(data: "PageData") -> str:
     """Mean direction and resultant length."""
     more = in_brackets(data.level, ", which may reach beyond 180 deg")
     return f"Resultant length: 0 where directions cancel, 1 where all are alike. {more}"
 
 
-def variance(data: "RunsPage", known: "Sequence[VarianceParts]") -> str:
+def variance(data: "PageData", known: "Sequence[VarianceParts]") -> str:
     """Every part of the variance of each output."""
     return (
         "Shares of the variance over the input distributions of the study file, beds, impact points and attitudes. "
@@ -142,11 +144,11 @@ def side_runs(side: "SideRuns", level: float) -> str:
     )
 
 
-def emulator_scores(data: "DrawnPage") -> str:
+def emulator_scores(bed_count: int) -> str:
     """How the emulator does on beds left out."""
     return (
         "Skill: relative improvement of the score (CRPS; for all outputs the energy score) over resampling the runs, "
-        f"on {left_out(data.results.runs.beds)}; 0 is no improvement."
+        f"on {left_out(bed_count)}; 0 is no improvement."
     )
 
 
@@ -163,9 +165,8 @@ def limit_states(states: "Mapping[str, LimitStateResult | RareLimitState]") -> s
     return " ".join(state.statement for state in states.values())
 
 
-def journeys_at_rest(data: "JourneyPage") -> str:
+def journeys_at_rest(rest: "JourneyRest") -> str:
     """When and how the landers rest."""
-    rest = data.at_rest
     more = f" Side down: {sides_down(rest.faces)}." if rest.faces else ""
     return f"From {rest.of}. {in_brackets()}{more}"
 
@@ -178,11 +179,8 @@ def sky() -> str:
     )
 
 
-def delivery(data: "JourneyPage") -> str:
+def delivery(found: "DeliveryResults") -> str:
     """How the landers come down first."""
-    found = data.results.delivery
-    if found is None:
-        return ""
     said = [f"{out_of(found.count, found.of, 'landers')} touch down."]
     return " ".join([*said, *(as_sentence(region(one, "the first impacts")) for one in found.regions)])
 
@@ -195,11 +193,11 @@ def soils() -> str:
     )
 
 
-def ends(data: "JourneyPage") -> str:
+def ends(results: "Results") -> str:
     """How the journeys ended, by landings and by the emulator."""
-    why = next((one.share.why_missing for one in data.ends.values() if one.share.why_missing), None)
-    said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in data.ends.items() if one.count]
-    more = [*([as_sentence(why)] if why else []), *emulator(data.results.emulated)]
+    why = next((one.share.why_missing for one in results.ends.values() if one.share.why_missing), None)
+    said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in results.ends.items() if one.count]
+    more = [*([as_sentence(why)] if why else []), *emulator(results.emulated)]
     return " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + more)
 
 
@@ -207,7 +205,7 @@ def scores() -> str:
     """The errors of the expansions."""
     return (
         "Q2: explained share of the variance. A MAPE is small wherever an output hardly varies, so read it with Q2. "
-        f"{in_brackets(PAPER_LEVEL, ', by resampling the runs')} Errors at fitted runs are optimistic."
+        f"{in_brackets(EXPANSION_LEVEL, ', by resampling the runs')} Errors at fitted runs are optimistic."
     )
 
 
@@ -216,5 +214,5 @@ def sobol() -> str:
     return (
         "Shares of the variance that the screening expansion explains, on the beds and at the impact points of its "
         "runs, corrected for scatter. First: the input alone. Total: with all interactions. "
-        f"{in_brackets(PAPER_LEVEL, ', by resampling the residuals of the runs')}"
+        f"{in_brackets(EXPANSION_LEVEL, ', by resampling the residuals of the runs')}"
     )

@@ -23,8 +23,10 @@ from lithobrake.vocabulary.number_words import (
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 if TYPE_CHECKING:
-    from lithobrake.results.page_data import DrawnPage, RunsPage
+    from lithobrake.results.model_results import EmulatorResults, SampleResults
+    from lithobrake.results.page_data import PageData
     from lithobrake.results.run_results import OutputEstimate, ReturnFraction, VarianceParts
+    from lithobrake.results.summary import Results
     from lithobrake.vocabulary.landing_fraction import LandingFraction
 
 ELEVATION = "elevation_out"
@@ -63,7 +65,7 @@ def output_spread(name: str, one: "OutputEstimate") -> str:
     return labels.spread(words, values, unit, labels.bracket(ends.lower, ends.upper, level=ends.level))
 
 
-def runs(data: "RunsPage") -> str:
+def runs(data: "PageData") -> str:
     """The figure of the landings: what they gave."""
     table = data.results.runs
     own = listing(["soil", *drawn_things(data.study)])
@@ -92,9 +94,8 @@ def drawn_things(study: Mapping[str, Any]) -> list[str]:
     return [words for words, is_drawn in found.items() if is_drawn]
 
 
-def run_outcomes(data: "RunsPage") -> str:
+def run_outcomes(results: "Results") -> str:
     """On how many beds the runs were made, and what those without an outcome could change."""
-    results = data.results
     return " ".join([f"On {counted(results.runs.beds, 'bed')}.", *missing_landings(results.runs, results.returns)])
 
 
@@ -109,9 +110,9 @@ def output_variance(name: str, record: "VarianceParts") -> str:
     return variance_parts(whole, all_parts(record))
 
 
-def variance(data: "RunsPage") -> str:
+def variance(results: "Results") -> str:
     """The figure of what decides."""
-    records = {name: record for name, record in data.results.variance_shares.items() if record}
+    records = {name: record for name, record in results.variance_shares.items() if record}
     if not records:
         return "The sources of the scatter cannot be separated: the runs are on one bed, or too few for their inputs."
     first, *others = records
@@ -205,14 +206,14 @@ def band_luck(run_count: int) -> tuple[float, float]:
     return BAND - half, BAND + half
 
 
-def calibration(data: "DrawnPage") -> str:
+def calibration(emulator: "EmulatorResults", bed_count: int) -> str:
     """The figure of the calibration: whether to believe the emulator."""
-    scores = data.emulator.scores.outputs
+    scores = emulator.scores.outputs
     held = {name: score.band_90 for name, score in scores.items()}
     bins = [is_beyond for score in scores.values() for is_beyond in unlucky(score.pit)]
     shares = [f"{percent(share)} of {labels.output_words(name)}" for name, share in held.items()]
     said = [
-        f"On {left_out(data.results.runs.beds)} the {percent(BAND)} bands contained {listing(shares)}.",
+        f"On {left_out(bed_count)} the {percent(BAND)} bands contained {listing(shares)}.",
         f"For a calibrated emulator the histogram is flat; the grey band covers {percent(BAND)} of the sampling "
         "fluctuation of independent runs. High ends indicate bands that are too narrow, a hump in the middle bands "
         "that are too wide, and a slope a bias.",
@@ -226,26 +227,23 @@ def calibration(data: "DrawnPage") -> str:
     ):
         if off:
             said.append(f"The bands of {listing(off)} are {words}, by more than chance explains.")
-    return " ".join([*said, data.emulator.statement])
+    return " ".join([*said, emulator.statement])
 
 
-def samples(data: "DrawnPage") -> str:
-    """The figure of what may come out."""
-    outcome = data.samples["outcome"]
-    total, leaving = len(outcome), int((outcome == TouchdownOutcome.CLEAR).sum())
-    if not leaving:
-        return none_leaves(total)
-    return f"{leaving_samples(total, leaving, 'emulator')}; dots are the runs."
-
-
-def none_leaves(total: int) -> str:
-    """That there is nothing to draw."""
-    return f"None of the {thousands(total)} samples leaves the surface, so there is nothing to draw."
-
-
-def leaving_samples(total: int, leaving: int, model: str) -> str:
-    """How many of the samples of a model leave the surface."""
-    return f"Of {thousands(total)} samples of the {model} {thousands(leaving)} leave the surface"
+def samples(found: "SampleResults") -> str:
+    """The figure of what may come out of a touchdown."""
+    total, leaving = thousands(found.sample_count), thousands(found.leaving_count)
+    if not found.leaving_count:
+        return f"None of the {total} samples leaves the surface, so there is nothing to draw."
+    said = f"Of {total} samples of the {found.model} {leaving} leave the surface; dots are the runs."
+    speed, angle = (found.outputs.get(name) for name in ("speed_out", ELEVATION))
+    if speed is None or angle is None:
+        return said
+    ends = ("quantile_0.05", "quantile_0.95")
+    low, high = (number(CENTIMETRES * speed.quantiles[level]) for level in ends)
+    least, most = (number(labels.output(ELEVATION).factor * angle.quantiles[level]) for level in ends)
+    middle = f"{low} to {high} cm/s and {least} to {most} deg above the surface"
+    return f"{said} The middle {percent(0.9)} of those that leave have {middle}."
 
 
 def disagreement(returns: "ReturnFraction") -> str | None:
@@ -261,9 +259,9 @@ def disagreement(returns: "ReturnFraction") -> str | None:
 
 
 def followed(ground: str, count: int) -> str:
-    """Which landers the numbers of a ground describe, and what of the study they depend on."""
+    """Which journeys the numbers of a ground describe, and what of the study they depend on."""
     if ground == "hard":
-        return f"{count} landers on the hard ground of [hard_ground], without soil, bed or emulator"
+        return f"{count} journeys on the ground of [hard_ground], from the impacts of the study, without soil or bed"
     if ground == "expansion":
-        return f"{count} landers by the refined expansion, which is asked about every impact"
-    return f"{count} landers on hard ground with the restitution that the soil implies"
+        return f"{count} journeys by samples of the refined expansion"
+    return f"{count} journeys on hard ground with the restitution that the soil implies, by samples of the emulator"

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
-from lithobrake.study.delivery_sections import EMULATED_LANDERS
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
 from lithobrake.study.quantity import usual_reach
@@ -185,26 +184,12 @@ def soil_problems(study: Study) -> Iterator[str]:
             "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions "
             "their own; leave one of the two out"
         )
-    yield from _emulator_problems(study)
     for name, soil in study.soil.items():
         yield from _region_problems(name, soil)
         if study.has_soil:
             # Problems of [grain] itself are reported already, and would be repeated for each region.
             known = list(contact_problems(study))
             yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
-
-
-def _emulator_problems(study: Study) -> Iterator[str]:
-    """Questions to the emulator of all touchdowns, which knows one soil for the whole body."""
-    asked = ["aim.grid"] if study.aim.names else []
-    # The default asks for nothing: where there is no emulator such a study goes without, and reports that.
-    if (count := study.journey.emulated_count) not in (None, 0, EMULATED_LANDERS):
-        asked.append(f"journey.emulated_count = {count}")
-    for key in asked:
-        yield (
-            f"{key} asks the emulator of the touchdowns, which has one soil for all of the body, and [soil] gives "
-            "regions their own; leave one of the two out"
-        )
 
 
 def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:

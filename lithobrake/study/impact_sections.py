@@ -70,7 +70,7 @@ class ImpactSection(Section):
 class SurfaceSection(Section):
     """The constant acceleration during the touchdown."""
 
-    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field("site", examples=["5e-5"])
+    gravity: Annotated[Scalar | str, MaybeUncertain("m/s2", word="site")] = Field(default="site", examples=["5e-5"])
     """Acceleration toward the surface. "site": that of gravity and rotation together where each touchdown is, with the
     slope there. A number, only with journey.touchdowns = 1: the same for all first touchdowns, with slope_deg; a
     negative value points outward, as is possible near the equator of a fast rotator."""

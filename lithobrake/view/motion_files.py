@@ -179,7 +179,7 @@ def write_journey(motion: "JourneyMotion", path: Path, seconds: float = 8.0, pro
 
         write_whole(path, journey_sheet(motion))
     else:
-        from lithobrake.report.pages.journey_page import one_journey_page
+        from lithobrake.report.pages.one_journey_page import one_journey_page
 
         write_whole(path, one_journey_page(motion))
     return [path]

@@ -17,7 +17,11 @@ from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
-NUMBERS = ("time_s", "distance", "touchdowns", "path_length", "slid_length", "slid_time_s")
+# Columns of rest.csv by the names of the results.
+NUMBERS = {
+    "time_s": "time_s", "distance_m": "distance", "path_length": "path_length", "touchdowns": "touchdowns",
+    "slid_length": "slid_length", "slid_time_s": "slid_time_s",
+}  # fmt: skip
 # A failed landing is none of theirs.
 ENDS = tuple(end for end in JourneyEnd if end != JourneyEnd.FAILED)
 # The bounds of landers on hard ground stand for their number alone; other models bring errors that nothing measures.
@@ -40,13 +44,13 @@ def _followed(job: Job, ground: str, rows: Rows) -> FollowedLanders:
     return FollowedLanders(
         count=total,
         ends={end.value: _counted(ends.count(end), known, why) for end in ENDS},
-        unknown=_counted(ends.count(UNKNOWN_END), total, why),
+        unknown=ends.count(UNKNOWN_END) / total,
         slid=_counted(sum(float(row["slid_length"]) > 0.0 for row in rows), total, why),
-        quantiles={name: _quantiles(rests, name) for name in NUMBERS} if rests else {},
+        **{name: _quantiles(rests, column) for name, column in NUMBERS.items()},
         ellipses=ellipses(job.site, rests),
         regions=place_regions(site_results(job.site), rests),
         of=followed(ground, total),
-        level=LEVEL,
+        level=LEVEL if why is None else None,
         why=why,
     )
 
@@ -63,4 +67,6 @@ def _counted(count: int, total: int, why: str | None) -> CountedShare:
 
 def _quantiles(rows: Rows, name: str) -> dict[str, float]:
     values = np.array([float(row[name]) for row in rows])
+    if not len(values):
+        return {}
     return {f"quantile_{level:g}": float(np.quantile(values, level)) for level in QUANTILES}

@@ -21,11 +21,10 @@ from lithobrake.results.study_files import results_in
 from lithobrake.results.summary import Estimates
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.file_names import ESTIMATES_FILE, SAMPLE_FLIGHTS_FILE
+from lithobrake.vocabulary.file_names import ESTIMATES_FILE, FLIGHTS_WITHOUT_SCATTER_FILE, SAMPLE_FLIGHTS_FILE
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL, LEVEL, QUANTILES
 from lithobrake.vocabulary.outcomes import FlightStatus, SampleOutcome, TouchdownOutcome
 
-WITHOUT_SCATTER_FILE = "flights_without_scatter.csv"
 # In the order of the summary.
 FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER)
 
@@ -133,7 +132,7 @@ def _without_scatter(job: Job, samples: Samples) -> WithoutScatter | None:
     """What came of the samples of the expansion alone; None where they have no scatter to leave out."""
     if samples.without_scatter is None:
         return None
-    flights = read_table(job.folder, WITHOUT_SCATTER_FILE)
+    flights = read_table(job.folder, FLIGHTS_WITHOUT_SCATTER_FILE)
     return WithoutScatter(
         _expansion_shares(job, samples.expansion_alone(), flights),
         dispersion_statistics.impact_numbers(flights),

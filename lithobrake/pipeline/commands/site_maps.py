@@ -69,11 +69,6 @@ def map_sites(
 
 def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
     """Raise ValueError for a study that has no landers to deliver elsewhere, and for counts that make no map."""
-    if study.soil:
-        raise ValueError(
-            "sites follows landers by the emulator of the touchdowns, which has one soil for the whole body, but "
-            "[soil] gives regions their own; leave [soil] out"
-        )
     if study.delivery is not None and study.delivery.is_flown:
         raise ValueError(
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "

@@ -152,8 +152,15 @@ class DrawnDesign:
 
     def own_soil(self, run: int) -> dict[str, float]:
         """The numbers of [grain] that a run draws, by dotted key, whatever the region that it comes down in."""
-        (row,) = self.rows_at([0], self._points(1, skip=run))
-        return {name: value for name, value in row.items() if name.startswith(GRAIN)}
+        return {name: float(values[0]) for name, values in self.own_soils(np.array([run])).items()}
+
+    def own_soils(self, runs: np.ndarray) -> dict[str, np.ndarray]:
+        """The same of several runs, [run_count] each."""
+        first, last = int(runs.min()), int(runs.max())
+        count = last + 1 - first
+        rows = self.rows_at([0] * count, self._points(count, skip=first))
+        names = [name for name in rows[0] if name.startswith(GRAIN)]
+        return {name: np.array([row[name] for row in rows])[runs - first] for name in names}
 
     @property
     def shown_row(self) -> dict[str, float]:

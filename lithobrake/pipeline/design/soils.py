@@ -1,6 +1,6 @@
 """The soils of a study by region of the body, and the acceleration of what rests on the ground."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -78,6 +78,17 @@ class Soils:
         for number, (row, name) in enumerate(zip(rows, self.at(points), strict=True)):
             own = {key: float(values[number]) for key, values in drawn.items() if _region(key) == name}
             found.append(row | {_grain_key(key): value for key, value in own.items()})
+        return found
+
+    def met(self, journeys: np.ndarray, own: Mapping[str, np.ndarray], points: np.ndarray) -> dict[str, np.ndarray]:
+        """The numbers of the grains that landers meet at places [m], [count, 3], by dotted key, [count] each.
+
+        own: those of [grain] that the landers of these journeys [count] have drawn, for the ground elsewhere.
+        """
+        found, names = {key: values.copy() for key, values in own.items()}, np.array(self.at(points))
+        for key, values in self.drawn(journeys.tolist()).items():
+            there = names == _region(key)
+            found[_grain_key(key)][there] = values[there]
         return found
 
     @cached_property

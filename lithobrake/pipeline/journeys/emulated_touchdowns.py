@@ -1,17 +1,22 @@
 """Touchdowns by the emulator of all touchdowns."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.files.reading import hashed_seed
-from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, friction_of, ground_inputs
+from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, ground_inputs
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, TouchdownEmulator
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
+
+# Bounds the tilt of the ground that a lander meets.
+FRICTION = "grain.friction"
 
 
 @dataclass
@@ -32,17 +37,18 @@ class EmulatedTouchdowns:
         # As wide as the longest name of OF_TOUCHDOWN: NumPy cuts longer ones without notice.
         self.beyond = np.full(len(self.begin.rows), "", dtype="<U24")
         names = [name for name in self.emulator.plain_inputs if name not in self.emulator.ranges]
-        self.soil = {name: self.begin.column(name) for name in names}
+        self.soil = {name: self.begin.column(name) for name in (*names, FRICTION)}
 
     def answers(self, impacts: ImpactStates) -> Answers:
         """Draw how each touchdown ends; nothing is known of those beyond the ranges of the emulator."""
         which, number = impacts.lander, int(impacts.number[0])
-        rows = (self.begin.rows[one] for one in which.tolist())
+        soil = {name: values[which] for name, values in self.soil.items()} | self._met(impacts)
         # The emulator reads the size of the acceleration and the slope, for which any azimuth will do.
         ground = [
-            ground_inputs(one, 0.0, friction_of(row)) for one, row in zip(impacts.acceleration, rows, strict=True)
+            ground_inputs(one, 0.0, friction)
+            for one, friction in zip(impacts.acceleration, soil[FRICTION], strict=True)
         ]
-        inputs = {name: values[which] for name, values in self.soil.items()} | {
+        inputs = soil | {
             IMPACT_SPEED: impacts.speed,
             IMPACT_INCIDENCE: np.minimum(impacts.incidence_deg, FLATTEST_DEG),
             GRAVITY: np.array([one[GRAVITY] for one in ground]),
@@ -53,6 +59,23 @@ class EmulatedTouchdowns:
         self.beyond[which] = np.where(beyond == "", self.beyond[which], beyond)
         seed = hashed_seed(self.emulator.design.study.seed, self.title, number)
         return self.emulator.answers(inputs, impacts.local_spin, self.begin.refit[which], seed)
+
+    def _met(self, impacts: ImpactStates) -> dict[str, np.ndarray]:
+        """Soils of the regions that landers touch down in; nothing where all ground is what a lander met first."""
+        design, which = self.emulator.design, impacts.lander
+        if not design.study.soil:
+            return {}
+        own = {name: values[which] for name, values in self._own_soils.items()}
+        return self._soils.met(self.begin.number[which], own, impacts.position)
+
+    @cached_property
+    def _soils(self) -> Soils:
+        return Soils(self.emulator.design.site)
+
+    @cached_property
+    def _own_soils(self) -> dict[str, np.ndarray]:
+        """The grains that each lander draws for the ground outside of all regions, [lander_count]."""
+        return self.emulator.design.own_soils(self.begin.number)
 
     def _attitude(self, which: np.ndarray, number: int) -> dict[str, np.ndarray]:
         """Terms of the attitudes of some landers: as delivered at the first touchdown, any attitude at later ones.

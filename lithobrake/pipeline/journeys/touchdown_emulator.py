@@ -10,7 +10,14 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT, RIDERS, DrawnLandings, fitted, outputs_of_runs
+from lithobrake.pipeline.first_bounces.emulator import (
+    REFIT_COUNT,
+    RIDERS,
+    DrawnLandings,
+    fitted,
+    inputs_met,
+    outputs_of_runs,
+)
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.touchdown import Answers
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
@@ -41,10 +48,6 @@ ALONG, ASIDE, DURATION, _ = TO_REST
 OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL_TABLES = ("impact.", "surface.")
-ONE_SOIL = (
-    "The study has no emulator of its touchdowns: it would have one soil for the whole body, but [soil] gives regions "
-    "their own."
-)
 # How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
 FACTOR, DEGREES = 1.1, 5.0
 LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
@@ -160,7 +163,7 @@ class TouchdownEmulator:
 def fit_touchdowns(job: Job) -> str | None:
     """Fit the emulator to all touchdowns and write it; give the reason, in a sentence, where there is none."""
     runs = with_attitude(job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN))
-    why = ONE_SOIL if job.study.soil else _why_none(job.study, runs)
+    why = _why_none(job.study, runs)
     if why is not None:
         job.folder.write_json(TOUCHDOWN_EMULATOR_FILE, {"why": why})
         return why
@@ -186,10 +189,10 @@ def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
 
 
 def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
-    """Soil and lander as the study draws them, and what differs between touchdowns, over its range."""
+    """Soil and lander as the study draws them or runs have met them, and what else differs, over its range."""
     from lithobrake.chaos import LogUniform, Uniform
 
-    kept = {name: law for name, law in job.design.inputs.items() if not name.startswith(ARRIVAL_TABLES)}
+    kept = {name: law for name, law in inputs_met(job.design, runs).items() if not name.startswith(ARRIVAL_TABLES)}
     # What is the same in all touchdowns says nothing of others; beyond it the emulator has no answer.
     varies = [name for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items() if lower < upper]
     ranges = {name: ends for name, ends in trained_ranges(runs).items() if name in varies}

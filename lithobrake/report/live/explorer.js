@@ -83,10 +83,9 @@ function shareWords(explorer, found) {
   return `${per(share)} % ${facts.action}${interval}`;
 }
 
-// The explorer of what the page holds, or null where it holds none.
-function readExplorer() {
-  const data = document.getElementById("explorer-data");
-  if (!data) return null;
+// The explorer that a section of the page holds.
+function readExplorer(holder) {
+  const data = document.getElementById(`${holder.id}-data`);
   const { facts, law: packedLaw, flown: packedFlown } = JSON.parse(data.textContent);
   const law = new Law(unpack(packedLaw), facts);
   if (!packedFlown) return new Explorer(law, null, facts);
@@ -121,10 +120,8 @@ function pictures(explorer, holder) {
   };
 }
 
-function startExplorer() {
-  const explorer = readExplorer(), holder = document.getElementById("explorer");
-  if (!explorer) return null;
-  const { facts } = explorer, show = pictures(explorer, holder);
+function startExplorer(holder) {
+  const explorer = readExplorer(holder), { facts } = explorer, show = pictures(explorer, holder);
   let waiting = false, points = POINTS, settled = 0;
   const draw = (all) => {
     waiting = false;
@@ -155,4 +152,6 @@ function startExplorer() {
   return explorer;
 }
 
-const explorer = startExplorer();
+// By the id of its section.
+const explorers = Object.fromEntries(
+  Array.from(document.querySelectorAll("section.explorer"), (holder) => [holder.id, startExplorer(holder)]));

@@ -1,4 +1,4 @@
-"""The explorer of the page: emulator or expansion as tables, one touchdown of journeys, and arrays in a page."""
+"""The explorers of the page, of the first touchdown and of any touchdown of journeys, and arrays in a page."""
 
 import base64
 import json
@@ -10,10 +10,10 @@ import numpy as np
 
 from lithobrake.report.content import LiveSection, in_html, raised_units
 from lithobrake.results import ExplorerTables, Table
-from lithobrake.results.page_data import DrawnPage, JourneyPage, PageData, PaperPage
+from lithobrake.results.page_data import PageData
 from lithobrake.results.table import ExplorerAttitude
 from lithobrake.statements.answers import action
-from lithobrake.statements.captions import has_interval
+from lithobrake.statements.expansion import MODEL
 from lithobrake.statements.labels import input_words, output
 from lithobrake.vocabulary.number_words import listing, number, percent, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
@@ -64,9 +64,12 @@ def script_data(name: str, content: Mapping[str, Any]) -> str:
     return f'<script type="application/json" id="{name}">{text}</script>\n'
 
 
-def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
-    """The explorer with all its numbers."""
-    flown = _flown(data.flights)
+def explorer_sections(data: PageData) -> list[LiveSection]:
+    """The explorer of the first touchdown with all its numbers; none without samples."""
+    samples = data.samples
+    if samples is None:
+        return []
+    flown, explorer, model = _flown(samples.flights), samples.explorer, samples.results.model
     count = len(flown["status"])
     flown_words = (
         f"No flight is computed here: each lander takes the outcome of one of {thousands(count)} flights, one of the "
@@ -74,47 +77,49 @@ def explorer_sections(data: PaperPage | DrawnPage) -> list[LiveSection]:
         if count
         else "No flights were computed, so neither shares nor places are shown. "
     )
+    fitted = data.expansion if model == MODEL else None
+    over_beds = fitted is None and data.has_interval
+    moved = list(explorer.input_names if fitted is None else fitted.results.kept_inputs)
     words = (
-        f"Move the two ends of an input range: this page evaluates the {data.model} for all soils in it, weighted by "
-        f"their input distribution. {_fixed(data, data.explorer)}"
+        f"Move the two ends of an input range: this page evaluates the {model} of the first touchdown for all soils in "
+        f"it, weighted by their input distribution. {_fixed(explorer, moved)}"
     )
-    facts = law_facts(data.explorer, _moved(data, data.explorer), data.samples) | _flight_facts(data, bool(count))
-    note = f"{words}{_bands(data, data.explorer)} {flown_words}"
-    return [explorer_section(note, facts, data.explorer, flown if count else None)]
+    bands = (
+        f"{_fits(model, explorer)} residuals that fall on other runs; no other bed."
+        if fitted
+        else emulator_bands(explorer, over_beds)
+    )
+    facts = law_facts(explorer, moved, samples.table) | _flight_facts(data, bool(count))
+    facts["reach"] = explorer.interval_reach if over_beds else None
+    note = f"{words}{bands} {flown_words}"
+    return [explorer_section("explorer", "Explorer", note, facts, explorer, flown if count else None)]
 
 
 def explorer_section(
-    note: str, facts: Mapping[str, Any], explorer: ExplorerTables, flown: Mapping[str, np.ndarray] | None = None
+    name: str,
+    title: str,
+    note: str,
+    facts: Mapping[str, Any],
+    explorer: ExplorerTables,
+    flown: Mapping[str, np.ndarray] | None = None,
 ) -> LiveSection:
     """The section of an explorer. note: what it says of itself; facts and flown starts: what its scripts read."""
-    law = {name: np.asarray(table, dtype=np.float64) for name, table in explorer.tables.items()}
+    law = {key: np.asarray(table, dtype=np.float64) for key, table in explorer.tables.items()}
     numbers = {"facts": facts, "law": packed(law), "flown": packed(flown) if flown else None}
-    html = f"""<section id="explorer">
-<h3>Explorer</h3>
+    html = f"""<section id="{name}" class="explorer">
+<h3>{title}</h3>
 <p class="note">{in_html(note)}Grey lines: the whole input distribution.</p>
 <div class="explored"><div class="controls"></div><div class="views"><p class="share" aria-live="polite"></p>
 <div class="charts"></div></div></div>
 </section>
-{script_data("explorer-data", numbers)}"""
+{script_data(f"{name}-data", numbers)}"""
     return LiveSection(html, SCRIPTS)
 
 
-def _fixed(data: PageData, explorer: ExplorerTables) -> str:
+def _fixed(explorer: ExplorerTables, moved: Sequence[str]) -> str:
     """What is said of the inputs without sliders."""
-    others = [input_words(name) for name in explorer.input_names if name not in _moved(data, explorer)]
+    others = [input_words(name) for name in explorer.input_names if name not in moved]
     return f"Removed by the screening and always over their whole distribution: {listing(others)}. " if others else ""
-
-
-def _moved(data: PageData, explorer: ExplorerTables) -> list[str]:
-    """The inputs with sliders: those of an expansion that the screening has kept, and all of an emulator."""
-    return list(data.results.kept_inputs if isinstance(data, PaperPage) else explorer.input_names)
-
-
-def _bands(data: PaperPage | DrawnPage, explorer: ExplorerTables) -> str:
-    """What the bands are, in a sentence."""
-    if isinstance(data, PaperPage):
-        return f"{_fits(data.model, explorer)} residuals that fall on other runs; no other bed."
-    return emulator_bands(explorer, has_interval(data))
 
 
 def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
@@ -174,16 +179,15 @@ def _attitude(found: ExplorerAttitude | None, names: Sequence[str]) -> dict[str,
     }
 
 
-def _flight_facts(data: PaperPage | DrawnPage, is_flown: bool) -> dict[str, Any]:
+def _flight_facts(data: PageData, is_flown: bool) -> dict[str, Any]:
     """What the share of returns and the map need; no action where there is no share."""
     site = data.results.site
     return {
-        # The study's share is of all samples, those without an answer among them.
-        "ofAll": isinstance(data, PaperPage),
+        # Without drawn landers the study's share is of all samples, those without an answer among them.
+        "ofAll": data.journeys is None,
         "holds": site.holds,
         "action": action(data) if is_flown else None,
         "site": [site.latitude_deg, site.longitude_deg],
-        "reach": data.explorer.interval_reach if has_interval(data) else None,
     }
 
 
@@ -200,13 +204,12 @@ def _flown(flights: Table) -> dict[str, np.ndarray]:
     }
 
 
-def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
-    """The explorer with all its numbers; none where the touchdowns have no emulator."""
-    explorer = data.explorer
-    if explorer is None:
+def touchdown_sections(data: PageData) -> list[LiveSection]:
+    """The explorer of any touchdown with all its numbers; none where the touchdowns have no emulator."""
+    if data.journeys is None or data.journeys.explorer is None:
         return []
-    outcomes = data.touchdowns["outcome"]
-    fitted = data.touchdowns.where(np.isin(outcomes, explorer.outcome_names))
+    explorer, touchdowns = data.journeys.explorer, data.journeys.touchdowns
+    fitted = touchdowns.where(np.isin(touchdowns["outcome"], explorer.outcome_names))
     beds = len(np.unique(fitted["bed"]))
     # Refits draw runs where those that left lie on one bed.
     over_beds = 1 < beds == explorer.group_count
@@ -219,7 +222,7 @@ def touchdown_sections(data: JourneyPage) -> list[LiveSection]:
         "reach": explorer.interval_reach if over_beds else None,
     }
     note = f"{_what(fitted, beds)} {_law(explorer)} {emulator_bands(explorer, over_beds)} "
-    return [explorer_section(note, facts, explorer)]
+    return [explorer_section("touchdown-explorer", "Explorer of any touchdown", note, facts, explorer)]
 
 
 def _what(fitted: Table, beds: int) -> str:

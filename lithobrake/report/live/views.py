@@ -15,7 +15,7 @@ from lithobrake.report.figures.ground_map import round_length
 from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE
 from lithobrake.report.live.explorer import deflated, script_data
-from lithobrake.results.page_data import JourneyPage, PageData, SampledPage
+from lithobrake.results.page_data import PageData, PageJourneys, PageSamples
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.number_words import number
@@ -200,11 +200,19 @@ def section(
     return LiveSection(html, SCRIPTS)
 
 
-def body_views(data: SampledPage) -> list[LiveSection]:
-    """The body with where landers come down, facets coloured as in its figure, if any does."""
-    if not len(data.facet):
+def body_views(data: PageData) -> list[LiveSection]:
+    """The body with the places where landers rest, or where they impact after the first touchdown, and their paths."""
+    samples, journeys = data.samples, data.journeys
+    if samples is not None and not data.to_rest:
+        return _impact_view(data, samples)
+    return [] if journeys is None else _end_view(data, journeys)
+
+
+def _impact_view(data: PageData, samples: PageSamples) -> list[LiveSection]:
+    """The facets coloured by the impacts as in the figure of the body, if there is any."""
+    if not len(samples.facet):
         return []
-    density = facet_density(data.body_vertices[data.body_faces], data.facet)
+    density = facet_density(data.body_vertices[data.body_faces], samples.facet)
     low, high = colour_ends(density)
     scale = COLOURS(LogNorm(low, high)(density))[:, :3]
     arrays, facts = _body(data, np.where(density[:, None] > 0.0, scale, BARE))
@@ -215,21 +223,13 @@ def body_views(data: SampledPage) -> list[LiveSection]:
         arrays |= _lines(*data.paths)
         words += f" Lines: the paths of the first {len(data.paths[1])} flights, relative to the rotating body."
     legend = {FATE_WORDS.get(FlightStatus(one), one): FATE_COLOURS[one] for one in dict.fromkeys(data.paths[1])}
-    return [
-        section(
-            "body-3d",
-            "Where the lander comes down, in three dimensions",
-            _with_marker(words, facts),
-            arrays,
-            facts,
-            legend,
-        )
-    ]
+    title = "Where the lander comes down, in three dimensions"
+    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, legend)]
 
 
-def end_views(data: JourneyPage) -> list[LiveSection]:
-    """The body with a pin at the place of each lander on the ground, and the flights of the first journeys."""
-    table, (ways, ended) = data.journeys, data.paths
+def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
+    """A pin at the place of each lander on the ground, and the flights of the first journeys."""
+    table, (ways, ended) = journeys.table, data.paths
     place = np.column_stack([table[f"position_{axis}"] for axis in "xyz"])
     on_ground = np.isfinite(place).all(axis=1)
     if not (on_ground.any() or len(ways)):
@@ -237,17 +237,18 @@ def end_views(data: JourneyPage) -> list[LiveSection]:
     arrays, facts = _body(data, np.broadcast_to(np.array(BARE), (len(data.body_faces), 3)))
     foot, end = place[on_ground], table["end"][on_ground]
     head = foot + PIN * _radius(data) * foot / np.linalg.norm(foot, axis=1)[:, None]
-    pins, lines = _lines(np.stack([foot, head], axis=1), end), _lines(ways, ended)
-    arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
-    words = f"Pins: where {on_ground.sum()} landers ended on the ground."
+    words, pins = (
+        f"Pins: where {on_ground.sum()} landers ended on the ground.",
+        _lines(np.stack([foot, head], axis=1), end),
+    )
+    arrays |= pins
     if len(ways):
+        lines = _lines(ways, ended)
+        arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
         words += " Lines: the paths of the first journeys, relative to the rotating body."
     legend = {JourneyEnd(one).label: END_COLOURS[one] for one in dict.fromkeys([*end.tolist(), *ended])}
-    return [
-        section(
-            "body-3d", "Where the landers rest, in three dimensions", _with_marker(words, facts), arrays, facts, legend
-        )
-    ]
+    title = "Where the landers rest, in three dimensions"
+    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, legend)]
 
 
 def _with_marker(words: str, facts: Mapping[str, Any]) -> str:

@@ -1,17 +1,16 @@
-"""The tables and the first numbers of the page of a drawn study."""
+"""Tables of the first touchdowns of the drawn landers: the return fraction, outcomes, outputs and their variance."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lithobrake.report.content import PageTable, table_cell
-from lithobrake.report.tables.dispersion_tables import limit_state_tables, rare_tables
-from lithobrake.report.tables.paper_tables import INPUT_COLUMNS, beds_table, input_cells, touchdowns_table
-from lithobrake.results.page_data import DrawnPage, RunsPage
+from lithobrake.report.content import PageTable, table_cell, unit_scales
+from lithobrake.report.tables.expansion_tables import INPUT_COLUMNS, input_cells
+from lithobrake.results.model_results import EmulatorResults
+from lithobrake.results.page_data import PageData
 from lithobrake.results.run_results import SideRuns, VarianceParts
 from lithobrake.statements import labels, notes
 from lithobrake.statements.answers import action
-from lithobrake.statements.captions import has_interval
 from lithobrake.statements.touchdowns import BAND, drawn_things, left_out, run_outcomes
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
@@ -25,33 +24,26 @@ from lithobrake.vocabulary.number_words import (
     with_interval,
 )
 
-LEVELS = {"0.05": "5 %", "0.5": "median", "0.95": "95 %"}
+
+def why_tables(data: PageData) -> list[PageTable]:
+    """What explains the variance of the rebound; to rest, the sides stand in the table of the journeys too."""
+    return [_variance(data), _sides(data)]
 
 
-def why_tables(data: RunsPage) -> list[PageTable]:
-    """What decides, as far as it is known."""
-    return _with_rows(_variance(data), _sides(data))
+def sure_tables(data: PageData) -> list[PageTable]:
+    """The return fraction with its interval, and what is behind it."""
+    side, emulator = data.results.runs.side_runs, data.results.emulator
+    found = [_returns(data), _runs(data)]
+    found += [_emulator(emulator, data.results.runs.beds)] if emulator else []
+    return [*found, *([_side_runs(data, side)] if side else [])]
 
 
-def sure_tables(data: RunsPage) -> list[PageTable]:
-    """The answer with its interval, what is behind it, and the limit states."""
-    side = data.results.runs.side_runs
-    found = [_answer(data), _runs(data), *([_emulator(data)] if isinstance(data, DrawnPage) else [])]
-    found += [_side_runs(data, side)] if side else []
-    found += [*limit_state_tables(data), *rare_tables(data.rare)] if isinstance(data, DrawnPage) else []
-    return _with_rows(*found)
+def output_tables(data: PageData) -> list[PageTable]:
+    """What the landings gave."""
+    return [_outputs(data), _directions(data)]
 
 
-def method_tables(data: RunsPage) -> list[PageTable]:
-    """What was varied, and what the landings gave."""
-    return _with_rows(_inputs(data), _outputs(data), _directions(data), touchdowns_table(data), beds_table(data))
-
-
-def _with_rows(*found: PageTable) -> list[PageTable]:
-    return [table for table in found if table.rows]
-
-
-def _answer(data: RunsPage) -> PageTable:
+def _returns(data: PageData) -> PageTable:
     returns, missing = data.results.returns, data.results.runs.missing.count
     bounds = returns.share.bounds
     digits = interval_digits(*(bounds or (None, None)))
@@ -68,19 +60,19 @@ def _answer(data: RunsPage) -> PageTable:
         rows.append(["return fraction by the emulator", percent(returns.emulator, digits)])
     rows.append(["from", returns.from_])
     note = as_sentence(returns.why) if returns.why else ""
-    if has_interval(data) and missing:
+    if data.has_interval and missing:
         note = "The interval covers all possible outcomes of the landings with unknown outcome."
-    return PageTable("The answer", ["quantity", "value"], rows, note)
+    return PageTable("Return fraction", ["quantity", "value"], rows, note)
 
 
-def _bed_size(data: RunsPage) -> str:
+def _bed_size(data: PageData) -> str:
     """How much ground a bed is; nothing where touchdowns are made without one."""
     if not data.results.beds:
         return ""
     return f" of {' x '.join(f'{length:g}' for length in data.study['bed']['width'])} m"
 
 
-def _outputs(data: RunsPage) -> PageTable:
+def _outputs(data: PageData) -> PageTable:
     """Mean and quantiles of the landings that left."""
     columns = ["output", "unit", "mean", "standard deviation", *QUANTILE_WORDS.values()]
     rows = []
@@ -92,7 +84,7 @@ def _outputs(data: RunsPage) -> PageTable:
     return PageTable("Outputs of the landings", columns, rows, notes.outputs(data), frozenset(columns[2:]))
 
 
-def _directions(data: RunsPage) -> PageTable:
+def _directions(data: PageData) -> PageTable:
     """Mean direction and resultant length of the angles without beginning or end."""
     columns = ["output", "mean direction [deg]", "resultant length"]
     rows = [
@@ -114,7 +106,7 @@ def _estimate(entry: Estimate | None, factor: float) -> str:
     return f"{table_cell(shown.value)}{labels.bracket(shown.lower, shown.upper)}"
 
 
-def _variance(data: RunsPage) -> PageTable:
+def _variance(data: PageData) -> PageTable:
     """Every part of the variance of each output, soil by input."""
     records = data.results.variance_shares
     known = [record for record in records.values() if record]
@@ -130,7 +122,7 @@ def _variance(data: RunsPage) -> PageTable:
     )
 
 
-def _sides(data: RunsPage) -> PageTable:
+def _sides(data: PageData) -> PageTable:
     """What becomes of the landers by the side that faces the ground; of journeys the first touchdown."""
     columns = ["side toward the ground", "landings", "median rebound speed over impact speed", "return fraction"]
     rows = [
@@ -149,7 +141,7 @@ def _parts(record: VarianceParts | None, inputs: Sequence[str], names: Sequence[
     return ["" if one is None else part(one) for one in found]
 
 
-def _runs(data: RunsPage) -> PageTable:
+def _runs(data: PageData) -> PageTable:
     runs = data.results.runs
     total = max(sum(runs.outcomes.values()), 1)
     rows = [
@@ -163,10 +155,10 @@ def _runs(data: RunsPage) -> PageTable:
     )
     rows.append([f"({aside})", str(count), percent(count / total)])
     columns = ["outcome", "runs", "share"]
-    return PageTable("Outcomes of the runs", columns, rows, run_outcomes(data), frozenset(columns[1:]))
+    return PageTable("Outcomes of the runs", columns, rows, run_outcomes(data.results), frozenset(columns[1:]))
 
 
-def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
+def _side_runs(data: PageData, side: SideRuns) -> PageTable:
     """What pairs of runs tell of soil and chaos."""
     effects, chaos, rows = side.soil_total_effect, side.chaos_deviation, []
     for name in dict.fromkeys([*effects, *chaos]):
@@ -184,20 +176,33 @@ def _side_runs(data: RunsPage, side: SideRuns) -> PageTable:
     return PageTable("Side runs", columns, rows, notes.side_runs(side, data.level), frozenset(columns[1:3]))
 
 
-def _emulator(data: DrawnPage) -> PageTable:
+def _emulator(emulator: EmulatorResults, bed_count: int) -> PageTable:
     """How the emulator does on beds left out."""
-    emulator = data.emulator
     columns = ["output", "skill", f"within the {percent(BAND)} band"]
     rows = [["all together", percent(emulator.scores.joint.energy_skill), ""]]
     for name, score in emulator.scores.outputs.items():
         rows.append([labels.output(name).words, percent(score.crps_skill), percent(score.band_90)])
-    title = f"The emulator on {left_out(data.results.runs.beds)}"
-    return PageTable(title, columns, rows, notes.emulator_scores(data), frozenset(columns[1:]))
+    title = f"The emulator on {left_out(bed_count)}"
+    return PageTable(title, columns, rows, notes.emulator_scores(bed_count), frozenset(columns[1:]))
 
 
-def _inputs(data: RunsPage) -> PageTable:
+def touchdowns_table(data: PageData) -> PageTable:
+    """What else the touchdowns gave."""
+    found = data.results.outputs_of_runs
+    numbers = {name: (one.unit, (one.smallest, one.median, one.largest)) for name, one in found.items()}
+    scale = unit_scales((unit, value) for unit, values in numbers.values() for value in values)
+    rows = [
+        [name.replace("_", " "), unit, *(table_cell(value, scale[unit]) for value in values)]
+        for name, (unit, values) in numbers.items()
+    ]
+    columns = ["quantity", "unit", "smallest", "median", "largest"]
+    note = "Over all distinct runs." if rows else ""
+    return PageTable("Other outputs of the touchdowns", columns, rows, note, frozenset(columns[2:]))
+
+
+def inputs_table(data: PageData) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    found, rows = _found_inputs(data), []
+    found, rows = data.results.emulator.found_inputs if data.results.emulator else (), []
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in _uncertain(data.study):
         if name in data.runs:
@@ -209,13 +214,8 @@ def _inputs(data: RunsPage) -> PageTable:
     named = {row[1] for row in rows}
     drawn = [words for words in drawn_things(data.study) if not (words == "impact point" and "impact.place.x" in named)]
     rows += [[words, keys[words], "uniform", "randomised in each run", ""] for words in drawn]
-    note = notes.significant_inputs(data.level, has_any=bool(found))
+    note = notes.significant_inputs(data.level, has_any=bool(found)) if data.results.emulator else ""
     return PageTable("Sampled inputs", [*INPUT_COLUMNS, "significant"], rows, note)
-
-
-def _found_inputs(data: RunsPage) -> tuple[str, ...]:
-    """What an emulator found to matter."""
-    return data.emulator.found_inputs if isinstance(data, DrawnPage) else ()
 
 
 def _uncertain(tables: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:

@@ -1,13 +1,13 @@
-"""The tables of the page, from the numbers of the files."""
+"""Tables of the expansions: their designs, fits, errors and indices, and the outputs of their samples."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lithobrake.report.content import PageTable, flat, show, table_cell, unit_scales
-from lithobrake.results.model_results import Ends
-from lithobrake.results.page_data import PageData, PaperPage
-from lithobrake.results.study_files import json_values
+from lithobrake.report.content import PageTable, show, table_cell, unit_scales
+from lithobrake.results.model_results import Ends, SampleResults
+from lithobrake.results.page_data import PageExpansion
 from lithobrake.statements import notes
+from lithobrake.statements.expansion import MODEL
 from lithobrake.statements.labels import PAPER_OUTPUTS, bracket, input_words, output, two_digits
 from lithobrake.vocabulary.number_words import fixed
 
@@ -27,39 +27,17 @@ DESIGN_WORDS = {
 }
 
 
-def why_tables(data: PaperPage) -> list[PageTable]:
-    """The indices of all inputs."""
-    return [_sobol(data)]
-
-
-def sure_tables(data: PaperPage) -> list[PageTable]:
+def sure_tables(data: PageExpansion) -> list[PageTable]:
     """The errors of the expansions, and how these were fitted."""
     return [_scores(data), _fits(data)]
 
 
-def method_tables(data: PaperPage) -> list[PageTable]:
-    """What was varied, what was run, and what came out."""
-    return [_inputs(data), _runs(data), _outputs(data), touchdowns_table(data), beds_table(data)]
-
-
-def provenance(data: PageData) -> list[PageTable]:
-    """Where the numbers come from: seed, times, versions."""
-    rows = [("seed", show(data.study["seed"])), *flat(json_values(data.provenance))]
-    return [
-        PageTable(
-            "Execution",
-            ["name", "value"],
-            rows,
-            "wall_s and cpu_s in seconds; a stage that was reused keeps its time.",
-        )
-    ]
-
-
-def _inputs(data: PaperPage) -> PageTable:
+def inputs_table(data: PageExpansion, study: Mapping[str, Any]) -> PageTable:
+    """The uncertain inputs, and which the refined design varies; study: the tables of its file."""
     kept = data.results.kept_inputs
     rows = []
     for name in data.results.screening.inputs:
-        value: Any = data.study
+        value: Any = study
         for key in name.split("."):
             value = value[key]
         rows.append([*input_cells(name, value), "yes" if name in kept else "no"])
@@ -72,7 +50,8 @@ def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
     return [input_words(name), name, law["distribution"].replace("_", "-"), parameters]
 
 
-def _runs(data: PaperPage) -> PageTable:
+def designs_table(data: PageExpansion) -> PageTable:
+    """The runs of each design."""
     rows = []
     for name, design in data.results.designs.items():
         outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design.outcomes.items())
@@ -81,17 +60,7 @@ def _runs(data: PaperPage) -> PageTable:
     return PageTable("Touchdowns", ["design", "runs", "left the surface", "outcomes"], rows, numbers=numbers)
 
 
-def beds_table(data: PageData) -> PageTable:
-    columns = ["bed", "solid fraction", "contacts a grain", "surface height [m]", "mean diameter [m]"]
-    rows = [
-        [str(index), *map(table_cell, numbers)]
-        for index, one in enumerate(data.results.beds)
-        for numbers in [(one.solid_fraction, one.coordination_number, one.surface_height_m, one.mean_diameter_m)]
-    ]
-    return PageTable("Beds", columns, rows, numbers=frozenset(columns[1:]))
-
-
-def _fits(data: PaperPage) -> PageTable:
+def _fits(data: PageExpansion) -> PageTable:
     columns = [
         "expansion",
         "output",
@@ -130,7 +99,7 @@ def _fits(data: PaperPage) -> PageTable:
     return PageTable("How the expansions were fitted", columns, rows, note, frozenset(columns[4:]))
 
 
-def _scores(data: PaperPage) -> PageTable:
+def _scores(data: PageExpansion) -> PageTable:
     columns = ["expansion and runs", "output", "unit", "MAPE [%]", "Q2", "RMSE", "spread (std)", "RMSE/spread"]
     scale = _output_scales((name, one.std) for table in data.results.scores.values() for name, one in table.items())
     rows = []
@@ -152,7 +121,8 @@ def _scores(data: PaperPage) -> PageTable:
     return PageTable("Errors of the expansions", columns, rows, notes.scores(), frozenset(columns[3:]))
 
 
-def _sobol(data: PaperPage) -> PageTable:
+def sobol_table(data: PageExpansion) -> PageTable:
+    """The indices of all inputs."""
     table = data.results.screening
     words = [output(name).words for name in PAPER_OUTPUTS]
     columns = ["input", *(f"{word}, first" for word in words), *(f"{word}, total" for word in words)]
@@ -167,11 +137,12 @@ def _sobol(data: PaperPage) -> PageTable:
     return PageTable("Sobol indices", columns, rows, notes.sobol(), frozenset(columns[1:]))
 
 
-def _outputs(data: PaperPage) -> PageTable:
+def samples_table(samples: SampleResults) -> PageTable:
+    """The outputs of the samples that leave; no row for samples of an emulator, whose outputs are those of the runs."""
     columns = ["output", "unit", "mean", "std", "5 %", "median", "95 %"]
     numbers = {
         name: (one.mean, one.std, *(one.quantiles[key] for key in ("quantile_0.05", "quantile_0.5", "quantile_0.95")))
-        for name, one in data.results.monte_carlo.outputs.items()
+        for name, one in (samples.outputs if samples.model == MODEL else {}).items()
     }
     scale = _output_scales((name, value) for name, values in numbers.items() for value in values)
     rows = []
@@ -180,24 +151,6 @@ def _outputs(data: PaperPage) -> PageTable:
         cells = (table_cell(value * shown.factor, scale[shown.unit]) for value in values)
         rows.append([shown.words, shown.unit, *cells])
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
-
-
-def touchdowns_table(data: PageData) -> PageTable:
-    found = data.results.outputs_of_runs
-    numbers = {name: (one.unit, (one.smallest, one.median, one.largest)) for name, one in found.items()}
-    scale = unit_scales((unit, value) for unit, values in numbers.values() for value in values)
-    rows = [
-        [name.replace("_", " "), unit, *(table_cell(value, scale[unit]) for value in values)]
-        for name, (unit, values) in numbers.items()
-    ]
-    columns = ["quantity", "unit", "smallest", "median", "largest"]
-    return PageTable(
-        "Other outputs of the touchdowns",
-        columns,
-        rows,
-        "Over all distinct runs." if rows else "",
-        frozenset(columns[2:]),
-    )
 
 
 def _output_scales(numbers: Iterable[tuple[str, float]]) -> dict[str, float]:
