@@ -8,17 +8,15 @@ import numpy as np
 
 from lithobrake.analysis import EqualAreaCells, best_choice, share_difference
 from lithobrake.files.reading import hashed_seed, read_rows
-from lithobrake.geometry.attitude import directions
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quantile_of_some
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.soils import felt
-from lithobrake.pipeline.first_bounces.bounces_to_rest import ways_from_aims
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.emulated_journeys import OWN
-from lithobrake.pipeline.journeys.emulated_landers import EmulatedLanders
-from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, Arrivals, TouchdownEmulator
+from lithobrake.pipeline.journeys.emulated_journeys import OWN, follow_emulated
+from lithobrake.pipeline.journeys.first_arrivals import Arrivals
+from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, TouchdownEmulator
 from lithobrake.pipeline.sky_at_rest import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
@@ -122,12 +120,10 @@ def follow_sites(job: Job, cells: EqualAreaCells, lander_count: int) -> SiteLand
     All cells have the same landers: soil, bed, delivery but for its aim point, and refit of each are drawn once.
     """
     begin = site_arrivals(job, cells, lander_count)
-    landers = EmulatedLanders.of(job, TouchdownEmulator.read(job.design, job.folder), TITLE, begin)
+    emulator = TouchdownEmulator.read(job.design, job.folder)
     # Landings at impacts outside the emulator's range would cost what the map is to save.
-    landers.follow(0)
-    there = directions(*job.site.body.shape.latitude_longitude(landers.position))
-    distance = ways_from_aims(job.site.body, begin.site, there)
-    columns = (landers.end, landers.time, distance, begin.refit, landers.beyond)
+    found = follow_emulated(job, emulator, begin, TITLE, 0)
+    columns = (found.landers.end, found.landers.time, found.landers.ways_from_aims, begin.refit, found.beyond)
     return SiteLanders(*(one.reshape(cells.total, lander_count) for one in columns))
 
 

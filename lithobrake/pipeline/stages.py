@@ -12,10 +12,10 @@ from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files,
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.expansion import expansions
 from lithobrake.pipeline.expansion.expansion_samples import sample_expansion
-from lithobrake.pipeline.first_bounces import bounces_to_rest, emulator
+from lithobrake.pipeline.first_bounces import emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_samples, write_paths
 from lithobrake.pipeline.job import Job, Stage, no_dependencies, same_files
-from lithobrake.pipeline.journeys import emulated_journeys
+from lithobrake.pipeline.journeys import delivery_options, emulated_journeys, hard_ground
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
 from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.runs import landings
@@ -36,6 +36,11 @@ def drawn(study: Study) -> bool:
 
 def expanded(study: Study) -> bool:
     return study.expansion is not None
+
+
+def emulates_touchdowns(study: Study) -> bool:
+    """Whether the emulator of all touchdowns follows landers, further ones or those of delivery options."""
+    return drawn(study) and bool(study.journey.emulated_count or study.aim.names)
 
 
 def sampled(study: Study) -> bool:
@@ -59,7 +64,9 @@ FLIGHT_PARTS = (
     "vocabulary/known_bodies.py", "vocabulary/quantities.py",
 )  # fmt: skip
 JOURNEY_PARTS = (
-    "pipeline/journeys/campaign.py", "pipeline/journeys/journey.py", "geometry/attitude.py", *RUN_PARTS, *FLIGHT_PARTS,
+    "pipeline/journeys/campaign.py", "pipeline/journeys/first_arrivals.py", "pipeline/journeys/landers.py",
+    "pipeline/journeys/simulated_touchdowns.py", "pipeline/journeys/touchdown.py", "geometry/attitude.py", *RUN_PARTS,
+    *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (
     "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
@@ -256,7 +263,7 @@ PATHS = Stage(
 EMULATED = Stage(
     "emulated",
     "landers by the emulator",
-    files_if(lambda study: drawn(study) and bool(study.journey.emulated_count), *emulated_journeys.EMULATED_FILES),
+    files_if(emulates_touchdowns, *emulated_journeys.EMULATED_FILES),
     emulated_journeys.make_emulated,
     ("runs",),
     emulated_journeys.emulated_dependencies,
@@ -265,19 +272,19 @@ EMULATED = Stage(
 HARD_GROUND = Stage(
     "hard_ground",
     "landers on hard ground",
-    bounces_to_rest.rest_files,
-    bounces_to_rest.follow_samples,
-    ("emulator", "refine"),
-    bounces_to_rest.rest_dependencies,
+    hard_ground.hard_ground_files,
+    hard_ground.follow_on_hard_ground,
+    ("runs", "sample"),
+    hard_ground.hard_ground_dependencies,
     (*EXPANSION_PARTS, *EMULATED_PARTS),
 )
 AIM = Stage(
     "aim",
     "delivery options",
-    emulated_journeys.option_files,
-    emulated_journeys.follow_options,
+    delivery_options.option_files,
+    delivery_options.follow_options,
     ("emulated",),
-    emulated_journeys.option_dependencies,
+    delivery_options.option_dependencies,
     EMULATED_PARTS,
 )
 SKY = Stage(

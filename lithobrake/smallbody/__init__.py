@@ -20,7 +20,7 @@ from lithobrake.smallbody.sky import HeliocentricOrbit, Screen, circle_places, d
 from lithobrake.smallbody.tumbling import tumble
 from lithobrake.vocabulary.outcomes import FlightStatus
 
-__all___all__ = [
+__all__ = [
     "AttitudeHistory", "Body", "Bounce", "FlightStatus", "Flights", "HardSurface", "HeliocentricOrbit", "Impacts",
     "Partner", "PartnerPlace", "Rebounds", "RestitutionTable", "Screen", "Shape", "SpinState", "built_in_body",
     "circle_places", "day_directions", "didymos", "dimorphos", "fly", "incidence_on", "latitudes_over", "met_normals",

@@ -1,7 +1,6 @@
-"""How flights ended, and the flights of which journeys are made."""
+"""How flights ended."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np

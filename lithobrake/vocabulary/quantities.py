@@ -113,10 +113,6 @@ FLIGHT = {
     "facet": Quantity("", "facet of the body that was hit, from 0"),
     "impact_speed": Quantity("m/s", "speed of the last impact against the ground"),
     "impact_incidence_deg": Quantity("deg", "angle of that velocity from the inward normal"),
-    "rebounds": Quantity("", "impacts after which the lander went on"),
-    "path_length": Quantity("m", "sum of the straight lines between impacts"),
-    "slid_length": Quantity("m", "way along the ground, in contact with it"),
-    "slid_time_s": Quantity("s", "time of that, part of time_s"),
 }
 # Of a flight between two impacts of a journey.
 ARC = {
@@ -150,6 +146,15 @@ JOURNEY = {
         for part in "wxyz"
     },
     "reason": Quantity("", "why the journey failed"),
+}
+# Of a lander that is followed on other ground.
+FOLLOWED = {
+    "ground": Quantity("", "hard, equivalent (hard ground with the restitution of the soil), or expansion"),
+    **{name: JOURNEY[name] for name in ("journey", "end", "time_s", "latitude_deg", "longitude_deg", "distance")},
+    "touchdowns": Quantity("", "impacts, the last one included"),
+    "path_length": JOURNEY["path_length"],
+    "slid_length": Quantity("m", "path along the ground, in contact with it"),
+    "slid_time_s": Quantity("s", "time of that, part of time_s"),
 }
 # Of a body in the sky as a lander at rest sees it.
 # Sides of a lander by its own axes.

@@ -97,10 +97,9 @@ def flight_checks(job: Job) -> dispersion.FlightChecks:
     return results_in(dispersion.FlightChecks, job.folder.read_json(FLIGHT_CHECKS_FILE), "flights")
 
 
-def ellipses(site: Site, rows: Rows, status: str) -> dispersion.LandingEllipses | None:
-    """Ellipses that hold half and 95 % of the places of the rows with this status; None where there are none."""
-    down = [row for row in rows if row["status"] == status]
-    latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in down]) for name in ("latitude", "longitude"))
+def ellipses(site: Site, rows: Rows) -> dispersion.LandingEllipses | None:
+    """Ellipses that hold half and 95 % of the places of these rows; None where there are none."""
+    latitude, longitude = (np.array([float(row[f"{name}_deg"]) for row in rows]) for name in ("latitude", "longitude"))
     return place_ellipses(site, latitude, longitude)
 
 

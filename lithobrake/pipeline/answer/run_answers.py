@@ -185,9 +185,9 @@ def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
     )
 
 
-def place_regions(site: SiteResults, rows: Sequence[dict[str, str]], status: str) -> tuple[RestRegion, ...]:
-    """Regions of the places of the rows with this status, on a sphere of the radius at the site."""
-    down = [row for row in rows if row["status"] == status][:MOST_PLACES]
+def place_regions(site: SiteResults, rows: Sequence[dict[str, str]]) -> tuple[RestRegion, ...]:
+    """Regions of the places of these rows, on a sphere of the radius at the site."""
+    down = rows[:MOST_PLACES]
     if not down:
         return ()
     latitude, longitude = (

@@ -32,7 +32,7 @@ FLIGHTS = (FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, Fligh
 def sample_results(job: Job) -> SampleResults:
     """What came of the samples of a study, drawn from its expansion where it has one, otherwise from its emulator."""
     samples, flights = Samples.load(job.folder), read_table(job.folder, SAMPLE_FLIGHTS_FILE)
-    of_expansion = job.study.expansion is not None
+    of_expansion, impacts = job.study.expansion is not None, _impacts(flights)
     return SampleResults(
         model="expansion" if of_expansion else "emulator",
         sample_count=len(samples.outcome),
@@ -40,10 +40,14 @@ def sample_results(job: Job) -> SampleResults:
         outputs=_outputs(samples),
         shares=(_expansion_shares if of_expansion else _emulator_shares)(job, samples, flights),
         flights=dispersion_statistics.impact_numbers(flights),
-        ellipses=dispersion_statistics.ellipses(job.site, flights, FlightStatus.IMPACT),
-        regions=place_regions(dispersion_statistics.site_results(job.site), flights, FlightStatus.IMPACT),
+        ellipses=dispersion_statistics.ellipses(job.site, impacts),
+        regions=place_regions(dispersion_statistics.site_results(job.site), impacts),
         without_scatter=_without_scatter(job, samples),
     )
+
+
+def _impacts(flights: Rows) -> Rows:
+    return [row for row in flights if row["status"] == FlightStatus.IMPACT]
 
 
 def return_fraction_of_samples(job: Job, found: SampleShares) -> ReturnFraction:
@@ -132,7 +136,7 @@ def _without_scatter(job: Job, samples: Samples) -> WithoutScatter | None:
     return WithoutScatter(
         _expansion_shares(job, samples.expansion_alone(), flights),
         dispersion_statistics.impact_numbers(flights),
-        dispersion_statistics.ellipses(job.site, flights, FlightStatus.IMPACT),
+        dispersion_statistics.ellipses(job.site, _impacts(flights)),
     )
 
 

@@ -13,8 +13,9 @@ from lithobrake.pipeline.design.arrivals import on_local_ground
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
-from lithobrake.pipeline.journeys.campaign import begin, begun_aloft, journey_row
-from lithobrake.pipeline.journeys.journey import Journey, JourneyModel
+from lithobrake.pipeline.journeys.campaign import Journeys
+from lithobrake.pipeline.journeys.first_arrivals import Arrivals
+from lithobrake.pipeline.journeys.landers import Landers
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
@@ -23,6 +24,7 @@ from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TOUCHDOWN
 
@@ -190,17 +192,25 @@ def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class OneJourney:
-    """A journey with the landing of each of its touchdowns, in their order."""
+    """A journey with the landing of each of its touchdowns, in their order.
 
-    journey: Journey
+    lander: its place among those of `journeys`.
+    """
+
+    journeys: Journeys
+    lander: int
     landings: tuple[OneLanding, ...]
 
     @property
     def track(self) -> JourneyTrack:
         """Where the lander went, and how it ended."""
-        model, facts = self.journey.model, map(_facts, self.journey.touchdowns, self.landings)
-        row = dict(zip(JOURNEY, journey_row(self.journey), strict=True))
-        return JourneyTrack(row, tuple(facts), model.site.aim, model.site.aim_radius, model.body.shape.vertices)
+        site, facts = self.journeys.design.site, map(_facts, self._touchdowns, self.landings)
+        row = dict(zip(JOURNEY, self.journeys.row(self.lander), strict=True))
+        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices)
+
+    @property
+    def _touchdowns(self) -> list[dict[str, Any]]:
+        return self.journeys.touchdowns[self.lander]
 
     def motion(self) -> JourneyMotion:
         """The hulls of each touchdown and how they moved."""
@@ -214,7 +224,7 @@ class OneJourney:
     def to_json(self) -> dict[str, Any]:
         """The journey as a row of journeys.csv and its touchdowns, for a program; what is not known is null."""
         row = {name: None if cell == "" else cell for name, cell in self.track.row.items()}
-        pairs = zip(self.journey.touchdowns, self.landings, strict=True)
+        pairs = zip(self._touchdowns, self.landings, strict=True)
         return {**row, "touchdowns": [{**touchdown, **landing.to_json()} for touchdown, landing in pairs]}
 
 
@@ -227,25 +237,25 @@ def follow_one(
     are those of that journey in the study.
     """
     study = with_site_gravity(study, "the study")
-    journey = _begun(study, values)
+    journeys, lander = _begun(study, values)
     bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
     row: Row | None = values
     while row is not None:
         landings.append(landed(study, row, bed, progress))
-        row = journey.go_on(_record(study, landings[-1], context))
-        for line in [*(HEADS if len(landings) == 1 else ()), _line(journey, landings[-1])]:
+        row = journeys.go_on(lander, _record(study, landings[-1], context))
+        for line in [*(HEADS if len(landings) == 1 else ()), _line(journeys, lander, landings[-1])]:
             tell(line)
-    return OneJourney(journey, tuple(landings))
+    return OneJourney(journeys, lander, tuple(landings))
 
 
-def _begun(study: Study, values: Row) -> Journey:
+def _begun(study: Study, values: Row) -> tuple[Journeys, int]:
     number, design = round(values["journey"]), DrawnDesign(study)
     if not design.is_flown:
-        return begin(JourneyModel(design), [values], number)[0]
+        begin = Arrivals.of_rows(design.site, [values], number)
+        return Journeys.of(Landers.of(design, begin, study.journey.touchdowns)), 0
     # Journeys of a longer study begin with those of this one.
     design = design.with_run_count(max(study.design.run_count, number + 1))
-    assert design.descents is not None
-    return begun_aloft(JourneyModel(design), design.descents)[number]
+    return Journeys.begun(design), number
 
 
 def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Record:
@@ -261,12 +271,13 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
     )  # fmt: skip
 
 
-def _line(journey: Journey, landing: OneLanding) -> str:
-    facts, there = _facts(journey.touchdowns[-1], landing), None
-    if journey.end is None:
-        latitude, longitude = journey.model.body.shape.latitude_longitude(journey.origin)
+def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
+    facts, there = _facts(journeys.touchdowns[lander][-1], landing), None
+    word, site = str(journeys.landers.end[lander]), journeys.design.site
+    if not word:
+        latitude, longitude = site.body.shape.latitude_longitude(journeys.landers.position[lander])
         there = float(latitude), float(longitude)
-    return facts.line(facts.to_next(there, journey.model.site.aim_radius, journey.end))
+    return facts.line(facts.to_next(there, site.aim_radius, JourneyEnd(word) if word else None))
 
 
 def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:

@@ -13,7 +13,7 @@ from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
 from lithobrake.pipeline.design.descents import descents_in_words
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
-from lithobrake.pipeline.flights import Ways, write_flight_paths, write_shape, write_table
+from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
 from lithobrake.pipeline.journeys.landers import ENDS, Landers
@@ -124,8 +124,7 @@ class Journeys:
         return incoming
 
     def row(self, lander: int) -> list[Any]:
-        """Where a journey ended; what is not on the ground of the body has no place there, what does not rest no side.
-        """
+        """Where a journey ended; what is not on the ground has no place there, what does not rest no side."""
         landers, end = self.landers, str(self.landers.end[lander])
         place: list[Any] = ["", "", "", "", "", ""]
         if end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and landers.is_down[lander]:
@@ -191,8 +190,6 @@ def make_journeys(job: Job) -> None:
     DesignRuns.of(first).save(job.folder, "drawn")
     DesignRuns.of(Runs(records, 0)).save(job.folder, "touchdowns")
     journeys.write(job.folder)
-    write_shape(job.site.body, job.folder)
-    write_flight_paths(job, job.site.body, Ways.of_journeys(job.folder))
 
 
 def follow_in_chains(job: Job, journeys: Journeys, rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:

@@ -104,7 +104,7 @@ def most_landings(job: Job) -> int:
 def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     # Numbers behind those of the journeys: other points of the sequence, so other landers.
     followed = len(job.design.rows)
-    begin = Arrivals.drawn(job.design, followed, job.study.journey.emulated_count)
+    begin = Arrivals.drawn(job.design, followed, job.study.journey.emulated_count or 0)
     return _rows(job, emulator, FRESH, begin, most_landings(job))
 
 

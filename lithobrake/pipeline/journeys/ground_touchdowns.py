@@ -81,10 +81,8 @@ class Sliding:
         if not len(on):
             return found
         here = impacts.at(on)
-        ground = OnGround(
-            *(self.body, self._facets(here.position), self.friction[here.lander]),
-            *(here.mass, here.spin_period, here.clock, self.rolls),
-        )
+        facet, friction = self._facets(here.position), self.friction[here.lander]
+        ground = OnGround(self.body, facet, friction, here.mass, here.spin_period, here.clock, self.rolls)
         velocity = out_of_frame(here.axes, found.velocity[on])
         ends = slide(ground, here.position, velocity, here.left - found.duration[on])
         lofted = ends.leaves & ~ends.velocity.any(axis=1)

@@ -94,7 +94,7 @@ def _grounds(job: Job, begin: Arrivals) -> Iterator[tuple[str, Touchdown]]:
         table.save(job.folder / bounce_laws.RESTITUTION_FILE)
         yield EQUIVALENT, sliding(job.design, begin, Bounces(table, job.study.seed, "equivalent ground"))
     if has_expansion(job.study):
-        from lithobrake.pipeline.paper.expansion_journeys import soil_bounce
+        from lithobrake.pipeline.expansion.expansion_journeys import soil_bounce
 
         inputs = {name: begin.column(name) for name in job.design.inputs}
         bounces = Bounces(soil_bounce(job, inputs), job.study.seed, "ground of the expansion")

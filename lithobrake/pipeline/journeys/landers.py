@@ -16,8 +16,14 @@ from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.touchdown import (
-    FAILED, MOST_TOUCHDOWNS, Answers, ImpactStates, Touchdown, into_frame, out_of_frame
-)  # fmt: skip
+    FAILED,
+    Answers,
+    ImpactStates,
+    Touchdown,
+    into_frame,
+    out_of_frame,
+)
+from lithobrake.study.delivery_sections import MOST_TOUCHDOWNS
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
@@ -116,9 +122,7 @@ class Landers:
     contact_time: Array
 
     @classmethod
-    def of(
-        cls, design: DrawnDesign, begin: Arrivals, most: int | None = None, threads: int | None = None
-    ) -> "Landers":
+    def of(cls, design: DrawnDesign, begin: Arrivals, most: int | None = None, threads: int | None = None) -> "Landers":
         """Landers at their first touchdowns, followed for at most so many; None: as many as any lander has."""
         count = len(begin.rows)
         incidence = begin.column(IMPACT_INCIDENCE)

@@ -7,7 +7,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.campaign import RunStatus
-from lithobrake.study.delivery_sections import MOST_TOUCHDOWNS as MOST_TOUCHDOWNS
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END
@@ -67,7 +66,9 @@ class ImpactStates:
         """Some of the impacts."""
         parts = {one.name: getattr(self, one.name) for one in fields(self)}
         attitude = [self.attitude[one] for one in which.tolist()]
-        return ImpactStates(**{name: part[which] for name, part in parts.items() if name != "attitude"}, attitude=attitude)
+        return ImpactStates(
+            **{name: part[which] for name, part in parts.items() if name != "attitude"}, attitude=attitude
+        )
 
     @property
     def local_spin(self) -> Array:
@@ -80,7 +81,7 @@ class Answers:
     """How touchdowns end, [count] and [count, 3], vectors in the frames of the touchdowns.
 
     outcome     a word of TouchdownOutcome, "failed", or UNKNOWN_END
-    velocity    [m/s], and spin against the ground [rad/s], of those that leave; of captured ones what they slide on with
+    velocity    [m/s], and spin against the ground [rad/s], of those that leave; with which captured ones slide on
     way         from the impact to where the touchdown ended [m]; length: of the path between the two [m]
     duration    [s]; contacts: with the ground
     attitude    of the lander in the frame at the end, None where the model has none; reason: why a touchdown failed

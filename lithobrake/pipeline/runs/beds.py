@@ -7,8 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
@@ -64,14 +62,13 @@ def compile_flights(job: Job) -> int:
 
 
 def fly_briefly(study: Study) -> None:
-    """Fly one lander from the site of a study for a second, and have another slide there; makes the gravity table."""
-    from lithobrake.smallbody import HardSurface, Launch, hop
+    """Fly one lander from the site of a study for a second, and weigh it there; makes the gravity table."""
+    from lithobrake.smallbody import fly
 
     site = DrawnDesign(study).site
-    origin, axes = site.frames(site.columns(2))
-    launch = Launch(origin, np.outer([1.0, 0.0], axes[0, 2]), captured=[False, True])
-    # No bounce: what happens at an impact is nothing that is compiled.
-    hop(site.body, launch, HardSurface(0.0), 1.0, friction=1.0, gravity=study.flight.gravity, bounce_limit=0)
+    origin, axes = site.frames(site.columns(1))
+    site.body.effective_acceleration(origin)
+    fly(site.body, origin, axes[:, 2], 1.0, gravity=study.flight.gravity)
 
 
 @contextmanager
