@@ -17,7 +17,7 @@ from lithobrake.geometry.attitude import arriving, attitude_of, from_frame, quat
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.motions import landing_study
 from lithobrake.smallbody import tumble
-from lithobrake.smallbody.hopping import impact_frame
+from lithobrake.smallbody.bounce import impact_frame
 from lithobrake.smallbody.tumbling import turned_freely
 from lithobrake.study import Study
 from lithobrake.study.touchdown_model import lander

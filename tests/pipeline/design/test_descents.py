@@ -15,7 +15,7 @@ from scipy.special import ndtri
 from lithobrake.files.oem_reader import message_states
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
-from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_setting, bed_files, pour_seed, touchdown_keys
+from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, bed_setting, pour_seed, touchdown_keys
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down

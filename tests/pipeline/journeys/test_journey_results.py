@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lithobrake.report.pages.journey_page import journey_content
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
@@ -32,7 +33,6 @@ from lithobrake.report import write_report
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.figures.ground_map import GroundMap, round_length
 from lithobrake.report.live.views import end_views
-from lithobrake.report.pages.journey_page import journey_content
 from lithobrake.results import ExplorerTables, StudyResults
 from lithobrake.results.page_data import JourneyPage, page_results
 from lithobrake.results.run_results import CountedShare
