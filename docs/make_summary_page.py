@@ -12,7 +12,7 @@ from pathlib import Path
 from textwrap import dedent, wrap
 from typing import Any, get_args
 
-from lithobrake.results.summary import DrawnResults, PaperResults, Provenance, Summary
+from lithobrake.results.summary import Provenance, Results, Summary
 from lithobrake.vocabulary.estimate import Estimate, Form, is_inline, key_of
 
 LINE = 100  # characters, as on every page of the documentation
@@ -62,7 +62,7 @@ EXPANSION_KEYS = {
     "report.outputs.*.noise_from": "source of that, or null",
 }
 FILES = {
-    "scores.json": "Errors by set of runs and output: the keys of `results.scores.*.*` of a paper study, `ape` too.",
+    "scores.json": "Errors by set of runs and output: the keys of `results.expansion.scores.*.*`, `ape` too.",
     "screening.json` and `refined.json": "Each expansion (`lithobrake.chaos.load` reads it).",
 }
 
@@ -177,14 +177,13 @@ def key_table(keys: dict[str, str]) -> list[str]:
 def page() -> str:
     """docs/summary.md."""
     found: dict[Any, Table] = {}
-    for kind, place in ((DrawnResults, "results"), (PaperResults, "results"), (Provenance, "provenance")):
+    for kind, place in ((Results, "results"), (Provenance, "provenance")):
         describe(kind, place, found)
     lines = [HEAD.rstrip(), *key_table(field_words(Summary))]
     for kind, table in found.items():
         first, *others = (f"`{place}`" for place in table.places)
-        of = {DrawnResults: " of a drawn study", PaperResults: " of a paper study"}.get(kind, "")
         also = f" Also {', '.join(others)}." if others else ""
-        lines += ["", f"### {first}{of}", "", *wrap(f"{table.words}{also}", LINE, break_on_hyphens=False)]
+        lines += ["", f"### {first}", "", *wrap(f"{table.words}{also}", LINE, break_on_hyphens=False)]
         lines += key_table(table.keys)
     for name, words in FILES.items():
         lines += ["", f"## `{name}`", "", *wrap(words, LINE)]

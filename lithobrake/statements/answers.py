@@ -48,14 +48,13 @@ def study_answer(scope: Scope, results: "Results") -> list[str]:
 
 def _main_answer(scope: Scope, results: "Results") -> list[str]:
     """The fraction at rest where landers are followed to rest, otherwise the return fraction."""
-    if not scope.to_rest or results.rest is None:
-        return landing_ends(scope, results) if results.ends else sample_ends(scope, results)
-    return [
-        *journey_ends(scope, results),
-        *rest_sentences(results.rest),
-        *sky(results.sky),
-        *soils(results.soils),
-    ]
+    if not results.ends:
+        return sample_ends(scope, results) or telling_sentences(results, has_scatter=scope.has_scatter)[:1]
+    if scope.to_rest and results.rest is not None:
+        ends = [*journey_ends(scope, results), *rest_sentences(results.rest)]
+    else:
+        ends = landing_ends(scope, results)
+    return [*ends, *sky(results.sky), *soils(results.soils)]
 
 
 def study_headline(scope: Scope, results: "Results") -> list[str]:
@@ -63,6 +62,7 @@ def study_headline(scope: Scope, results: "Results") -> list[str]:
     behind = [*_landing_numbers(results)] if results.ends else []
     if results.expansion:
         behind += telling_sentences(results, has_scatter=scope.has_scatter)
+    behind = [said for said in behind if said not in results.answer]
     if scope.to_rest:
         behind = [f"First touchdown: {said[:1].lower()}{said[1:]}" for said in behind]
     return [*results.answer, *behind]

@@ -106,9 +106,11 @@ def returning(limit: float, *, holds: bool) -> str:
     return f"{again} or are captured where the ground holds them" if holds else again
 
 
-def at_rest(one: Estimate, limit: float, where: str = "", level: float | None = None, digits: int = 0) -> str:
+def at_rest(
+    one: Estimate, limit: float, where: str = "", of: str = "landers", level: float | None = None, digits: int = 0
+) -> str:
     """Which fraction comes to rest within a time [s]; level: of the interval, where it is to be named."""
-    return f"{with_interval(one, digits, level=level)} of the landers come to rest{where} within {time_limit(limit)}"
+    return f"{with_interval(one, digits, level=level)} of the {of} come to rest{where} within {time_limit(limit)}"
 
 
 def assumed_at_rest(least: float, of: str) -> str:
@@ -200,9 +202,10 @@ def hard_ground_ends(grounds: "Mapping[str, FollowedLanders]", limit: float, dig
     """How many landers come to rest on other ground than that of the study within a time [s]."""
     said = []
     for ground, found in grounds.items():
-        rests = at_rest(found.ends[JourneyEnd.AT_REST].share, limit, f" on {GROUND_WORDS[ground]}", digits=digits)
-        lost = f"; {unknown_outcome(found.unknown, digits)}" if found.unknown > 0.0 else ""
-        said.append(f"{rests}{lost}.")
+        share, lost, of, where = found.ends[JourneyEnd.AT_REST].share, "", "landers", f" on {GROUND_WORDS[ground]}"
+        if found.unknown > 0.0:
+            of, lost = "landers with a known outcome", f"; {unknown_outcome(found.unknown, digits)}"
+        said.append(f"{at_rest(share, limit, where, of, digits=digits)}{lost}.")
     return said
 
 

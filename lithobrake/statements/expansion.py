@@ -102,7 +102,7 @@ def telling_sentences(results: "Results", *, has_scatter: bool) -> list[str]:
         return []
     telling = TellingNumbers.of(results.expansion, results.samples)
     ended = dict(telling.ended) | ({"failed": telling.failed} if telling.failed else {})
-    said = [touchdowns.touchdown_outcomes(ended, telling.ended.total(), "touchdowns")]
+    said = [touchdowns.touchdown_outcomes(ended, telling.ended.total(), "touchdowns of the designs")]
     if telling.speed:
         of = "with run-to-run scatter" if has_scatter else "by the expansion alone, without scatter"
         shown = {level: telling.speed[level] for level in QUANTILES}

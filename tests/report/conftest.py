@@ -1,53 +1,72 @@
-"""A small finished study of each method and its page, made once for all tests of the page."""
+"""Small finished studies and their pages, made once for all tests of the page."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from lithobrake.report import write_report
 from lithobrake.results import open_study
-from lithobrake.results.page_data import DrawnPage, PaperPage, page_results
+from lithobrake.results.page_data import PageData, page_results
 
-from .finished_studies import drawn_study, paper_study
+from .finished_studies import asked_study, first_study, paper_study
 
 
-@pytest.fixture(scope="session")
-def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished study by the paper's method, with its page."""
-    folder = tmp_path_factory.mktemp("paper") / "study"
-    paper_study(folder)
+def finished(factory: pytest.TempPathFactory, study: Callable[[Path], None]) -> Path:
+    """The folder of a study with its page."""
+    folder = factory.mktemp(study.__name__) / "study"
+    study(folder)
     write_report(folder)
     return folder
 
 
-@pytest.fixture(scope="session")
-def sequence_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A finished drawn study of 96 landings on 12 beds, with its page."""
-    folder = tmp_path_factory.mktemp("drawn") / "study"
-    drawn_study(folder)
-    write_report(folder)
-    return folder
+def html(folder: Path) -> str:
+    return (folder / "report" / "index.html").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")
-def paper_page(study_folder: Path) -> str:
-    return (study_folder / "report" / "index.html").read_text(encoding="utf-8")
+def paper_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Expansions of the first touchdown alone: no lander is drawn."""
+    return finished(tmp_path_factory, paper_study)
 
 
 @pytest.fixture(scope="session")
-def drawn_page(sequence_folder: Path) -> str:
-    return (sequence_folder / "report" / "index.html").read_text(encoding="utf-8")
+def first_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """First touchdowns of 96 landers on 12 beds, and samples of their emulator."""
+    return finished(tmp_path_factory, first_study)
 
 
 @pytest.fixture(scope="session")
-def paper(study_folder: Path) -> PaperPage:
-    found = page_results(open_study(study_folder))
-    assert isinstance(found, PaperPage)
-    return found
+def asked_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """48 landers that are followed to rest, and all else that can be asked."""
+    return finished(tmp_path_factory, asked_study)
 
 
 @pytest.fixture(scope="session")
-def drawn(sequence_folder: Path) -> DrawnPage:
-    found = page_results(open_study(sequence_folder))
-    assert isinstance(found, DrawnPage)
-    return found
+def paper_page(paper_folder: Path) -> str:
+    return html(paper_folder)
+
+
+@pytest.fixture(scope="session")
+def first_page(first_folder: Path) -> str:
+    return html(first_folder)
+
+
+@pytest.fixture(scope="session")
+def asked_page(asked_folder: Path) -> str:
+    return html(asked_folder)
+
+
+@pytest.fixture(scope="session")
+def paper(paper_folder: Path) -> PageData:
+    return page_results(open_study(paper_folder))
+
+
+@pytest.fixture(scope="session")
+def first(first_folder: Path) -> PageData:
+    return page_results(open_study(first_folder))
+
+
+@pytest.fixture(scope="session")
+def asked(asked_folder: Path) -> PageData:
+    return page_results(open_study(asked_folder))

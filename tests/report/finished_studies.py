@@ -1,4 +1,4 @@
-"""Finished studies of both methods in small: a function makes their touchdowns, the pipeline every file but the beds.
+"""Finished studies in small: a function makes their touchdowns, the pipeline every file but the beds.
 
 A function has no beds and no pictures. Those are put in by hand, and the summary is written anew by what writes it.
 """
@@ -15,8 +15,7 @@ import numpy as np
 import lithobrake
 from lithobrake.dem import ConvexHull
 from lithobrake.pipeline import StudyFolder
-from lithobrake.pipeline.answer.expansion_results import write_summary
-from lithobrake.pipeline.answer.study_summary import write_drawn_summary
+from lithobrake.pipeline.answer.study_summary import write_summary
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent
@@ -24,6 +23,7 @@ from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
 from ..pipeline.expansion.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
+from ..pipeline.journeys.bouncing_lander import bounce, journey_tables
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
 from ..synthetic_landings import Truth
 
@@ -35,15 +35,20 @@ ARRIVAL: dict[str, Any] = {
 }
 GRAIN_COUNT = 12
 # Short times of flight: some landers still fly, and all is known within seconds.
-DRAWN: dict[str, dict[str, Any]] = {
+FIRST: dict[str, dict[str, Any]] = {
     "design": {"run_count": 96, "side_runs": True}, "bed": {"bed_count": 12}, "impact": ARRIVAL,
     "site": {"latitude_deg": 50.0}, "monte_carlo": {"sample_count": 1000},
     "flight": {"flight_count": 200, "duration": 240.0}, "hard_ground": {"count": 20},
-    "limit_states": {"fast": "speed_out > 0.05"},
+    "journey": {"touchdowns": 1, "duration": 3600.0}, "limit_states": {"fast": "speed_out > 0.05"},
 }  # fmt: skip
 PAPER: dict[str, dict[str, Any]] = {
-    **UNCERTAIN, "design": {"run_count": 0}, "expansion": TWO_STEPS, "monte_carlo": {"sample_count": 400, "scatter": True},
-    "flight": {"flight_count": 100, "duration": 3600.0}, "hard_ground": {"count": 20},
+    **UNCERTAIN, "design": {"run_count": 0}, "expansion": TWO_STEPS,
+    "monte_carlo": {"sample_count": 400, "scatter": True}, "flight": {"flight_count": 100, "duration": 3600.0},
+    "journey": {"touchdowns": 1, "duration": 7200.0}, "hard_ground": {"count": 20},
+}  # fmt: skip
+ASKED: dict[str, dict[str, Any]] = {
+    "expansion": TWO_STEPS, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 100, "duration": 3600.0},
+    "hard_ground": {"count": 20}, "limit_states": {"fast": "speed_out > 0.03"},
 }  # fmt: skip
 
 
@@ -60,20 +65,29 @@ class Steady:
         return self.model(values, crc32(words.encode()))
 
 
-def drawn_study(folder: Path) -> None:
-    """A drawn study on ground that holds what lies there: landers leave, are captured, and are lost over the rim."""
-    model = SyntheticLander(Truth(rim="fast_flat", capture=0.2), follows_speed=True)
-    _finish(folder, DRAWN, model, write_drawn_summary)
+def first_study(folder: Path) -> None:
+    """First touchdowns on ground that holds what lies there: landers leave, are captured, and are lost over the rim."""
+    _finish(folder, synthetic_tables(**FIRST), SyntheticLander(Truth(rim="fast_flat", capture=0.2), follows_speed=True))
 
 
 def paper_study(folder: Path) -> None:
-    """A study by the paper's method on ground that throws off what lies there."""
-    _finish(folder, PAPER, land, write_summary)
+    """Expansions on ground that throws off what lies there."""
+    _finish(folder, synthetic_tables(**PAPER), land)
 
 
-def _finish(folder: Path, changes: Mapping[str, Any], model: Callable[..., Any], write: Callable[[Job], None]) -> None:
+def asked_study(folder: Path) -> None:
+    """Landers that are followed to rest on Dimorphos, five of which do not come to rest, and all that can be asked."""
+    _finish(folder, journey_tables(**ASKED), bounce_once)
+
+
+def bounce_once(values: dict[str, float], seed: int) -> dict[str, Any]:
+    """A touchdown of a journey, or of a design that has none."""
+    return bounce({"journey": 0, "touchdown": 0, **values}, seed)
+
+
+def _finish(folder: Path, tables: dict[str, Any], model: Callable[..., Any]) -> None:
     """Run a study with a function, then give it the beds and the pictures that one with soil has."""
-    tables = synthetic_tables(**changes) | {"title": "A study in small"}
+    tables = tables | {"title": "A study in small"}
     lithobrake.run(tables, folder, workers=1, model=Steady(model), report=False)
     study = check_tables(tables, Path())
     (folder / "beds").mkdir()
@@ -82,7 +96,7 @@ def _finish(folder: Path, changes: Mapping[str, Any], model: Callable[..., Any],
     write_landing(folder / "landing.h5")
     made = StudyFolder(folder)
     key = made.key_of("summary.json") or ""
-    write(Job(DrawnDesign(study), tables, made, None, Silent()))  # type: ignore[arg-type]
+    write_summary(Job(DrawnDesign(study), tables, made, None, Silent()))  # type: ignore[arg-type]
     made.note("summary", ["summary.json"], key, made.wall_times()["summary"])
 
 

@@ -28,8 +28,8 @@ def answer_of(scripts: tuple[str, ...], program: str, given: dict[str, Any]) -> 
     return json.loads(ended.stdout)
 
 
-def explorer_data(page: str) -> dict[str, Any]:
-    """What the explorer of a page is given."""
-    text = re.search(r'<script type="application/json" id="explorer-data">(.*?)</script>', page, flags=re.DOTALL)
+def explorer_data(page: str, name: str = "explorer") -> dict[str, Any]:
+    """What an explorer of a page is given."""
+    text = re.search(rf'<script type="application/json" id="{name}-data">(.*?)</script>', page, flags=re.DOTALL)
     content: dict[str, Any] = json.loads(text[1])
     return content

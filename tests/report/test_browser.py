@@ -26,17 +26,17 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
         yield opened
 
 
-@pytest.fixture(scope="module", params=["study_folder", "sequence_folder"])
+@pytest.fixture(scope="module", params=["paper_folder", "first_folder", "asked_folder"])
 def report(request: pytest.FixtureRequest) -> Path:
-    """The page of a study by each method."""
+    """The page of each study."""
     return Path(request.getfixturevalue(request.param)) / "report" / "index.html"
 
 
 @pytest.fixture(scope="module")
-def sequence(sequence_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page of a drawn study away from its folder: it needs nothing but itself."""
+def first(first_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of first touchdowns away from its folder: it needs nothing but itself."""
     alone = tmp_path_factory.mktemp("alone") / "index.html"
-    shutil.copy(sequence_folder / "report" / "index.html", alone)
+    shutil.copy(first_folder / "report" / "index.html", alone)
     return alone
 
 
@@ -143,8 +143,8 @@ def test_short_tables_stand_before_long_ones_in_each_part(page: Page, report: Pa
     assert not all(map(all, found))
 
 
-def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> None:
-    page.open(sequence, LAPTOP)
+def test_an_end_of_an_input_moves_every_number(page: Page, first: Path) -> None:
+    page.open(first, LAPTOP)
     read = "[...document.querySelectorAll('#explorer figcaption, #explorer .share')].map((one) => one.textContent)"
     before = page.value(read)
     # Two ends of each of the seven inputs.
@@ -156,7 +156,8 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     )
     # What is read is what the law gives there, as soon as all draws are made.
     share = page.value(
-        "(() => { const found = explorer.at([[0.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
+        "(() => { const { explorer } = explorers;"
+        "const found = explorer.at([[0.9, 1], ...Array.from({ length: 6 }, () => [0, 1])]);"
         "return shareWords(explorer, found); })()"
     )
     page.value(
@@ -169,10 +170,10 @@ def test_an_end_of_an_input_moves_every_number(page: Page, sequence: Path) -> No
     assert page.value("document.querySelector('#explorer output').textContent") == "2850 to 3000 kg/m³"
 
 
-def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence_folder: Path) -> None:
-    page.open(sequence, LAPTOP)
+def test_the_landing_moves_as_it_was_stored(page: Page, first: Path, first_folder: Path) -> None:
+    page.open(first, LAPTOP)
     assert page.value(STARTED) is True
-    moving = open_study(sequence_folder).median_landing
+    moving = open_study(first_folder).median_landing
     quantum = 0.5 * float(np.ptp(moving.position, axis=0).max()) / 32767
     for frame in (0, 3, len(moving.time) - 1):
         place = page.value(f"landing3d.then((view) => {{ view.moment = {frame}; view.draw(); return view.lander(); }})")
@@ -186,8 +187,8 @@ def test_the_landing_moves_as_it_was_stored(page: Page, sequence: Path, sequence
     assert len({page.value(colour % name) for name in ("null", "'speed'", "'force'")}) == 3
 
 
-def test_the_choice_of_colour_is_what_the_landing_has(page: Page, sequence: Path) -> None:
-    page.open(sequence, LAPTOP)
+def test_the_choice_of_colour_is_what_the_landing_has(page: Page, first: Path) -> None:
+    page.open(first, LAPTOP)
     assert page.value(STARTED) is True
     names = "[...document.querySelectorAll('#landing-3d select option')].map((one) => one.value)"
     assert page.value(names) == ["body", "speed", "force"]
@@ -198,8 +199,8 @@ def test_the_choice_of_colour_is_what_the_landing_has(page: Page, sequence: Path
     assert chosen == "force"
 
 
-def test_the_slider_of_the_landing_tells_the_time(page: Page, sequence: Path) -> None:
-    page.open(sequence, LAPTOP)
+def test_the_slider_of_the_landing_tells_the_time(page: Page, first: Path) -> None:
+    page.open(first, LAPTOP)
     assert page.value(STARTED) is True
     page.value(
         "(() => { const slider = document.querySelector('#landing-3d input[type=range]'); slider.value = slider.max;"
@@ -208,10 +209,10 @@ def test_the_slider_of_the_landing_tells_the_time(page: Page, sequence: Path) ->
     assert page.value("document.querySelector('#landing-3d output').textContent") == "t = 0.700 s"
 
 
-def test_the_marker_moves_along_the_way_of_a_lander(page: Page, sequence: Path, sequence_folder: Path) -> None:
-    page.open(sequence, LAPTOP)
+def test_the_marker_moves_along_the_way_of_a_lander(page: Page, first: Path, first_folder: Path) -> None:
+    page.open(first, LAPTOP)
     assert page.value(STARTED) is True
-    place = open_study(sequence_folder).flight_paths[0]
+    place = open_study(first_folder).flight_paths[0]
     for way, part in ((0, 0.0), (0, 1.0), (1, 0.5)):
         found = page.value(
             f"(() => {{ const [choice, slider] = document.querySelectorAll('#body-3d select, #body-3d input');"

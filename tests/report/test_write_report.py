@@ -13,34 +13,31 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.run_answers import scope
-from lithobrake.pipeline.samples import MISSING
 from lithobrake.report import write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.pages.html import size
-from lithobrake.report.pages.paper_page import paper_content
+from lithobrake.report.pages.study_page import study_content
 from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import SampledOutput
-from lithobrake.results.page_data import PaperPage
-from lithobrake.results.run_results import CountedShare
-from lithobrake.statements import captions, expansion
-from lithobrake.statements.answers import sample_answer, sample_details
+from lithobrake.results.page_data import PageData
+from lithobrake.statements import captions, expansion, touchdowns
+from lithobrake.statements.answers import page_details, study_answer
 from lithobrake.statements.labels import area
 from lithobrake.study import read_study
-from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import number, thousands
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
-    study_folder: Path, paper_page: str, tmp_path: Path
+    paper_folder: Path, paper_page: str, tmp_path: Path
 ) -> None:
-    folder = Path(shutil.copytree(study_folder, tmp_path / "again"))
+    folder = Path(shutil.copytree(paper_folder, tmp_path / "again"))
     told: list[tuple[int, int]] = []
     path = write_report(folder, lambda done, total: told.append((done, total)))
     assert path == folder / "report" / "index.html"
     assert told == [(number, 10) for number in range(10)]
     assert path.read_text(encoding="utf-8") == paper_page
-    drawn = sorted((study_folder / "report").glob("figure_*.svg"))
+    drawn = sorted((paper_folder / "report").glob("figure_*.svg"))
     assert len(drawn) == 10
     assert not list((folder / "report").glob("*.part"))
     for svg in drawn:
@@ -48,74 +45,72 @@ def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
         assert (folder / "report" / svg.name).read_bytes() == svg.read_bytes()
 
 
-def test_page_has_the_ten_figures_inside_and_nothing_outside(paper_page: str, study_folder: Path) -> None:
+def test_page_has_the_ten_figures_inside_and_nothing_outside(paper_page: str, paper_folder: Path) -> None:
     assert len(re.findall(r'<img alt="[^"]+" src="data:image/svg\+xml;base64,', paper_page)) == 10
     assert not re.search(r"https?://", paper_page)
-    pictures = {path.name.split("_")[1] for path in (study_folder / "report").glob("*.png")}
+    pictures = {path.name.split("_")[1] for path in (paper_folder / "report").glob("*.png")}
     assert pictures == {str(number) for number in range(1, 11)}
 
 
-def test_the_answer_of_a_paper_study_says_how_its_body_turns(paper: PaperPage, study_folder: Path) -> None:
+def test_the_answer_of_a_paper_study_says_how_its_body_turns(paper: PageData, paper_folder: Path) -> None:
     site = replace(paper.results.site, rotation="Dimorphos librates by 8 deg.")
     assert site.warning
-    over = scope(read_study(study_folder / "study.toml"))
-    said = sample_answer(over, replace(paper.results, site=site), MISSING)
+    over = scope(read_study(paper_folder / "study.toml"))
+    said = study_answer(over, replace(paper.results, site=site))
     assert said == [*paper.results.answer[:-1], "Dimorphos librates by 8 deg.", site.warning]
     assert paper.results.answer[-1] == site.warning
 
 
-def test_captions_carry_the_numbers_of_the_summary(paper: PaperPage) -> None:
+def test_captions_carry_the_numbers_of_the_summary(paper: PageData) -> None:
     results = paper.results
     first, *others = results.answer
-    assert all(sentence in sample_details(paper)[0] for sentence in others)
-    assert first not in sample_details(paper)[0]
-    assert f"{100 * results.returns.share.value:.1f} % of the landings" in paper_content(paper).answer == first
-    bed, design = results.beds[0], results.designs["screening"]
+    assert all(sentence in page_details(paper) for sentence in others)
+    assert first not in page_details(paper)
+    assert f"{100 * results.returns.share.value:.1f} % of the landings" in study_content(paper).answer == first
+    bed, found = results.beds[0], paper.expansion
+    design = results.expansion.designs["screening"]
     for name in ("surface_height_m", "mean_diameter_m", "smallest_width_m", "smallest_depth_m"):
         assert f"{getattr(bed, name):.3g} m" in captions.bed(paper)
     assert "0.2 m/s and 30 deg from the normal" in captions.landing(paper)
-    assert f"takes {design.run_count} runs on the Smolyak grid" in expansion.counts(paper)
-    first = results.screening.sobol_first["speed_out"]
-    assert f"({100 * max(first.values()):.0f} %, " in expansion.sobol(paper)
-    assert f"Q2 = {paper.scores['test_all']['speed_out'].q2:.2f}" in expansion.errors(paper)
+    assert f"takes {design.run_count} runs on the Smolyak grid" in expansion.counts(found, paper.study)
+    first = results.expansion.screening.sobol_first["speed_out"]
+    assert f"({100 * max(first.values()):.0f} %, " in expansion.sobol(found, paper.study)
+    assert f"Q2 = {found.scores['test_all']['speed_out'].q2:.2f}" in expansion.errors(found)
     assert "amount to 1.4 × 10⁻⁵ m/s2 outward" in captions.outcomes(paper)
-    large = results.regions[-1]
+    large = results.samples.regions[-1]
     assert large.share == 0.95
     assert f"95 % of them covers {area(large.area_m2)} and is {number(large.largest_extent_m, 2)} m across" in (
-        captions.impact_map(paper)
+        captions.impact_map(paper.samples)
     )
 
 
-def test_ground_that_could_not_be_asked_says_why(paper: PaperPage) -> None:
-    rest = paper.results.rest
-    why, hard = rest.why_no_soil, rest.hard
-    assert why.startswith("impact.incidence_deg")
-    assert why in captions.rest(paper)
-    soil = replace(hard, outcomes={**hard.outcomes, "outside": CountedShare(3, Estimate(0.15, None, None))})
-    both = replace(paper.results, rest=replace(rest, soil=soil))
-    assert "15.0 %" in captions.rest(replace(paper, results=both))
+def test_landers_of_unknown_outcome_are_named(paper: PageData) -> None:
+    hard = paper.results.hard_ground["hard"]
+    lost = replace(paper.results, hard_ground={"hard": replace(hard, unknown=0.15)})
+    assert "unknown" not in captions.hard_ground(paper)
+    assert captions.hard_ground(replace(paper, results=lost)).endswith("; 15.0 % have an unknown outcome.")
 
 
-def test_every_score_and_every_sobol_index_has_its_interval(paper: PaperPage) -> None:
+def test_every_score_and_every_sobol_index_has_its_interval(paper: PageData) -> None:
     scores, indices = (table_of(paper, title) for title in ("Errors of the expansions", "Sobol indices"))
     assert {"MAPE [%]", "Q2", "RMSE", "spread (std)"} <= set(scores.columns)
     assert all(cell.endswith(")") for row in scores.rows for cell in row[3:5])
     assert all(cell.endswith(")") for row in indices.rows for cell in row[1:])
 
 
-def test_flights_without_scatter_stand_beside_those_with_it(paper: PaperPage) -> None:
-    table, alone = table_of(paper, "After the first bounce"), paper.results.without_scatter
+def test_flights_without_scatter_stand_beside_those_with_it(paper: PageData) -> None:
+    table, alone = table_of(paper, "After the first touchdown"), paper.results.samples.without_scatter
     assert table.columns[-1] == "without scatter"
     assert table.rows[0][-1] == f"{100 * alone.shares.outcomes['impact'].share.value:.1f} %"
 
 
-def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PaperPage) -> None:
-    limit = paper.results.shares.outcomes["time_limit"].upper_limit
-    assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first bounce").rows]
+def test_an_outcome_that_no_run_had_has_its_upper_limit(paper: PageData) -> None:
+    limit = paper.results.samples.shares.outcomes["time_limit"].upper_limit
+    assert f"at most {100 * limit:.1f} %" in [row[2] for row in table_of(paper, "After the first touchdown").rows]
 
 
-def table_of(data: PaperPage, title: str) -> PageTable:
-    tables = [table for section in paper_content(data).sections for table in section.tables]
+def table_of(data: PageData, title: str) -> PageTable:
+    tables = [table for section in study_content(data).sections for table in section.tables]
     return next(table for table in tables if table.title == title)
 
 
@@ -125,31 +120,31 @@ def test_provenance_stands_at_the_end(paper_page: str) -> None:
     assert paper_page.index("packages.numpy") > paper_page.index("<h2>Files")
 
 
-def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PaperPage) -> None:
+def test_page_says_when_the_study_was_made_and_what_its_body_is_like(paper: PageData) -> None:
     words, site = captions.facts(paper), paper.results.site
     assert re.match(r"Study of \d{4}-\d\d-\d\d, \d\d:\d\d UTC\. ", words)
     for value in (site.escape_speed_m_s, site.bulk_density_kg_m3):
         assert number(value) in words
 
 
-def test_page_links_the_files_that_are_there_and_no_others(study_folder: Path, paper_page: str) -> None:
+def test_page_links_the_files_that_are_there_and_no_others(paper_folder: Path, paper_page: str) -> None:
     links = re.findall(r'href="([^"#]+)"', paper_page)
-    assert all((study_folder / "report" / link).is_file() for link in links)
+    assert all((paper_folder / "report" / link).is_file() for link in links)
     for name in ("summary.json", "samples.h5", "flights.csv", "beds/bed_0.h5", "report/figure_1_map.png"):
         assert f"../{name}" in links
     assert "../designs/drawn.csv" not in links
-    held = size((study_folder / "samples.h5").stat().st_size)
+    held = size((paper_folder / "samples.h5").stat().st_size)
     assert f'every sample</td><td class="number">{held}</td>' in paper_page
 
 
-def test_no_number_of_a_symmetric_study_is_rounding(paper: PaperPage, paper_page: str) -> None:
+def test_no_number_of_a_symmetric_study_is_rounding(paper: PageData, paper_page: str) -> None:
     assert "<td>centroid_m</td><td>0, 0, 0</td>" in paper_page
-    samples = paper.results.monte_carlo
+    samples = paper.samples.results
     speed = samples.outputs["speed_out"]
     quantiles = {level: -2.2e-14 * value for level, value in speed.quantiles.items()}
     across = SampledOutput(-2.2e-14 * speed.mean, -2.2e-14 * speed.std, quantiles)
     symmetric = replace(samples, outputs={**samples.outputs, "velocity_out_y": across})
-    found = replace(paper, results=replace(paper.results, monte_carlo=symmetric))
+    found = replace(paper, samples=replace(paper.samples, results=symmetric))
     table = table_of(found, "Outputs of the samples that leave")
     assert next(row for row in table.rows if row[0] == "rebound velocity along y")[2:] == ["0"] * 5
 
@@ -162,9 +157,9 @@ def test_sizes_of_files_in_words(byte_count: int, words: str) -> None:
     assert size(byte_count) == words
 
 
-def test_missing_files_are_named_at_once(study_folder: Path, tmp_path: Path) -> None:
+def test_missing_files_are_named_at_once(paper_folder: Path, tmp_path: Path) -> None:
     folder = tmp_path / "half"
-    shutil.copytree(study_folder, folder)
+    shutil.copytree(paper_folder, folder)
     (folder / "scores.json").unlink()
     (folder / "flights.csv").unlink()
     with pytest.raises(ValueError, match=r"scores\.json, flights\.csv.*run the study to its end"):
@@ -198,22 +193,21 @@ DAMAGED: list[tuple[str, Callable[[Path], object]]] = [
 
 @pytest.mark.parametrize(("name", "damage"), DAMAGED)
 def test_a_damaged_file_is_one_sentence(
-    name: str, damage: Callable[[Path], object], study_folder: Path, tmp_path: Path
+    name: str, damage: Callable[[Path], object], paper_folder: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "damaged"
-    shutil.copytree(study_folder, folder)
+    shutil.copytree(paper_folder, folder)
     damage(folder / name)
     with pytest.raises(ValueError, match=f"{name}.*; make it again with: lithobrake run") as refused:
         write_report(folder)
     assert "\n" not in str(refused.value)
 
 
-def test_a_study_in_which_nothing_leaves_says_so(paper: PaperPage) -> None:
-    table = replace(paper.results.monte_carlo, leaving_count=0, outputs={})
-    none = replace(paper, results=replace(paper.results, monte_carlo=table), facet=paper.facet[:0])
+def test_a_study_in_which_nothing_leaves_says_so(paper: PageData) -> None:
+    table = replace(paper.samples.results, leaving_count=0, outputs={})
     count = thousands(table.sample_count)
-    assert f"None of the {count} samples leaves the surface" in expansion.samples(none)
-    assert captions.body(none) == ""
+    assert f"None of the {count} samples leaves the surface" in touchdowns.samples(table)
+    assert captions.body(replace(paper.samples, facet=paper.samples.facet[:0])) == ""
 
 
 def test_a_body_is_drawn_about_the_point_that_its_position_is_of(tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ def results(friction: tuple[float, float] = (0.2, 0.4)) -> Any:
     designs = zip(("screening", "test_all"), outcomes, strict=True)
     return SimpleNamespace(
         designs={name: SimpleNamespace(outcomes=one) for name, one in designs},
-        monte_carlo=SimpleNamespace(outputs={"speed_out": SimpleNamespace(quantiles={"quantile_0.5": 0.1})}),
         scores={"test_all": {"speed_out": SimpleNamespace(q2=0.8)}},
         refined=SimpleNamespace(
             degree=5,
@@ -23,14 +22,19 @@ def results(friction: tuple[float, float] = (0.2, 0.4)) -> Any:
     )
 
 
+SAMPLES: Any = SimpleNamespace(
+    model="expansion", outputs={"speed_out": SimpleNamespace(quantiles={"quantile_0.5": 0.1})}
+)
+
+
 def test_touchdowns_are_counted_over_all_designs_and_failed_runs_apart() -> None:
-    telling = TellingNumbers.of(results())
+    telling = TellingNumbers.of(results(), SAMPLES)
     assert (telling.left_count, telling.ended.total(), telling.failed) == (13, 16, 1)
     assert telling.ended["time_limit"] == 0
 
 
 def test_the_main_input_has_the_largest_total_index() -> None:
-    telling = TellingNumbers.of(results())
+    telling = TellingNumbers.of(results(), SAMPLES)
     assert telling.main_input.name == "grain.restitution"
     assert (telling.main_input.interval, telling.main_input.degree) == ((0.5, 0.7), 5)
     assert telling.main_input.equals == ()
@@ -39,4 +43,4 @@ def test_the_main_input_has_the_largest_total_index() -> None:
 
 
 def test_inputs_whose_intervals_overlap_that_of_the_main_input_are_named() -> None:
-    assert TellingNumbers.of(results(friction=(0.2, 0.55))).main_input.equals == ("grain.friction",)
+    assert TellingNumbers.of(results(friction=(0.2, 0.55)), None).main_input.equals == ("grain.friction",)

@@ -213,9 +213,8 @@ def _of_landers(job: Job, found: Results) -> Results:
     runs, table = DesignRuns.load(folder, "drawn"), JourneyTable.load(folder)
     touchdowns = DesignRuns.load(folder, JOURNEY_DESIGN)
     estimates = results_in(Estimates, folder.read_json(ESTIMATES_FILE), "estimates")
-    emulated, ends = None, end_shares(study, table)
-    if study.journey.emulated_count:
-        emulated, ends = emulated_ends(job, table, ends)
+    plain = end_shares(study, table)
+    emulated, ends = emulated_ends(job, table, plain) if study.journey.emulated_count else (None, plain)
     # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
     landed = table.taken(runs.inputs["journey"].astype(int))
     distinct = DesignRuns.distinct([runs, *(DesignRuns.load(folder, design) for design in _side_designs(study))])

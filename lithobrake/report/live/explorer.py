@@ -92,7 +92,9 @@ def explorer_sections(data: PageData) -> list[LiveSection]:
     facts = law_facts(explorer, moved, samples.table) | _flight_facts(data, bool(count))
     facts["reach"] = explorer.interval_reach if over_beds else None
     note = f"{words}{bands} {flown_words}"
-    return [explorer_section("explorer", "Explorer", note, facts, explorer, flown if count else None)]
+    return [
+        explorer_section("explorer", "Explorer of the first touchdown", note, facts, explorer, flown if count else None)
+    ]
 
 
 def explorer_section(

@@ -1,6 +1,6 @@
 """The views of a landing and of the body in three dimensions, for a browser to draw."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from types import MappingProxyType
 from typing import Any
@@ -16,10 +16,11 @@ from lithobrake.report.figures.hulls import Scene, scene
 from lithobrake.report.figures.style import INK, LANDER, QUIET, RULE
 from lithobrake.report.live.explorer import deflated, script_data
 from lithobrake.results.page_data import PageData, PageJourneys, PageSamples
+from lithobrake.statements.labels import END_WORDS
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.number_words import number
-from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, OUTCOME_COLOURS, FlightStatus, JourneyEnd
+from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS, FlightStatus
 
 SCRIPTS = ("live/overlay.js", "live/view3d.js", "live/moving.js", "live/ways.js", "live/start3d.js")
 FLOOR = "#e9e4da"
@@ -37,12 +38,8 @@ MARK = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0,
 MARK_FACES = np.array([
     (0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5),
 ])  # fmt: skip
-# How a flight ended, in words of a legend.
-FATE_WORDS = {
-    FlightStatus.IMPACT: "impact",
-    FlightStatus.FLYING: "still flying",
-    FlightStatus.PARTNER: "on the partner",
-}
+# How a flight or journey ended, in words of a legend.
+LEGEND_WORDS: dict[str, str] = {FlightStatus.FLYING: "still flying", **END_WORDS}
 
 
 def landing_views(data: PageData) -> list[LiveSection]:
@@ -222,9 +219,8 @@ def _impact_view(data: PageData, samples: PageSamples) -> list[LiveSection]:
     if len(data.paths[0]):
         arrays |= _lines(*data.paths)
         words += f" Lines: the paths of the first {len(data.paths[1])} flights, relative to the rotating body."
-    legend = {FATE_WORDS.get(FlightStatus(one), one): FATE_COLOURS[one] for one in dict.fromkeys(data.paths[1])}
     title = "Where the lander comes down, in three dimensions"
-    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, legend)]
+    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, _legend(data.paths[1]))]
 
 
 def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
@@ -246,9 +242,13 @@ def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
         lines = _lines(ways, ended)
         arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
         words += " Lines: the paths of the first journeys, relative to the rotating body."
-    legend = {JourneyEnd(one).label: END_COLOURS[one] for one in dict.fromkeys([*end.tolist(), *ended])}
-    title = "Where the landers rest, in three dimensions"
+    title, legend = "Where the landers rest, in three dimensions", _legend([*end.tolist(), *ended])
     return [section("body-3d", title, _with_marker(words, facts), arrays, facts, legend)]
+
+
+def _legend(ended: Iterable[str]) -> dict[str, str]:
+    """The colour of each way to end, by its words."""
+    return {LEGEND_WORDS.get(one, one): OUTCOME_COLOURS[one] for one in dict.fromkeys(ended)}
 
 
 def _with_marker(words: str, facts: Mapping[str, Any]) -> str:

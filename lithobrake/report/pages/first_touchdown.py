@@ -96,7 +96,7 @@ def _method(data: PageData) -> list[Plot]:
     found, samples, plots = data.expansion, data.samples, []
     if found is not None:
         words = expansion.counts(found, data.study)
-        plots.append(Plot("counts", "Runs of the designs", words, lambda: _draw_counts(found, data)))
+        plots.append(Plot("designs", "Runs of the designs", words, lambda: _draw_counts(found, data)))
     if data.journeys is not None:
         words = touchdowns.runs(data)
         plots.append(Plot("runs", "Rebounds of the first touchdowns", words, lambda: _draw_runs(data)))

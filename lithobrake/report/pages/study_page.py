@@ -96,7 +96,7 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
     results, rest, shown = data.results, journeys.rest, end_map(data, journeys)
     where = [
         Plot(
-            *("outcomes", "How the journeys end", words.outcomes(results, has_map=shown.leaves_out)),
+            *("end_shares", "How the journeys end", words.outcomes(results, has_map=shown.leaves_out)),
             lambda: outcomes_figure(shown, end_shares(data), "all journeys"),
         ),
         Plot("attitude", "Side down and tilt", words.attitude(rest), lambda: _draw_attitude(journeys)),

@@ -139,7 +139,7 @@ def ground_ends(data: PageData) -> PageTable:
         if any(key in table.ends and table.ends[key].count for table in found.values())
     ]
     if any(table.unknown for table in found.values()):
-        rows.append(["unknown outcome", *(percent(table.unknown, data.digits) for table in found.values())])
+        rows.append(["(of all: unknown outcome)", *(percent(table.unknown, data.digits) for table in found.values())])
     if any(table.slid.count for table in found.values()):
         slid = (_share(table.slid, data.digits) for table in found.values())
         rows.append(["(of all: slid along the ground at some time)", *slid])
@@ -175,8 +175,8 @@ def region_table(data: PageData, *, of_impacts: bool, of_rest: bool) -> PageTabl
         for name, found in sets.items()
         for one in found
     ]
-    note = "The smallest regions that hold that share, from a density fitted to the points."
-    return PageTable("Regions", columns, rows, note if rows else "", frozenset(columns[1:]))
+    note = "From a density fitted to the points."
+    return PageTable("Smallest regions", columns, rows, note if rows else "", frozenset(columns[1:]))
 
 
 def site_table(data: PageData) -> PageTable:

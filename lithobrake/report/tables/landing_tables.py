@@ -202,7 +202,8 @@ def touchdowns_table(data: PageData) -> PageTable:
 
 def inputs_table(data: PageData) -> PageTable:
     """What every run draws for itself, and which of the uncertain inputs the emulator found to matter."""
-    found, rows = data.results.emulator.found_inputs if data.results.emulator else (), []
+    emulator, rows = data.results.emulator, []
+    found = emulator.found_inputs if emulator else ()
     # Sizes of grains vary within a bed, and the site from flight to flight: neither is an input of a run.
     for name, law in _uncertain(data.study):
         if name in data.runs:
@@ -214,7 +215,9 @@ def inputs_table(data: PageData) -> PageTable:
     named = {row[1] for row in rows}
     drawn = [words for words in drawn_things(data.study) if not (words == "impact point" and "impact.place.x" in named)]
     rows += [[words, keys[words], "uniform", "randomised in each run", ""] for words in drawn]
-    note = notes.significant_inputs(data.level, has_any=bool(found)) if data.results.emulator else ""
+    if emulator is None:
+        return PageTable("Sampled inputs", INPUT_COLUMNS, [row[:-1] for row in rows])
+    note = notes.significant_inputs(data.level, has_any=bool(found))
     return PageTable("Sampled inputs", [*INPUT_COLUMNS, "significant"], rows, note)
 
 

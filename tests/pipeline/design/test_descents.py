@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ndtri
 
 from lithobrake.files.oem_reader import message_states
+from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, bed_setting, pour_seed, touchdown_keys
@@ -22,7 +23,7 @@ from lithobrake.pipeline.design.lander_attitude import attitude_terms, independe
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
-from lithobrake.study import Study, StudyError, check_tables
+from lithobrake.study import Study, StudyError, check_tables, read_study
 from lithobrake.study.delivery_sections import ReleaseSection
 from lithobrake.study.ground_sections import LANDINGS_A_BED, default_bed_count
 from lithobrake.study.impact_sections import SiteSection
@@ -447,6 +448,13 @@ def test_two_seeds_share_no_pour_and_one_seed_repeats_its_own() -> None:
     assert len(set(seeds.values())) == len(seeds)
     assert seeds == {(seed, bed): pour_seed(drawn(700, seed=seed), bed) for seed, bed in seeds}
     assert all(0 <= seed < 2**53 for seed in seeds.values())
+
+
+@pytest.mark.parametrize("path", ["scenarios/paper.toml", "showcase/paper/study.toml", "scenarios/one_place.toml"])
+def test_the_beds_of_the_papers_studies_are_those_of_their_committed_landings(path: str) -> None:
+    study = read_study(Path(__file__).parents[3] / path)
+    assert pour_seed(study, 0) == hashed_seed(study.seed, "bed", 0)
+    assert study.bed_count == 1
 
 
 def test_a_study_may_give_the_seed_of_its_first_bed() -> None:

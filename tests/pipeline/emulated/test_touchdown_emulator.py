@@ -389,7 +389,7 @@ def test_without_an_emulator_it_says_what_to_run_first(study: Path, tmp_path: Pa
     assert any(line.startswith("Bounces: ") and line.endswith(command) for line in found.output.splitlines())
     assert not (tmp_path / "out").exists()
     said = plan_study(write_ball(tmp_path / "paper.toml", {}), tmp_path / "out", infers=True).inference
-    assert 'needs design.method = "drawn"' in said.lines()[0]
+    assert "an emulator of drawn landers, and design.run_count is 0" in said.lines()[0]
 
 
 def test_a_plan_that_is_not_asked_of_bounces_says_nothing_of_them(study: Path) -> None:

@@ -18,9 +18,11 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.job import Job, Silent
+from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
+from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 from ...command_line import lithobrake as command
@@ -104,6 +106,20 @@ def test_a_grid_of_few_inputs_reuses_the_nodes_of_the_grid_of_all() -> None:
     )
     # Both grids have 13 nodes on which the inputs that are not kept stand at their medians.
     assert len(screening & refined) == 13
+
+
+def test_runs_of_expansions_draw_what_the_study_leaves_open() -> None:
+    tables = paper_tables()
+    del tables["impact"]["place"], tables["impact"]["azimuth_deg"]
+    tables["bed"] |= {"sides": "periodic", "bed_count": 3, "width": [0.56, 0.6]}
+    design = DrawnDesign(check_tables(tables, Path()))
+    rows = drawn_rows(design, points(design, "screening", ()), 0)
+    places = np.array([[row[name] for name in PLACE] for row in rows])
+    # The grid over five inputs has 61 nodes.
+    assert np.ptp(places, axis=0) == pytest.approx([0.56, 0.6], rel=0.1)
+    assert {row["bed"] for row in rows} == {0.0, 1.0, 2.0}
+    assert np.ptp([row["impact.azimuth_deg"] for row in rows]) > 300.0
+    assert {row["impact.orientation.w"] for row in rows} == {1.0}
 
 
 def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> None:

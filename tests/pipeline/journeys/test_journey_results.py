@@ -1,8 +1,6 @@
 """Journeys from Python, in the files of other programs, by commands, on their page; and what decides their ends."""
 
-import dataclasses
 import json
-import math
 import re
 import shutil
 from dataclasses import replace
@@ -11,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from lithobrake.report.pages.journey_page import journey_content
-from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from lithobrake.emulator import law_tables
@@ -30,17 +26,10 @@ from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.report import write_report
-from lithobrake.report.content import Content, PageTable
-from lithobrake.report.figures.ground_map import GroundMap, round_length
-from lithobrake.report.live.views import end_views
+from lithobrake.report.figures.ground_map import round_length
 from lithobrake.results import ExplorerTables, StudyResults
-from lithobrake.results.page_data import JourneyPage, page_results
-from lithobrake.results.run_results import CountedShare
-from lithobrake.statements import journeys as words
 from lithobrake.study import StudySource, check_tables, read_study
-from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import LEVEL, with_interval
-from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
+from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from ...command_line import lithobrake
 from ...report.browser import browser_page, needs_browser
@@ -252,81 +241,9 @@ def test_runs_have_columns_of_journey_and_touchdown(journeys_folder: Path) -> No
     assert lines[1].split()[:3] == ["wall", "journey", "down"]
 
 
-@pytest.fixture
-def data(journeys: StudyResults) -> JourneyPage:
-    found = page_results(journeys)
-    assert isinstance(found, JourneyPage)
-    return found
-
-
-def tables_of(content: Content) -> dict[str, PageTable]:
-    return {table.title: table for section in content.sections for table in section.tables}
-
-
-def test_the_page_begins_with_the_share_at_rest_and_four_others(data: JourneyPage, journeys_folder: Path) -> None:
-    page = write_report(journeys_folder).read_text(encoding="utf-8")
-    content, at_rest = journey_content(data), data.ends[JourneyEnd.AT_REST].share
-    assert content.answer.startswith(with_interval(at_rest, level=LEVEL))
-    assert len(content.tiles) == 4
-    assert not any(tile.words.startswith("at rest") for tile in content.tiles)
-    assert float(content.tiles[0].value) == pytest.approx(
-        data.at_rest.time_s.median.value / words.time_unit(data)[0], rel=0.05
-    )
-    header = page[: page.index("</header>")]
-    assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
-    assert re.findall(r"<h2>([^<]+)</h2>", page) == ["Where", "When", "Why", "How sure", "Method", "Appendix", "Files"]
-
-
-def test_the_shares_of_all_ends_add_up(data: JourneyPage) -> None:
-    table = tables_of(journey_content(data))["How the journeys ended"]
-    assert sum(float(row[2].split(" ")[0]) for row in table.rows) == pytest.approx(100.0, abs=1.0)
-
-
-def test_figures_and_tables_of_the_first_touchdown_say_so(data: JourneyPage) -> None:
-    content = journey_content(data)
-    names = [plot.name for plot in content.plots]
-    assert names[:6] == ["ends", "outcomes", "attitude", "times", "counts", "end_variance"]
-    others = [plot for plot in content.plots[6:] if plot.name != "bed"]
-    assert others
-    assert [plot.name for plot in others if "first touchdown" not in f"{plot.title} {plot.sentence}".lower()] == []
-    appendix = next(section for section in content.sections if section.title == "Appendix")
-    titles = {table.title for table in appendix.tables}
-    assert {title for title in titles if not title.startswith("First touchdown: ")} <= {"Beds",
-        "Sampled inputs"}  # fmt: skip
-
-
-def test_figures_without_landers_at_rest_are_left_out(data: JourneyPage) -> None:
-    none = np.full(data.journeys.row_count, JourneyEnd.ESCAPED.value)
-    columns = dict(data.journeys.columns)
-    columns["end"] = dataclasses.replace(columns["end"], values=none)
-    nothing = dataclasses.replace(data.at_rest.time_s.median, value=math.nan, lower=None, upper=None)
-    empty = dataclasses.replace(data.at_rest.time_s, median=nothing, q95=nothing)
-    rest = dataclasses.replace(
-        data.at_rest, time_s=empty, contacts=empty, distance_m=empty, tilt_deg=empty, faces={}, regions=()
-    )
-    ends = {end.value: CountedShare(0, Estimate(0.0, 0.0, 0.2)) for end in JourneyEnd}
-    ends[JourneyEnd.ESCAPED] = CountedShare(48, Estimate(1.0, 0.8, 1.0))
-    table = type(data.journeys)(data.journeys.row, columns)
-    content = journey_content(dataclasses.replace(data, journeys=table, ends=ends, at_rest=rest))
-    assert [plot.name for plot in content.plots][:2] == ["counts", "end_variance"]
-    assert [tile.value for tile in content.tiles].count("0") == 3
-
-
 @pytest.mark.parametrize(("most", "length"), [(7.3, 5.0), (5.0, 5.0), (1.99, 1.0), (0.3, 0.2), (250.0, 200.0)])
 def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
     assert round_length(most) == pytest.approx(length, rel=1e-12)
-
-
-def test_the_view_in_three_dimensions_has_the_flights_of_journeys(data: JourneyPage) -> None:
-    ways, ends = data.paths
-    assert len(ways) == len(ends) > len([end for end in ends if end == JourneyEnd.AT_REST]) > 0
-    (view,) = end_views(data)
-    on_ground = int(np.isfinite(data.journeys["latitude_deg"]).sum())
-    assert f"where {on_ground} landers ended on the ground" in view.html
-    assert f"--key: {END_COLOURS[JourneyEnd.AT_REST]}" in view.html
-    # A lander with several flights is one way, of so many flights.
-    flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
-    assert (sum(flights), len(flights)) == (len(ways), len(np.unique(data.path_times[1])))
 
 
 @needs_browser
@@ -338,56 +255,10 @@ def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp
         assert page.complaints == []
 
 
-NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, journeys: StudyResults) -> None:
-    axes = Figure().subplots()
-    assert getattr(journeys.plot, name)(ax=axes) is axes
-    assert axes.has_data()
-    # The half of a body has a title in place of axes.
-    assert axes.get_xlabel() or (name == "map" and axes.get_title())
-    assert f"{name}()" in repr(journeys.plot)
-
-
-def test_bars_of_the_ends_are_their_shares(journeys: StudyResults) -> None:
-    axes = journeys.plot.ends(Figure().subplots())
-    found = journeys.results.ends
-    bars = dict(zip([label.get_text() for label in axes.get_yticklabels()], axes.patches, strict=True))
-    for end, share in found.items():
-        assert bars[JourneyEnd(end).label].get_width() == pytest.approx(100 * share.share.value)
-
-
-def test_every_lander_on_the_ground_is_on_the_map(journeys: StudyResults) -> None:
-    axes = journeys.plot.map(Figure().subplots())
-    at_rest = journeys.journeys.where(journeys.journeys["end"] == "at_rest")
-    drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
-    site = journeys.results.site
-    ground = GroundMap(site.latitude_deg, site.longitude_deg, float(np.linalg.norm(site.place_m)))
-    for east, north in zip(*ground.places(at_rest["latitude_deg"], at_rest["longitude_deg"]), strict=True):
-        assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
-
-
-def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(journeys: StudyResults) -> None:
-    axes = journeys.plot.distances(Figure().subplots())
-    marks = [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "o"]
-    rest = journeys.results.rest.distance_m
-    assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]
-
-
-def test_bars_of_the_sides_that_are_down_are_their_shares(journeys: StudyResults) -> None:
-    axes = journeys.plot.sides(Figure().subplots())
-    widths = dict(zip((label.get_text() for label in axes.get_yticklabels()), axes.patches, strict=True))
-    assert {name: bar.get_width() for name, bar in widths.items()} == pytest.approx(
-        {name: 100 * one.share.value for name, one in journeys.results.rest.faces.items()}
-    )
-
-
 SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
 BEGIN = "const { facts } = given, law = new Law(unpack(given.law), facts);"
 REST = "const shares = (found) => [found.returns, found.known].map((list) => list.reduce((all, one) => all + one, 0));"
-SHARE = "document.querySelector('#explorer .share').textContent"
+SHARE = "document.querySelector('#touchdown-explorer .share').textContent"
 PHONE = 390
 
 
@@ -412,7 +283,7 @@ def page(journeys_folder: Path) -> Path:
 
 @pytest.fixture
 def explored(page: Path) -> dict[str, Any]:
-    return explorer_data(page.read_text(encoding="utf-8"))
+    return explorer_data(page.read_text(encoding="utf-8"), "touchdown-explorer")
 
 
 def test_the_tables_are_those_of_the_refits(model: TouchdownEmulator, explorer: ExplorerTables) -> None:
@@ -488,10 +359,10 @@ def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmul
     with browser_page(tmp_path) as browser:
         browser.open(page, PHONE)
         assert browser.value("document.documentElement.scrollWidth") == PHONE
-        assert browser.value("document.querySelectorAll('#explorer figure').length") == 3
+        assert browser.value("document.querySelectorAll('#touchdown-explorer figure').length") == 3
         before = browser.value(SHARE)
         browser.value(
-            f"(() => {{ const end = document.querySelectorAll('#explorer input')[{number}]; end.value = 0.3;"
+            f"(() => {{ const end = document.querySelectorAll('#touchdown-explorer input')[{number}]; end.value = 0.3;"
             "end.dispatchEvent(new Event('input')); })()"
         )
         after = browser.value(

@@ -16,10 +16,10 @@ from lithobrake.report.figures.model_figures import error_figure
 from lithobrake.report.figures.option_figures import aim_figure
 from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import figure_style
-from lithobrake.report.pages.shared_plots import draw_outcomes, draw_rest
+from lithobrake.report.pages.study_page import study_content
 from lithobrake.results import MovingBodies
 from lithobrake.results.model_results import OutputErrors
-from lithobrake.results.page_data import DrawnPage
+from lithobrake.results.page_data import PageData
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.statements.labels import PAPER_OUTPUTS, input_label
 from lithobrake.vocabulary.estimate import Estimate
@@ -161,15 +161,16 @@ def test_shares_end_at_the_whole_and_have_their_figures_beside_the_axis() -> Non
     assert axes.get_xlabel() == "share of all 100 000 samples [%], with 90 % interval"
 
 
-def test_one_fate_has_one_colour_in_every_figure(drawn: DrawnPage) -> None:
+def test_one_fate_has_one_colour_in_every_figure(first: PageData) -> None:
+    plots = {plot.name: plot for plot in study_content(first).plots}
     with figure_style():
-        figures = draw_outcomes(drawn), draw_rest(drawn)
+        figures = plots["outcomes"].draw(), plots["hard_ground"].draw()
     found: dict[str, set[str]] = {}
     assert figures[1] is not None
     for axes in (axes for figure in figures if figure for axes in figure.axes if axes.get_xlabel().startswith("share")):
         for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=False):
             found.setdefault(label.get_text(), set()).add(matplotlib.colors.to_hex(bar.get_facecolor()))
-    assert {"captured", "at rest", "unknown outcome"} <= found.keys()
+    assert {"captured", "at rest", "under way"} <= found.keys()
     assert all(len(colours) == 1 for colours in found.values())
     assert found["captured"] == {FATE_COLOURS["captured"]}
     assert len(set(FATE_COLOURS.values())) == len(FATE_COLOURS)

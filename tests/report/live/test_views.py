@@ -10,7 +10,7 @@ import pytest
 from lithobrake.report.figures.hulls import Scene
 from lithobrake.report.live.views import LARGEST, body_views, landing_arrays, landing_views
 from lithobrake.results import MovingBodies
-from lithobrake.results.page_data import PaperPage
+from lithobrake.results.page_data import PageData
 from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
 from ..finished_studies import OCTAHEDRON, OCTAHEDRON_FACES
@@ -79,7 +79,7 @@ def test_the_ground_of_a_landing_has_a_floor_with_a_grid_of_round_meshes() -> No
     assert len(arrays["grid_paint"]) == len(grid)
 
 
-def test_the_page_says_how_far_places_are_rounded(paper: PaperPage) -> None:
+def test_the_page_says_how_far_places_are_rounded(paper: PageData) -> None:
     (landing,), (body,) = landing_views(paper), body_views(paper)
     assert "12 grains and the lander (blue) in 8 frames" in landing.html
     assert "Positions are rounded to" in landing.html
@@ -89,7 +89,7 @@ def test_the_page_says_how_far_places_are_rounded(paper: PaperPage) -> None:
     assert keys == {FATE_COLOURS["impact"]: "impact", FATE_COLOURS["flying"]: "still flying"}
 
 
-def test_a_marker_moves_along_each_way_from_its_beginning_to_its_end(paper: PaperPage) -> None:
+def test_a_marker_moves_along_each_way_from_its_beginning_to_its_end(paper: PageData) -> None:
     (body,) = body_views(paper)
     found = json.loads(body.html[body.html.index('id="body-3d-data">') + 18 : body.html.rindex("</script>")])
     place, per_flight = paper.paths[0], found["perFlight"]
@@ -99,7 +99,7 @@ def test_a_marker_moves_along_each_way_from_its_beginning_to_its_end(paper: Pape
     assert [one["words"] for one in found["labels"]][:2] == ["north", "aim point"]
 
 
-def test_dimorphos_has_didymos_over_its_longitude_0(paper: PaperPage) -> None:
+def test_dimorphos_has_didymos_over_its_longitude_0(paper: PageData) -> None:
     site = replace(paper.results.site, body="dimorphos", partner="didymos", partner_distance_m=1190.0)
     study = paper.study | {"site": paper.study["site"] | {"body": "dimorphos", "partner_longitude_deg": None}}
     near = replace(paper, study=study, results=replace(paper.results, site=site))
