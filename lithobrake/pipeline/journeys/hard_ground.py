@@ -11,7 +11,7 @@ from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding
-from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.touchdown import Touchdown
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
@@ -82,7 +82,7 @@ def follow_on_hard_ground(job: Job) -> None:
         job.say(bounce_laws.hard_ground_only(why))
     rows = []
     for ground, touchdown in _grounds(job, begin):
-        rows += followed_rows(ground, follow(job, begin, touchdown, f"landers, {ground} ground"))
+        rows += followed_rows(ground, followed(job, begin, touchdown, f"landers, {ground} ground"))
     write_table(job.folder, REST_FILE, tuple(FOLLOWED), rows, FOLLOWED)
 
 
