@@ -50,7 +50,9 @@ from lithobrake.results.summary import DrawnResults, Estimates, PaperResults, Pr
 from lithobrake.statements.answers import landing_answer, landing_headline
 from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import grain, lander, stored_bed
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.soil import grain
+from lithobrake.touchdown.touchdown_model import stored_bed
 from lithobrake.vocabulary.file_names import REST_FILE, RUNS_FILE, SAMPLE_FLIGHTS_FILE, SUMMARY_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, IMPACT_SPEED, JOURNEY_DESIGN, OUTPUTS, TOUCHDOWN

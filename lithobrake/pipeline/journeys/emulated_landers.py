@@ -17,15 +17,16 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys import touchdown_emulator
 from lithobrake.pipeline.journeys.journey import ENDS, MOST_TOUCHDOWNS, JourneyModel, on_ground
 from lithobrake.pipeline.runs.landings import touchdowns
-from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
     ORIENTATION,
+    PLACE,
     SPIN,
     SPIN_OUT,
+    TIME_LEFT,
     VELOCITY_OUT,
 )
 

@@ -16,9 +16,16 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.design.soils import Soils, felt
 from lithobrake.pipeline.site import Site
-from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, SOIL, VELOCITY_OUT
+from lithobrake.vocabulary.quantities import (
+    IMPACT_AZIMUTH,
+    IMPACT_INCIDENCE,
+    IMPACT_SPEED,
+    PLACE,
+    SOIL,
+    TIME_LEFT,
+    VELOCITY_OUT,
+)
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
