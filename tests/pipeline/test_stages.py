@@ -29,11 +29,12 @@ ELSEWHERE = (
         "progress",
     ),  # how files are written
     *("campaign", "compilation"),  # who makes runs, and how kernels are compiled
-    *("dem", "touchdown", "study/touchdown_model.py"),  # the hash of the engine
+    *("dem", "touchdown"),  # the hash of the engine
     *("study", "vocabulary"),  # by their values, which each stage reads; words
     *("pipeline/runs/beds.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     # inputs of the first touchdowns of journeys, which the keys of runs hold
     *("pipeline/design/arrivals.py", "pipeline/design/descents.py", "pipeline/design/drawn_design.py"),
+    "pipeline/design/random_inputs.py",  # inputs of runs, likewise
     "__init__.py",
 )
 # The site that a design holds: its runs take of it the same inputs of first touchdowns alone. What else reads the site

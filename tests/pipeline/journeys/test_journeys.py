@@ -21,7 +21,7 @@ from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, fly
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
-from lithobrake.study.touchdown_model import acceleration
+from lithobrake.touchdown.touchdown_model import acceleration
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ...paper_tables import SMALL_GROUND, with_keys

@@ -32,7 +32,7 @@ from lithobrake.smallbody import (
 )
 from lithobrake.study import StudyError
 from lithobrake.study.source import StudySource
-from lithobrake.study.touchdown_model import acceleration
+from lithobrake.touchdown.touchdown_model import acceleration
 
 from ...paper_tables import with_keys
 from ...smallbody.meshes import sphere_mesh
