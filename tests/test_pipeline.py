@@ -17,14 +17,13 @@ from lithobrake.pipeline.answer.study_summary import study_tables
 from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.expansion.expansions import kept_inputs, points
-from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.flights import COLUMNS, starts
 from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.touchdown_model import PLACE, acceleration, draw, in_words_of_the_study, medians
-from lithobrake.vocabulary.quantities import ARC, ORIENTATION, OUTPUTS
+from lithobrake.vocabulary.quantities import FOLLOWED, ORIENTATION, OUTPUTS
 
 from .paper_tables import paper_tables, with_keys
 
@@ -266,7 +265,7 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
 def test_every_column_of_the_flights_is_documented() -> None:
     text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
     flights, hard = (_names_in_tables(part) for part in text.split("| column of `restitution.csv` |"))
-    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *rest.COLUMNS, *ARC]
+    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *FOLLOWED]
     assert hard[: len(RESTITUTION_NAMES)] == RESTITUTION_NAMES
 
 

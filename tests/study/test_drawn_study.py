@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import flights
-from lithobrake.pipeline.first_bounces import bounces_to_rest
-from lithobrake.pipeline.first_bounces import bounces_to_rest as rest
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import Study, StudyError, StudySource, check_tables, read_study
 from lithobrake.study.ground_sections import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
@@ -21,7 +19,18 @@ from lithobrake.study.template import template
 from lithobrake.study.touchdown_model import draw, medians
 from lithobrake.study.units import input_units, run_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
-from lithobrake.vocabulary.quantities import BEDS, FLIGHT, OUTPUTS, PERIODS_TRAVELLED, RUN, TO_REST, TOUCHDOWN, quantity
+from lithobrake.vocabulary.quantities import (
+    AIM_COLUMNS,
+    BEDS,
+    FLIGHT,
+    FOLLOWED,
+    OUTPUTS,
+    PERIODS_TRAVELLED,
+    RUN,
+    TO_REST,
+    TOUCHDOWN,
+    quantity,
+)
 
 TABLES: dict[str, Any] = tomllib.loads(template())
 
@@ -276,11 +285,9 @@ def test_every_output_has_its_unit() -> None:
 
 def test_every_column_of_the_tables_has_words() -> None:
     assert set(PLAIN_COLUMNS) <= set(RUN)
-    own = {
-        name for name in (*flights.COLUMNS, *rest.COLUMNS, *bounces_to_rest.AIM_COLUMNS) if not name.startswith("site_")
-    }
+    own = {name for name in (*flights.COLUMNS, *AIM_COLUMNS) if not name.startswith("site_")}
     assert own == set(FLIGHT)
-    assert all(one.long_name for one in (FLIGHT | RUN | BEDS).values())
+    assert all(one.long_name for one in (FLIGHT | FOLLOWED | RUN | BEDS).values())
     # A name that ends with its unit has that unit.
     assert all(one.units == name.rpartition("_")[2] for name, one in FLIGHT.items() if name.endswith(("_s", "_deg")))
 

@@ -38,8 +38,8 @@ def has_equivalent(study: Study) -> bool:
 
 
 def has_expansion(study: Study) -> bool:
-    """Whether the expansion can be asked about the impacts after the first."""
-    return study.expansion is not None and bounce_laws.why_no_soil(study) is None
+    """Whether the expansion can be asked about the impacts after the first, on the one soil that it knows."""
+    return study.expansion is not None and not study.soil and bounce_laws.why_no_soil(study) is None
 
 
 def hard_ground_dependencies(study: Study) -> Any:
