@@ -13,7 +13,7 @@ from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ WORDS = "latitude planetocentric, longitude east positive, both of the body-fixe
 NOTE = f"{WORDS}; coordinates in degrees, longitude first"
 # Of each impact and of each place of rest, and what those columns hold that are no floats.
 PROPERTIES = ("sample", "facet", "time_s", "impact_speed", "impact_incidence_deg")
-REST_PROPERTIES = ("sample", "ground", "time_s", "rebounds", "path_length")
+REST_PROPERTIES = ("journey", "ground", "time_s", "distance", "touchdowns", "path_length")
 JOURNEY_PROPERTIES = ("journey", "bed", "time_s", "distance", "contacts", "touchdowns", "path_length", "face")
 TOUCHDOWN_PROPERTIES = ("journey", "touchdown", "key", "outcome", "begin_s", "end_s", IMPACT_SPEED)
 NO_FLOATS: dict[str, Callable[[Any], int | str]] = {
@@ -164,17 +164,15 @@ def write_geojson(results: StudyResults, path: Path) -> None:
 
 
 def write_rest_geojson(results: StudyResults, path: Path) -> None:
-    """Write a point for each journey that ends at rest, with its numbers, or its sample and the ground under it."""
+    """Write a point for each lander that ends at rest, with its numbers."""
     if has_journeys(results):
         ended = results.journeys
         at_rest = ended.where(np.flatnonzero(ended["end"] == JourneyEnd.AT_REST))
         _write_points(results, path, "places of rest", at_rest, JOURNEY_PROPERTIES)
         return
     journeys = results.rest
-    settled = journeys.where(np.flatnonzero(journeys["status"] == JourneyStatus.SETTLED))
-    # Journeys of an earlier version may lack some of these.
-    known = [name for name in REST_PROPERTIES if name in settled.columns]
-    _write_points(results, path, "places of rest", settled, known)
+    at_rest = journeys.where(np.flatnonzero(journeys["end"] == JourneyEnd.AT_REST))
+    _write_points(results, path, "places of rest", at_rest, REST_PROPERTIES)
 
 
 def _write_points(results: StudyResults, path: Path, what: str, table: Table, names: Sequence[str]) -> None:

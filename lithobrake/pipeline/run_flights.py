@@ -16,7 +16,7 @@ from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.delivery_checks import drawn_together
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import CapturedFate, FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, FLIGHT, RUN
 
 # Flights of each run. In equal steps of the heading so many leave nothing to gain from more.
@@ -29,9 +29,9 @@ IMPACTS: str = "run_impacts.csv"
 # What may become of a run at one of its sites; of a captured one, whether the ground there holds it.
 FATES = (
     *(FlightStatus.IMPACT, FlightStatus.FLYING, FlightStatus.ESCAPED, FlightStatus.PARTNER),
-    *(JourneyStatus.SETTLED, JourneyStatus.LOFTED),
+    *(CapturedFate.SETTLED, CapturedFate.LOFTED),
 )
-RETURNS = (FlightStatus.IMPACT, JourneyStatus.SETTLED)
+RETURNS = (FlightStatus.IMPACT, CapturedFate.SETTLED)
 COLUMNS = ("design", "run", "key", "outcome", "flight_count", *FATES, "returns")
 # Of each flight of the drawn runs that ends on the body.
 IMPACT_NUMBERS = ("time_s", "impact_speed", "impact_incidence_deg")
@@ -128,8 +128,8 @@ def _flown(job: Job, runs: DesignRuns, design: str) -> tuple[np.ndarray, list[li
     if captured.any():
         held = _held(job.site, {key: values[captured] for key, values in sites.items()}).sum(axis=1)
         # A captured lander stays only where the ground holds it, which differs from site to site as flights do.
-        fates[captured, FATES.index(JourneyStatus.SETTLED)] = held
-        fates[captured, FATES.index(JourneyStatus.LOFTED)] = FLIGHT_COUNT - held
+        fates[captured, FATES.index(CapturedFate.SETTLED)] = held
+        fates[captured, FATES.index(CapturedFate.LOFTED)] = FLIGHT_COUNT - held
     left = np.flatnonzero(runs.has_outputs)
     velocity = np.column_stack([runs.output(name) for name in VELOCITY])[left]
     site = {key: values[left].ravel() for key, values in sites.items()}

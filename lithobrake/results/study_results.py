@@ -35,7 +35,7 @@ _ASKED = {
     "flights": (file_names.SAMPLE_FLIGHTS_FILE, "flights of the samples to their next impact"),
     "journeys": (JOURNEYS, "each lander from delivery to rest: end, time, place, contacts, side down"),
     "touchdowns": (TOUCHDOWNS, "every landing of the journeys: state in, state out, bed, soil, cost"),
-    "rest": (file_names.REST_FILE, "where samples end after all bounces"),
+    "rest": (file_names.REST_FILE, "where landers on other ground end"),
     "arcs": (file_names.ARCS_FILE, "each flight between impacts"),
     "emulator": ("*emulator.json", "samples of landings, at any inputs by their names"),
     "surrogate": (file_names.REFINED_FILE, "the refined expansion, by the names of its inputs"),

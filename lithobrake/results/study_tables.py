@@ -12,6 +12,7 @@ from lithobrake.vocabulary.quantities import (
     BEDS,
     DRAWN_DESIGNS,
     FLIGHT,
+    FOLLOWED,
     JOURNEY,
     JOURNEY_DESIGN,
     JOURNEY_TOUCHDOWN,
@@ -97,8 +98,8 @@ class StudyTables(StudyFiles):
     @cached_property
     def rest(self) -> "Table":
         """Where landers end on other ground than that of the study (docs/flights.md)."""
-        columns = ("ground", "journey", "end", "latitude_deg", "longitude_deg")
-        return self._table("journey", self._rows(file_names.REST_FILE, columns), columns, FLIGHT)
+        columns = tuple(FOLLOWED)
+        return self._table("journey", self._rows(file_names.REST_FILE, columns), columns, FOLLOWED)
 
     @cached_property
     def run_flights(self) -> "Table":

@@ -55,17 +55,11 @@ class FlightStatus(_Ending):
     PARTNER = "partner", "The lander hit the partner of the body."
 
 
-class JourneyStatus(_Ending):
-    """How a journey from bounce to bounce ended."""
+class CapturedFate(_Ending):
+    """Whether the ground holds a lander that was captured."""
 
-    SETTLED = "settled", "The lander came to rest where gravity, rotation and friction together hold it."
+    SETTLED = "settled", "The lander lies where gravity, rotation and friction together hold it."
     LOFTED = "lofted", "The lander was captured where gravity and rotation together push it outwards."
-    OUTSIDE = "outside", "The impact is outside the range of the bounce model, and the journey stops there."
-    FLYING = FlightStatus.FLYING.texts
-    ESCAPED = FlightStatus.ESCAPED.texts
-    PARTNER = FlightStatus.PARTNER.value, "The lander hit the partner, where no bounce is followed."
-    SLIDING = "sliding", "The lander was still sliding at the time limit."
-    BOUNCING = "bouncing", "The largest number of bounces did not bring the lander to rest."
 
 
 class JourneyEnd(_Ending):
@@ -80,7 +74,7 @@ class JourneyEnd(_Ending):
 
 # Of a captured lander also whether gravity and rotation together hold it where it lies, or lift it off.
 CAPTURED = TouchdownOutcome.CAPTURED.value
-SETTLED, LOFTED = JourneyStatus.SETTLED.value, JourneyStatus.LOFTED.value
+SETTLED, LOFTED = CapturedFate.SETTLED.value, CapturedFate.LOFTED.value
 # What becomes of a lander in the first flight, as a word that is true or false.
 FATES = (RETURNS, CAPTURED, SETTLED, LOFTED, *(status.value for status in FlightStatus))
 
@@ -95,14 +89,12 @@ FATE_COLOURS: dict[str, str] = {
     SampleOutcome.LEFT_SIDEWAYS: "#b23a2e",
     SampleOutcome.TIME_LIMIT: "#f0e442",
     SampleOutcome.OUTSIDE: "#a6845f",
-    JourneyStatus.SETTLED: "#2aa884",
-    JourneyStatus.LOFTED: "#1b2a3a",
-    JourneyStatus.SLIDING: "#6fb7e0",
-    JourneyStatus.BOUNCING: "#f3c9b5",
+    CapturedFate.SETTLED: "#2aa884",
+    CapturedFate.LOFTED: "#1b2a3a",
 }
 # Those of the ends of journeys, each that of the fate which is like it.
 END_COLOURS: dict[str, str] = {
-    JourneyEnd.AT_REST: FATE_COLOURS[JourneyStatus.SETTLED],
+    JourneyEnd.AT_REST: FATE_COLOURS[CapturedFate.SETTLED],
     JourneyEnd.ESCAPED: FATE_COLOURS[FlightStatus.ESCAPED],
     JourneyEnd.PARTNER: FATE_COLOURS[FlightStatus.PARTNER],
     JourneyEnd.UNDER_WAY: FATE_COLOURS[FlightStatus.FLYING],

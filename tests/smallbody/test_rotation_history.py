@@ -13,13 +13,10 @@ from lithobrake.smallbody import (
     AttitudeHistory,
     Body,
     FlightStatus,
-    HardSurface,
-    Launch,
     Partner,
     Shape,
     dimorphos,
     fly,
-    hop,
     rotation_history,
     tumble,
 )
@@ -298,21 +295,6 @@ def test_the_push_on_the_ground_is_gravity_less_the_acceleration_of_the_ground()
     assert found == pytest.approx(-moved, abs=1e-5 * np.abs(moved).max())
     uniform = body.effective_acceleration(points) - body.acceleration(points)
     assert np.abs(found - uniform).max() > 0.5 * np.abs(uniform).max()
-
-
-def test_a_lander_keeps_its_spin_among_the_stars_and_turns_with_the_ground_where_it_rests():
-    body = alone()
-    body = replace(body, rotation=rotation_history(body, DAY, roll_deg=50.0, spin=(2e-4, 0.0, 1e-4)))
-    origin, axes = body.local_frame(5.0, 40.0)
-    spin, begin = np.array([1e-3, -2e-3, 5e-4]), 1000.0
-    launch = Launch(origin + 0.1 * axes[2], 0.01 * axes[2], spin, begin)
-    flight = hop(body, launch, HardSurface(0.5), 400.0, gravity="exact")
-    assert flight.status == "flying"
-    before, after = (among_stars(body, np.array([begin + at]))[0] for at in (0.0, 400.0))
-    assert after @ flight.spin[0] == pytest.approx(before @ spin, abs=1e-10)
-    rest = hop(body, launch, HardSurface(0.0), 20_000.0, gravity="exact")
-    assert rest.status == "settled"
-    assert rest.spin == pytest.approx(body.rotation.at(begin + rest.time).whole_spin(body.spin_rate)[0], abs=1e-12)
 
 
 # What is refused.

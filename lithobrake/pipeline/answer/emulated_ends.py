@@ -1,7 +1,7 @@
 """Shares and ends of journeys that the emulator gives, with intervals from its refits."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +26,7 @@ from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import LEVEL
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, JourneyStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
 Shares = Mapping[str, CountedShare]
@@ -220,10 +220,3 @@ def sample_fates(samples: Samples, flights: Rows, *, holds: bool) -> dict[str, n
     met = {str(name): words[:total] == name for name in (*SampleOutcome, *FlightStatus) if name != SampleOutcome.CLEAR}
     returning = met[FlightStatus.IMPACT] | met[SampleOutcome.CAPTURED] if holds else met[FlightStatus.IMPACT]
     return met | {"returns": returning, "missing": np.isin(words[:total], MISSING)}
-
-
-def journey_ends(rows: Sequence[Mapping[str, str]]) -> dict[str, np.ndarray]:
-    """Which of the journeys met each end, and which moved along the ground."""
-    status = np.array([row["status"] for row in rows], dtype=object)
-    slid = np.array([float(row["slid_length"]) > 0.0 for row in rows], dtype=bool)
-    return {str(name): status == name for name in JourneyStatus} | {"slid": slid}

@@ -3,11 +3,12 @@
 import numpy as np
 
 from lithobrake.analysis import LEVEL, wilson_interval
+from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90, Rows, ellipses, site_results
 from lithobrake.pipeline.answer.run_answers import place_regions
-from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.hard_ground import EQUIVALENT, EXPANSION, HARD
+from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.dispersion import FollowedLanders
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements.touchdowns import followed
@@ -32,7 +33,7 @@ def followed_results(job: Job) -> dict[str, FollowedLanders]:
     """The landers of each ground; empty where none was followed."""
     if not job.study.hard_ground.count:
         return {}
-    rows = read_table(job.folder, REST_FILE)
+    rows = read_rows(job.folder / REST_FILE, ("ground", "end"), AGAIN)
     parts = {ground: [row for row in rows if row["ground"] == ground] for ground in (HARD, EQUIVALENT, EXPANSION)}
     return {ground: _followed(job, ground, part) for ground, part in parts.items() if part}
 

@@ -158,8 +158,8 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
 
 
 @dataclass(frozen=True)
-class Landers:
-    """Landers on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
+class OptionLanders:
+    """OptionLanders on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
 
     status: np.ndarray
     time: np.ndarray
@@ -205,18 +205,18 @@ def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults
     return replace(results, statement=options(results))
 
 
-def _landers(folder: StudyFolder, ground: str, aim_count: int) -> Landers:
+def _landers(folder: StudyFolder, ground: str, aim_count: int) -> OptionLanders:
     """The landers on one ground."""
     rows = [row for row in read_rows(folder / AIM_FILE, AIM_COLUMNS, AGAIN) if row["ground"] == ground]
     shape = (aim_count, len(rows) // aim_count)
     numbers = ([float(row[name] or "nan") for row in rows] for name in ("time_s", "distance"))
     time, distance = (np.reshape(one, shape) for one in numbers)
     status = np.reshape(np.array([row["status"] for row in rows], dtype=object), shape)
-    return Landers(status, time, distance, np.reshape([int(row["refit"]) for row in rows], shape))
+    return OptionLanders(status, time, distance, np.reshape([int(row["refit"]) for row in rows], shape))
 
 
 def _on_ground(
-    landers: Landers, aims: Sequence[dict[str, float]], limits: list[AimLimit], fitted: Refits, ground: str
+    landers: OptionLanders, aims: Sequence[dict[str, float]], limits: list[AimLimit], fitted: Refits, ground: str
 ) -> tuple[list[AimOnGround], BestAim | None]:
     """Every aim on one ground, and the best of those that keep all limits."""
     parts = [_of_aim(landers, row, ground, fitted) for row in range(len(aims))]
@@ -225,7 +225,7 @@ def _on_ground(
     return _best(landers, parts, bed_count)
 
 
-def _of_aim(landers: Landers, row: int, ground: str, fitted: Refits) -> AimOnGround:
+def _of_aim(landers: OptionLanders, row: int, ground: str, fitted: Refits) -> AimOnGround:
     """Shares and 95 % quantiles of one aim, with their intervals where there are any; not yet whether it is allowed."""
     settled, refit = landers.settled[row], landers.refit[row]
 
@@ -260,7 +260,7 @@ def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> 
 
 
 def _best(
-    landers: Landers, parts: list[AimOnGround], bed_count: int | None
+    landers: OptionLanders, parts: list[AimOnGround], bed_count: int | None
 ) -> tuple[list[AimOnGround], BestAim | None]:
     """The aims with their shares of refits, and that at which most landers settle, of those allowed.
 

@@ -19,7 +19,7 @@ from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
 from lithobrake.study.ground_sections import MOST_BEDS
-from lithobrake.study.quantity import uncertain
+from lithobrake.study.quantity import uncertain, usual_reach
 from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION
@@ -199,6 +199,14 @@ class DrawnDesign:
         """Numbers of a touchdown that follow no law of the study: soils of regions, and the arrival after a flight."""
         soils = {f"{GRAIN}{key}" for soil in self.study.soil.values() for key in soil.grain.values()}
         return (*sorted(soils), *(ARRIVAL if self.is_flown else ()))
+
+    def reaches_met(self, name: str) -> list[tuple[float, float]]:
+        """From where to where a property of the grains reaches by region and elsewhere; empty for other numbers."""
+        key = name.removeprefix(GRAIN)
+        soils = [soil.grain.values() for soil in self.study.soil.values()]
+        given = [values[key] for values in soils if name.startswith(GRAIN) and key in values]
+        own = self.study.touchdown_values().get(name)
+        return [usual_reach(value) for value in (*given, *([] if own is None or not given else [own]))]
 
     @property
     def lawful_inputs(self) -> "dict[str, Distribution]":

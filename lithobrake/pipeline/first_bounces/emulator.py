@@ -67,11 +67,21 @@ def fit_emulator(job: Job) -> None:
 
 
 def inputs_met(design: DrawnDesign, runs: DesignRuns) -> "dict[str, Distribution]":
-    """The inputs of touchdowns with their laws: those of the study, or the values that the runs have met."""
-    from lithobrake.chaos import Empirical
+    """The inputs of touchdowns with their laws: those of the study; of what landers meet on their way, its range."""
+    found = dict(design.inputs)
+    for name in design.met_on_the_way:
+        reaches = design.reaches_met(name) or [(float(runs.inputs[name].min()), float(runs.inputs[name].max()))]
+        ends = [end for reach in reaches for end in reach]
+        if min(ends) < max(ends):
+            found[name] = _over(design.inputs.get(name), min(ends), max(ends))
+    return found
 
-    varied = [name for name in design.met_on_the_way if np.ptp(runs.inputs[name]) > 0.0]
-    return design.inputs | {name: Empirical(runs.inputs[name].tolist()) for name in varied}
+
+def _over(law: "Distribution | None", lower: float, upper: float) -> "Distribution":
+    """A law over a range, on the scale of another one."""
+    from lithobrake.chaos import LogUniform, Uniform
+
+    return (LogUniform if isinstance(law, LogUniform) else Uniform)(lower, upper)
 
 
 def why_no_emulator(content: Mapping[str, Any]) -> str | None:
@@ -252,7 +262,10 @@ def draw_emulator_samples(job: Job) -> None:
         # Of landers behind those of the study: what these meet follows from where they come down.
         first = len(design.beds)
         rows = design.with_run_count(first + study.sample_count).rows[len(design.rows) :]
-        x = inputs_of(rows, list(inputs_met(design, DesignRuns.load(job.folder, "drawn"))))
+        laws = inputs_met(design, DesignRuns.load(job.folder, "drawn"))
+        ends = np.array([law.support for law in laws.values()])
+        # An arrival that no run had is as the nearest that one had.
+        x = np.clip(inputs_of(rows, list(laws)), *ends.T)
     else:
         x = sample_inputs(design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
     drawn_samples(job, x, "draws").save(job.folder)

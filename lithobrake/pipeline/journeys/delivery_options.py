@@ -13,7 +13,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, on_hard_ground
-from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
@@ -52,7 +52,7 @@ def follow_options(job: Job) -> None:
         rows += _rows(job, "soil", None)
     if job.study.hard_ground.count:
         hard = on_hard_ground(job.design, begin, "options")
-        rows += _rows(job, "hard", follow(job, begin, hard, "landers at the delivery options, hard ground"))
+        rows += _rows(job, "hard", followed(job, begin, hard, "landers at the delivery options, hard ground"))
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 

@@ -16,7 +16,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_touchdowns import EmulatedTouchdowns
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding
-from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.simulated_touchdowns import WithLandings
 from lithobrake.pipeline.journeys.touchdown import Touchdown
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, fit_touchdowns
@@ -154,7 +154,7 @@ def follow_emulated(
     """
     emulated = EmulatedTouchdowns(emulator, begin, title)
     touchdown = WithLandings(job, begin, _to_rest(job.design, begin, emulated), most_landings)
-    landers = follow(job, begin, touchdown, title)
+    landers = followed(job, begin, touchdown, title)
     return EmulatedLanders(landers, emulated.beyond, touchdown.landings)
 
 

@@ -65,8 +65,13 @@ class EmulatedTouchdowns:
         design, which = self.emulator.design, impacts.lander
         if not design.study.soil:
             return {}
-        own = {name: values[which] for name, values in self._own_soils.items()}
-        return self._soils.met(self.begin.number[which], own, impacts.position)
+        own, laws = (
+            {name: values[which] for name, values in self._own_soils.items()},
+            self.emulator.refits[0].runs.inputs,
+        )
+        met = self._soils.met(self.begin.number[which], own, impacts.position)
+        # A law without an end has one in the emulator.
+        return {name: np.clip(values, *laws[name].support) if name in laws else values for name, values in met.items()}
 
     @cached_property
     def _soils(self) -> Soils:

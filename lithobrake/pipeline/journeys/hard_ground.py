@@ -11,7 +11,7 @@ from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding
-from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.touchdown import Touchdown
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
@@ -38,8 +38,8 @@ def has_equivalent(study: Study) -> bool:
 
 
 def has_expansion(study: Study) -> bool:
-    """Whether the expansion can be asked about the impacts after the first."""
-    return study.expansion is not None and bounce_laws.why_no_soil(study) is None
+    """Whether the expansion can be asked about the impacts after the first, on the one soil that it knows."""
+    return study.expansion is not None and not study.soil and bounce_laws.why_no_soil(study) is None
 
 
 def hard_ground_dependencies(study: Study) -> Any:
@@ -82,7 +82,7 @@ def follow_on_hard_ground(job: Job) -> None:
         job.say(bounce_laws.hard_ground_only(why))
     rows = []
     for ground, touchdown in _grounds(job, begin):
-        rows += followed_rows(ground, follow(job, begin, touchdown, f"landers, {ground} ground"))
+        rows += followed_rows(ground, followed(job, begin, touchdown, f"landers, {ground} ground"))
     write_table(job.folder, REST_FILE, tuple(FOLLOWED), rows, FOLLOWED)
 
 

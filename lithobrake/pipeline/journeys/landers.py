@@ -1,6 +1,6 @@
 """Landers that are followed from touchdown to touchdown: where they are, how they fly, and how they end."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -317,13 +317,19 @@ class Landers:
         return after
 
 
-def follow(job: Job, begin: Arrivals, touchdown: Touchdown, title: str) -> Landers:
-    """Landers followed from touchdown to touchdown until each has ended, all of them together.
+def follow(landers: Landers, touchdown: Touchdown, show: Callable[[int], None] | None = None) -> Landers:
+    """Follow landers from touchdown to touchdown until each has ended, all of them together; gives them back.
 
-    touchdown: says how each touchdown ends; title: of the landers, for progress.
+    touchdown: says how each touchdown ends; show: called with the number of landers that have ended.
     """
-    landers = Landers.of(job.design, begin, threads=getattr(job.executor, "worker_count", None))
     while len(going := landers.going):
-        job.progress(len(landers) - len(going), len(landers), title)
+        if show:
+            show(len(landers) - len(going))
         landers.go_on(going, touchdown.answers(landers.impacts(going)))
     return landers
+
+
+def followed(job: Job, begin: Arrivals, touchdown: Touchdown, title: str) -> Landers:
+    """Landers of a study followed to their ends; title: of them, for progress."""
+    landers = Landers.of(job.design, begin, threads=getattr(job.executor, "worker_count", None))
+    return follow(landers, touchdown, lambda ended: job.progress(ended, len(landers), title))

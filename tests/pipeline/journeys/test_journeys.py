@@ -14,9 +14,11 @@ from lithobrake.geometry.attitude import about_z, attitude_of, from_frame, quate
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
-from lithobrake.pipeline.first_bounces.bounces_to_rest import hard_surface, on_rough
+from lithobrake.pipeline.journeys.first_arrivals import Arrivals
+from lithobrake.pipeline.journeys.ground_touchdowns import Bounces
+from lithobrake.pipeline.journeys.landers import Landers, follow
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.smallbody import HardSurface, Impacts, Launch, RoughGround, fly, hop
+from lithobrake.smallbody import HardSurface, Impacts, fly
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.study.touchdown_model import acceleration
@@ -71,29 +73,23 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_on_hard_ground_they_go_where_bounces_of_flights_go(made: Path) -> None:
+def test_landings_on_hard_ground_lead_where_bounces_lead(made: Path) -> None:
     study = with_site_gravity(StudySource.of_tables(TABLES).study)
-    site, design = Site(study), DrawnDesign(study)
-    columns = site.sampled(JOURNEYS)
-    origin, axes = site.frames(columns)
-    first = np.array([hard_velocity(row) for row in design.rows])
-    time = site.body.partner_time(columns["partner_longitude_deg"], columns["spin_period"])
-    launch = Launch(origin, np.einsum("nij,ni->nj", axes, first), time=time, mass=columns["mass"])
-    ends = hop(site.body, launch, HARD, 40000.0)
+    ends = bouncing(DrawnDesign(study))
     found = rows(made, "journeys.csv")
-    words = {"settled": "at_rest", "flying": "under_way"}
-    assert [words.get(word, word) for word in ends.status.tolist()] == found["end"].tolist()
-    rests = ends.status == "settled"
+    assert ends.end.tolist() == found["end"].tolist()
+    rests = ends.end == "at_rest"
     assert rests.sum() > 0.5 * JOURNEYS
-    assert (found["touchdowns"][rests] == ends.bounce_count[rests] + 2).all()
+    assert (found["touchdowns"] == ends.touchdowns).all()
     place = np.column_stack([found[f"position_{axis}"] for axis in "xyz"])
     assert np.linalg.norm(place - ends.position, axis=1)[rests].max() < 0.01
     assert np.abs(found["time_s"] - ends.time)[rests].max() < 0.2
 
 
-def hard_velocity(row: dict[str, float]) -> list[float]:
-    outputs = hard_ground(row, 0)["outputs"]
-    return [outputs[f"velocity_out_{axis}"] for axis in "xyz"]
+def bouncing(design: DrawnDesign) -> Landers:
+    """The landers of a study by bounces off hard ground, all together and without a landing."""
+    begin = Arrivals.of_rows(design.site, design.rows, 0)
+    return follow(Landers.of(design, begin), Bounces(HARD, 0, "hard ground"))
 
 
 def test_the_summary_has_ends_that_add_up_and_numbers_of_rest(made: Path) -> None:
@@ -250,16 +246,6 @@ def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path:
     results = lithobrake.run(tables, tmp_path / "out", workers=1, model=bounce, report=False)
     assert results.results.emulated.agrees
     assert results.results.ends["at_rest"].share.value > 0.5
-
-
-def test_hard_ground_of_a_study_is_as_rough_as_its_site() -> None:
-    drawn = {key: table for key, table in rough_tables(12.0).items() if key not in ("journey", "delivery")}
-    drawn |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}}
-    read = StudySource.of_tables(drawn).study
-    hard = hard_surface(read)
-    assert on_rough(read, hard) == RoughGround(hard, math.radians(12.0))
-    drawn["site"] = {"body": "dimorphos"}
-    assert on_rough(StudySource.of_tables(drawn).study, hard) is hard
 
 
 def test_what_no_impact_reads_is_refused() -> None:

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lithobrake.pipeline.first_bounces.bounces_to_rest import _distances
 
 import lithobrake
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.first_bounces.bounce_laws import implied
-from lithobrake.pipeline.first_bounces.bounces_to_rest import _distances
 from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lithobrake.pipeline.first_bounces.bounces_to_rest import COLUMNS as REST
+from lithobrake.pipeline.first_bounces.bounces_to_rest import Sites, arc_rows, rest_dependencies, sliding_friction
 
 from lithobrake.analysis import OutcomeModel, wilson_interval
 from lithobrake.chaos import Uniform, fit, smolyak
@@ -26,8 +28,6 @@ from lithobrake.pipeline.first_bounces.bounce_laws import (
     effective_friction,
     why_no_soil,
 )
-from lithobrake.pipeline.first_bounces.bounces_to_rest import COLUMNS as REST
-from lithobrake.pipeline.first_bounces.bounces_to_rest import Sites, arc_rows, rest_dependencies, sliding_friction
 from lithobrake.pipeline.flights import COLUMNS, read_table, write_table
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.run_table import DesignRuns
