@@ -13,13 +13,17 @@ from lithobrake.study import Study
 
 
 def stage_keys(study: Study) -> dict[str, str]:
-    """The key of each stage: what it reads of the study, its code, and the keys of the stages before it."""
+    """The key of each stage: what it reads of the study, its code, and the keys of the stages before it.
+
+    A stage that writes nothing of this study outdates nothing by itself.
+    """
     keys: dict[str, str] = {}
     for stage in STAGES:
         # The keys of the stages before stand for their files, so that none has to be read to know what an edit
         # outdates.
         before = [keys[name] for name in stage.after]
-        keys[stage.name] = json_hash([stage.name, stage.dependencies(study), source_hash(*stage.parts), before])
+        own = [stage.dependencies(study), source_hash(*stage.parts)] if stage.files(study) else []
+        keys[stage.name] = json_hash([stage.name, *own, before])
     return keys
 
 
