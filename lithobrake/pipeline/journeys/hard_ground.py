@@ -13,6 +13,7 @@ from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding
 from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.touchdown import Touchdown
+from lithobrake.pipeline.run_flights import run_flight_dependencies
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.study import Study
@@ -46,7 +47,7 @@ def hard_ground_dependencies(study: Study) -> Any:
     """What these journeys depend on; a table with other columns or law is made anew."""
     # The measured line is no key of the study: a better measurement has to outdate the journeys, too.
     law = bounce_laws.INTERCEPT, bounce_laws.SLOPE
-    own = study.hard_ground.model_dump(exclude_none=True)
+    own = study.hard_ground.model_dump(exclude_none=True) | {"flights": run_flight_dependencies(study)}
     return own | {"columns": tuple(FOLLOWED), "sliding_law": law, "duration": study.journey.duration}
 
 
