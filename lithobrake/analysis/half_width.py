@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import stats
 
 from lithobrake.analysis.confidence import LEVEL, answered_runs, answers, bed_components, numbered_beds, t_quantile
 from lithobrake.analysis.share_estimate import plain_interval, share_estimate
@@ -236,8 +237,6 @@ def _likelihood(known: Array, beds: Labels) -> Array:
 
     For normal scatter; the runs of beds count as equally many. Source: [Searle-1992], section 3.6.
     """
-    from scipy import stats
-
     values, bed = answered_runs(known, beds)
     if len(values) < 2 or np.ptp(values) == 0.0 or not 2 <= int(bed.max()) + 1 < len(values):
         return np.ones_like(CORRELATIONS)
