@@ -76,18 +76,13 @@ class Distribution(ABC):
         """Value that is exceeded with probability one half."""
         return float(self.ppf(0.5))
 
-    def sample(self, uniforms: ArrayLike) -> Array:
-        """Values from uniform random numbers in (0, 1), by inversion: same numbers, same values."""
-        return self.ppf(uniforms)
-
     def to_json(self) -> dict[str, Any]:
         """Kind and parameters as plain JSON values; an infinite limit is the text "inf", as JSON has no such number."""
         content: dict[str, Any] = {"kind": self.kind}
         for field in fields(self):  # type: ignore[arg-type]
             value = getattr(self, field.name)
-            content[field.name] = (
-                list(value) if isinstance(value, tuple) else value if np.isfinite(value) else str(value)
-            )
+            as_it_is = list(value) if isinstance(value, tuple) else value
+            content[field.name] = as_it_is if np.all(np.isfinite(value)) else str(value)
         return content
 
     def _clip(self, x: Array) -> Array:
