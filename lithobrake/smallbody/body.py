@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.acceleration import Entry, Orbit
-from lithobrake.smallbody.attraction import gradient
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.smallbody.shape import Shape, checked_points, delivered_directions
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
@@ -104,15 +103,6 @@ class Body:
         """Laplacian of the potential [1/s2]: -4 pi G density inside, half of it on a facet, 0 outside."""
         laplacian: NDArray[np.float64] = -self._field(points)[..., 4]
         return laplacian
-
-    def gradient(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Derivatives of the acceleration by position [1/s2], shape [..., 3, 3], at body-fixed points [m], [..., 3].
-
-        Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
-        """
-        p = checked_points(self.name, points)
-        sums = gradient(p.reshape(-1, 3), *self.shape.gravity[:2])
-        return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
 
     def effective_acceleration(
         self,
