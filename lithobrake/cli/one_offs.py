@@ -88,11 +88,11 @@ def serve(
         if sys.stderr.isatty():
             print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
         from lithobrake.pipeline import EvaluationProcess, ServedStudy
-        from lithobrake.serve import model_server
+        from lithobrake.serve import ClientServer
 
         served = ServedStudy(study, folder)
         models, evaluations = served.models(), EvaluationProcess(served, time_limit)
-        server = model_server(models, host, port, evaluations)
+        server = ClientServer(models, host, port, evaluations)
     with server, evaluations:
         names = ", ".join(model.name for model in models)
         reach = "" if server.is_local else ", which any machine of the network can reach"

@@ -15,7 +15,7 @@ import lithobrake
 from lithobrake.campaign import ModelServer
 from lithobrake.pipeline.commands.serving import FLIGHT, EvaluationProcess, ServedStudy, served_models
 from lithobrake.pipeline.runs.solver import LANDING
-from lithobrake.serve import ClientGoneError, ServedModel, model_server
+from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 umbridge = pytest.importorskip("umbridge")
@@ -33,7 +33,7 @@ def double(point: list[float], config: Mapping[str, Any]) -> list[float]:
 
 @pytest.fixture
 def address() -> Iterator[str]:
-    with model_server([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
+    with ClientServer([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
@@ -89,7 +89,7 @@ def test_an_address_is_taken_apart_or_refused() -> None:
 @pytest.fixture
 def study_address(tmp_path: Path) -> Iterator[str]:
     """A server of the ball on a plate."""
-    with model_server(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
+    with ClientServer(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
@@ -249,7 +249,7 @@ def synthetic(point: list[float], config: Mapping[str, Any]) -> list[float]:
 
 def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(tmp_path: Path) -> None:
     names = ("lander.restitution", "lander.friction", "impact.incidence_deg", "solver.inputs.plate_tilt_deg")
-    with model_server([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
+    with ClientServer([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         path = tmp_path / "served.toml"
         text = BALL.read_text().replace(

@@ -233,7 +233,7 @@ def _seed(config: Mapping[str, Any]) -> int:
 
 
 class EvaluationProcess:
-    """Evaluates the models of a study for `model_server`, one at a time, in a process that can be ended.
+    """Evaluates the models of a study for `ClientServer`, one at a time, in a process that can be ended.
 
     time_limit: of one evaluation [s]; the first in a process waits for compiled code to be loaded, too, and on a new
     machine for its compilation.
