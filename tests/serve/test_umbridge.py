@@ -176,7 +176,7 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
         with pytest.raises(ClientGoneError):
             evaluations(landing, point, {}, lambda: True)
         evaluations.time_limit = 1e-9
-        with pytest.raises(TimeoutError, match="took more than 1e-09 s and was ended"):
+        with pytest.raises(RuntimeError, match="it ran longer than its limit of 1e-09 s"):
             evaluations(landing, point, {}, lambda: False)
         evaluations.time_limit = 100.0
         assert evaluations(landing, point, {"seed": 3}, lambda: False) == landing.evaluate(point, {"seed": 3})
@@ -190,7 +190,7 @@ def test_an_evaluation_whose_process_dies_is_told_and_the_next_is_made(tmp_path:
     study = ServedStudy(tmp_path / "ball.toml", tmp_path / "out")
     flight, landing = study.models()
     with EvaluationProcess(study) as evaluations:
-        with pytest.raises(RuntimeError, match=r"the evaluation was lost: its process died \(signal 9\)"):
+        with pytest.raises(RuntimeError, match=r"the evaluation was lost \(its process died \(signal 9\)\)"):
             evaluations(landing, [0.6, 0.2, 35.0, 0.0], {}, lambda: False)
         upward = [0.02, 0.0, 0.02]
         assert evaluations(flight, upward, {}, lambda: False) == flight.evaluate(upward, {})
