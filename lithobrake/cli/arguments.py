@@ -39,11 +39,9 @@ StudyPath = Annotated[
 OutPath = Annotated[
     str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
 ]
-ExecutorName = Annotated[
-    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
-]
 Scheduler = Annotated[
-    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+    str | None,
+    typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."),
 ]
 Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
 Workers = Annotated[
@@ -207,15 +205,6 @@ def refuse_written(path: Path, force: bool) -> None:
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
-
-
-def scheduler_of(executor: str, scheduler: str | None) -> str | None:
-    """The address of the Dask scheduler, or None for runs made here."""
-    if executor not in ("local", "dask"):
-        leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
-    if (executor == "dask") != (scheduler is not None):
-        leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
-    return scheduler
 
 
 def run_of(text: str) -> str | int:

@@ -118,13 +118,12 @@ def sites(
     landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per site.")] = 200,
     out: arguments.OutPath = None,
     workers: arguments.Workers = None,
-    executor: arguments.ExecutorName = "local",
     scheduler: arguments.Scheduler = None,
     force: arguments.Force = False,
     json: arguments.Json = False,
 ) -> None:
     """Map one delivery over a body: fraction at rest, time, distance, slope and light by site. Writes DIR/sites."""
-    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
+    folder = arguments.study_folder(study, out)
     with arguments.one_sentence():
         from lithobrake.study import StudySource
 
@@ -141,7 +140,7 @@ def sites(
         refuse_existing(written, "move it away, or replace it with --force")
         with study_progress() as shown:
             found = map_sites(
-                source, folder, cell_count=cells, lander_count=landers, worker_count=workers, scheduler=address,
+                source, folder, cell_count=cells, lander_count=landers, worker_count=workers, scheduler=scheduler,
                 shown=shown,
             )  # fmt: skip
         paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]

@@ -179,11 +179,10 @@ def rare(
     landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings per level.")] = 500,
     out: arguments.OutPath = None,
     workers: arguments.Workers = None,
-    executor: arguments.ExecutorName = "local",
     scheduler: arguments.Scheduler = None,
 ) -> None:
     """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
-    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
+    folder = arguments.study_folder(study, out)
     with arguments.one_sentence():
         from lithobrake.study import StudySource
 
@@ -193,7 +192,7 @@ def rare(
 
         with study_progress() as shown:
             found = rare_failure(
-                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
+                source, folder, name, landing_count=landings, worker_count=workers, scheduler=scheduler, shown=shown
             )
     arguments.tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 

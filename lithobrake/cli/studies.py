@@ -107,12 +107,11 @@ def study_command(name: str, what: str, group: str, until: str | None = None) ->
         study: arguments.StudyPath,
         out: arguments.OutPath = None,
         workers: arguments.Workers = None,
-        executor: arguments.ExecutorName = "local",
         scheduler: arguments.Scheduler = None,
         logs: arguments.Logs = False,
     ) -> None:
         folder = arguments.study_folder(study, out)
-        _make(study, folder, last, workers, arguments.scheduler_of(executor, scheduler), logs)
+        _make(study, folder, last, workers, scheduler, logs)
         arguments.tell(arguments.study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
     epilog = f"Example: lithobrake {name} study.toml --out results --workers 4"

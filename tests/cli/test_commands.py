@@ -247,13 +247,12 @@ def test_a_folder_without_results_says_how_to_make_them(command: str, tmp_path: 
     assert "lithobrake run STUDY.toml" in refused([command, str(tmp_path)])
 
 
-@pytest.mark.parametrize(("options", "said"), [
-    (["--executor", "dask"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
-    (["--scheduler", "tcp://127.0.0.1:9"], "--executor dask and --scheduler tcp://HOST:PORT go together"),
-    (["--executor", "mpi"], "--executor is 'mpi'; allowed: local, dask"),
-])  # fmt: skip
-def test_an_executor_that_does_not_exist_is_refused(options: list[str], said: str) -> None:
-    assert said in refused(["run", "study.toml", *options])
+def test_an_address_that_no_scheduler_has_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    RUNNER.invoke(app, ["new", "study", "--full"])
+    for address in ("", "mpi"):
+        said = refused(["run", "study.toml", "--scheduler", address])
+        assert f"the address of the Dask scheduler is {address!r}; allowed: tcp://" in said
 
 
 @pytest.mark.parametrize("command", ["status", "runs"])
