@@ -5,7 +5,7 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TextIO
@@ -71,6 +71,12 @@ def one_sentence() -> Iterator[None]:
     except KeyboardInterrupt:
         command = command_line(*sys.argv[1:])
         leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
+
+
+def command(panel: str, example: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Add a function to the application as the command of its name, in a group of the help and with an example."""
+    added = app.command(rich_help_panel=panel, epilog=f"Example: lithobrake {example}")
+    return lambda function: added(one_sentence()(function))
 
 
 def _has_current_folder() -> bool:
@@ -156,10 +162,9 @@ def shown_progress(title: str) -> Iterator[Progress]:
 
 
 def study_headline(folder: Path) -> list[str]:
-    with one_sentence():
-        from lithobrake.results import open_study
+    from lithobrake.results import open_study
 
-        headline = open_study(folder).headline
+    headline = open_study(folder).headline
     page = (folder / "report" / "index.html").resolve()
     return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
@@ -186,17 +191,16 @@ def study_folder(study: Path, out: str | None) -> Path:
     # The nearest path that exists decides: below a file no folder can be made.
     there = next((path for path in (folder, *folder.parents) if path.exists()), None)
     if there is not None and not there.is_dir():
-        leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
+        raise ValueError(f"{folder} cannot be written ({there} is a file); choose another folder with --out")
     return folder
 
 
 def given_folder(out: str) -> Path:
     """The folder that --out names; an empty one is refused."""
     if not out.strip():
-        leave(
+        raise ValueError(
             "--out is empty (an unset variable?) and would mean the current folder; "
-            "name a folder, or omit --out to use runs/<study name>",
-            BAD_INPUT,
+            "name a folder, or omit --out to use runs/<study name>"
         )
     return Path(out)
 

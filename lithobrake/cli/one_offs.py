@@ -19,10 +19,7 @@ if TYPE_CHECKING:
 INCOMPLETE = 1
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.RUN,
-    epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5",
-)
+@arguments.command(arguments.RUN, "land study.toml --set grain.friction=0.4 --out landing.h5")
 def land(
     study: arguments.StudyPath,
     change: Annotated[
@@ -45,21 +42,18 @@ def land(
 
     The study's folder is neither read nor written.
     """
-    with arguments.one_sentence():
-        from lithobrake.study import read_study
+    from lithobrake.study import read_study
 
-        checked = read_study(study)
-        from lithobrake.pipeline import landing_inputs
+    checked = read_study(study)
+    from lithobrake.pipeline import landing_inputs
 
-        values = landing_inputs(checked, change or (), number)
-        found = _landed if checked.journey is None else _followed
-        told, lines = found(checked, values, out, show, force, json)
+    values = landing_inputs(checked, change or (), number)
+    found = _landed if checked.journey is None else _followed
+    told, lines = found(checked, values, out, show, force, json)
     arguments.tell_result(json, told, lines)
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242"
-)
+@arguments.command(arguments.EXPORT, "serve study.toml --out results --port 4242")
 def serve(
     study: arguments.StudyPath,
     out: arguments.OutPath = None,
@@ -79,20 +73,19 @@ def serve(
 ) -> None:
     """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
     folder = arguments.study_folder(study, out)
-    with arguments.one_sentence():
-        # Refused before the imports below, which take seconds.
-        from lithobrake.serve.server import refuse_empty_host
+    # Refused before the imports below, which take seconds.
+    from lithobrake.serve.server import refuse_empty_host
 
-        refuse_empty_host(host)
-        # What follows brings NumPy and the compiler, and for some studies the shape of the body.
-        if sys.stderr.isatty():
-            print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
-        from lithobrake.pipeline import EvaluationProcess, ServedStudy
-        from lithobrake.serve import ClientServer
+    refuse_empty_host(host)
+    # What follows brings NumPy and the compiler, and for some studies the shape of the body.
+    if sys.stderr.isatty():
+        print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
+    from lithobrake.pipeline import EvaluationProcess, ServedStudy
+    from lithobrake.serve import ClientServer
 
-        served = ServedStudy(study, folder)
-        models, evaluations = served.models(), EvaluationProcess(served, time_limit)
-        server = ClientServer(models, host, port, evaluations)
+    served = ServedStudy(study, folder)
+    models, evaluations = served.models(), EvaluationProcess(served, time_limit)
+    server = ClientServer(models, host, port, evaluations)
     with server, evaluations:
         names = ", ".join(model.name for model in models)
         reach = "" if server.is_local else ", which any machine of the network can reach"
@@ -102,16 +95,15 @@ def serve(
             server.serve_forever()
 
 
-@arguments.app.command(rich_help_panel=arguments.START, epilog="Example: lithobrake doctor --json > doctor.json")
+@arguments.command(arguments.START, "doctor --json > doctor.json")
 def doctor(
     quick: Annotated[bool, typer.Option("--quick", help="Skip the measurement of speed.")] = False,
     json: arguments.Json = False,
 ) -> None:
     """Report what is installed, what is missing and how to get it, and how fast this machine is."""
-    with arguments.one_sentence():
-        from lithobrake.doctor import examine
+    from lithobrake.doctor import examine
 
-        found = examine(quick)
+    found = examine(quick)
     arguments.tell_result(json, found.to_json(), found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
@@ -168,9 +160,7 @@ def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
         show(bodies)
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500"
-)
+@arguments.command(arguments.EXPERT, "rare study.toml fast --landings 500")
 def rare(
     study: arguments.StudyPath,
     name: Annotated[
@@ -183,23 +173,20 @@ def rare(
 ) -> None:
     """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
     folder = arguments.study_folder(study, out)
-    with arguments.one_sentence():
-        from lithobrake.study import StudySource
+    from lithobrake.study import StudySource
 
-        source = StudySource.read(study)
-        from lithobrake.pipeline import rare_failure
-        from lithobrake.progress import study_progress
+    source = StudySource.read(study)
+    from lithobrake.pipeline import rare_failure
+    from lithobrake.progress import study_progress
 
-        with study_progress() as shown:
-            found = rare_failure(
-                source, folder, name, landing_count=landings, worker_count=workers, scheduler=scheduler, shown=shown
-            )
+    with study_progress() as shown:
+        found = rare_failure(
+            source, folder, name, landing_count=landings, worker_count=workers, scheduler=scheduler, shown=shown
+        )
     arguments.tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv"
-)
+@arguments.command(arguments.EXPERT, "infer runs/study --bounce bounces.csv")
 def infer(
     folder: arguments.StudyDirectory,
     bounce: Annotated[
@@ -210,16 +197,15 @@ def infer(
     ] = None,
 ) -> None:
     """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
-    with arguments.one_sentence():
-        from lithobrake.pipeline import InferredStudy, infer_study
+    from lithobrake.pipeline import InferredStudy, infer_study
 
-        study = InferredStudy.open(folder)
-        with arguments.shown_progress("inference") as progress:
-            progress(0.0, "identifiability")
-            plan = study.plan().lines()
-            if bounce is not None:
-                progress(0.5, "posterior")
-            found = None if bounce is None else infer_study(folder, bounce)
+    study = InferredStudy.open(folder)
+    with arguments.shown_progress("inference") as progress:
+        progress(0.0, "identifiability")
+        plan = study.plan().lines()
+        if bounce is not None:
+            progress(0.5, "posterior")
+        found = None if bounce is None else infer_study(folder, bounce)
     arguments.tell(plan)
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"
