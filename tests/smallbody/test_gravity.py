@@ -113,6 +113,35 @@ def test_acceleration_is_the_gradient_of_the_potential(shapes):
     assert np.sort(error)[-5] < 1e-8
 
 
+def asked(body: Body, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Potential and acceleration of the polyhedral-gravity library of ESA (GPL-3), never imported by the package."""
+    oracle = pytest.importorskip("polyhedral_gravity", reason="polyhedral-gravity is not installed (extra: oracle)")
+    polyhedron = oracle.Polyhedron(polyhedral_source=(body.shape.vertices, body.shape.faces), density=body.density,
+        normal_orientation=oracle.NormalOrientation.OUTWARDS,
+        integrity_check=oracle.PolyhedronIntegrity.DISABLE)  # fmt: skip
+    answers = oracle.evaluate(polyhedron, points, parallel=False)
+    potential, acceleration = (np.array([answer[i] for answer in answers]) for i in range(2))
+    return potential, acceleration
+
+
+@pytest.mark.parametrize("name", ["cube", "didymos", "didymos_radar2020_1996.obj"])
+def test_gravity_is_that_of_another_library_near_and_inside(name: str, request: pytest.FixtureRequest) -> None:
+    if name == "cube":
+        body = Body(Shape(cube_vertices(100.0) + 20.0, CUBE_FACES), mass=2e9, spin_period=1e4)
+    elif name == "didymos":
+        body = didymos(partner=False)
+    else:
+        shapes = request.getfixturevalue("shapes")
+        body = Body(Shape.read(shapes / name), mass=5.32e11, spin_period=8136.0)
+    random = np.random.default_rng(0)
+    points = random.normal(size=(150, 3))
+    points *= (body.shape.radius * random.uniform(0.3, 3.0, 150) / np.linalg.norm(points, axis=1))[:, None]
+    potential, acceleration = asked(body, points)
+    assert body.potential(points) == pytest.approx(potential, rel=1e-10)
+    off = np.linalg.norm(body.acceleration(points) - acceleration, axis=1)
+    assert (off < 1e-10 * np.linalg.norm(acceleration, axis=1)).all()
+
+
 def test_everything_is_finite_on_faces_edges_and_corners(cube, shapes):
     for shape in (cube, Shape.read(shapes / "didymos_radar2020_1996.obj")):
         body = Body(shape, mass=1e11, spin_period=math.inf)
