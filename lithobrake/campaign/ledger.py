@@ -163,12 +163,11 @@ class Ledger:
 
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key; a warning names those whose row was changed since."""
-        wanted, columns = set(keys), ", ".join((*COLUMNS, CHECKSUM))
+        query = f"SELECT {', '.join((*COLUMNS, CHECKSUM))} FROM runs WHERE key = ? AND status IN (?, ?)"
         with reading_ledger(self.path):
-            # SQLite bounds the number of values of a query, and a design may have a million keys, so they are matched
-            # here.
-            rows = self._database.execute(f"SELECT {columns} FROM runs WHERE status IN (?, ?)", ENDED)
-            return {record.key: record for record in intact_records(self.path, (r for r in rows if r[0] in wanted))}
+            # SQLite bounds the number of values of a query, and a design may have a million keys.
+            rows = (row for key in sorted(set(keys)) for row in self._database.execute(query, (key, *ENDED)))
+            return {record.key: record for record in intact_records(self.path, rows)}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
