@@ -142,16 +142,6 @@ class Body:
         slope: NDArray[np.float64] = np.arccos(np.clip(along, -1.0, 1.0))
         return slope
 
-    def jacobi(self, position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
-        """Jacobi constant [m2/s2] of body-fixed states: half the squared speeds' difference minus the potential.
-
-        It is `v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential`, kept in a flight.
-        """
-        p, v = checked_points(self.name, position), checked_points(self.name, velocity)
-        turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
-        constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
-        return constant
-
     def local_frame(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike, heading_deg: ArrayLike = 0.0
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
