@@ -12,7 +12,6 @@ from lithobrake.cli.studies import study_command
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline import OneLanding
     from lithobrake.study import Study
 
 # Exit code of `doctor` where a library is missing without which nothing works.
@@ -113,7 +112,7 @@ def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     from lithobrake.pipeline import land_one
-    from lithobrake.view import refuse_other_kinds
+    from lithobrake.view import refuse_other_kinds, show, write_motion
 
     if out is not None:
         # Refused before the landing, which may need a bed to be poured first.
@@ -122,7 +121,13 @@ def _landed(
         arguments.refuse_written(out, force)
     with arguments.shown_progress("landing") as progress:
         found = land_one(study, values, progress)
-    _keep_motion(found, out, shown)
+    # The file of a landing needs no library of the extra [view].
+    if out is not None and out.suffix == ".h5":
+        found.save(out)
+    elif out is not None:
+        write_motion(found.bodies(), out)
+    if shown:
+        show(found.bodies())
     return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
 
 
@@ -130,11 +135,24 @@ def _followed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
-    from lithobrake.cli.results import follow, refuse_journey_file, show_touchdowns
+    from lithobrake.cli.results import refuse_journey_file, show_touchdowns
+    from lithobrake.pipeline import follow_one
+    from lithobrake.view.motion_files import touchdown_paths, write_journey
+
+    def tell(line: str) -> None:
+        arguments.tell([] if json else [line])
 
     if out is not None:
         refuse_journey_file(out, force, (".h5",))
-    found, paths = follow(study, values, out, is_told=not json)
+    paths: list[Path] = []
+    with arguments.shown_progress("journey") as progress:
+        found = follow_one(study, values, tell, progress)
+        tell(found.track.end_words)
+        if out is not None and out.suffix == ".h5":
+            paths = touchdown_paths(out, len(found.landings))
+            found.save(paths)
+        elif out is not None:
+            paths = write_journey(found.motion(), out, progress=progress)
     if shown:
         show_touchdowns(found.motion())
     return found.to_json(), _motion_lines(paths)
@@ -142,22 +160,6 @@ def _followed(
 
 def _motion_lines(paths: list[Path]) -> list[str]:
     return [f"Motion: {path.resolve()}" for path in paths]
-
-
-def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
-    # The file of a landing needs no library of the extra [view].
-    if out is not None and out.suffix == ".h5":
-        landed.save(out)
-        out = None
-    if out is None and not shown:
-        return
-    from lithobrake.view import show, write_motion
-
-    bodies = landed.bodies()
-    if out is not None:
-        write_motion(bodies, out)
-    if shown:
-        show(bodies)
 
 
 @arguments.command(arguments.EXPERT, "rare study.toml fast --landings 500")

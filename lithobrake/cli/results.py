@@ -13,11 +13,9 @@ from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.file_names import STUDY_FILE
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline import OneJourney
     from lithobrake.results import JourneyMotion
     from lithobrake.results.motions import MovingBodies
     from lithobrake.results.study_results import StudyResults
-    from lithobrake.study import Study
 
 JourneyNumber = Annotated[
     int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
@@ -42,28 +40,6 @@ def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> N
     refuse_other_kinds(out, (*JOURNEY_KINDS, *also))
     for path in written_over(out):
         arguments.refuse_written(path, force)
-
-
-def follow(
-    study: "Study", values: dict[str, float], out: Path | None, is_told: bool
-) -> "tuple[OneJourney, list[Path]]":
-    """Follow a lander to its end and keep its motion; is_told: whether lines are printed as it goes."""
-    from lithobrake.pipeline import follow_one
-    from lithobrake.view.motion_files import touchdown_paths, write_journey
-
-    with arguments.shown_progress("journey") as progress:
-        found = follow_one(
-            study, values, (lambda line: arguments.tell([line])) if is_told else (lambda line: None), progress
-        )
-        if is_told:
-            arguments.tell([found.track.end_words])
-        if out is None:
-            return found, []
-        if out.suffix == ".h5":
-            paths = touchdown_paths(out, len(found.landings))
-            found.save(paths)
-            return found, paths
-        return found, write_journey(found.motion(), out, progress=progress)
 
 
 def show_touchdowns(motion: "JourneyMotion") -> None:
