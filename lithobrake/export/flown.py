@@ -202,7 +202,7 @@ class Flown:
 
 
 def has_journeys(results: StudyResults) -> bool:
-    """Whether landers were followed beyond the first touchdown, so that their own flights are passed on, not samples'."""
+    """Whether landers were followed beyond the first touchdown, so that their flights are passed on."""
     return results.results.journeys > 0 and results.study["journey"]["touchdowns"] != 1
 
 
