@@ -14,16 +14,15 @@ from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.descents import RELEASE, Descents
+from lithobrake.pipeline.design.random_inputs import given_attitude
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
 from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain, usual_reach
-from lithobrake.pipeline.design.random_inputs import given_attitude
-from lithobrake.vocabulary.quantities import PLACE, TIME_LEFT
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION
+from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION, PLACE, TIME_LEFT
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import design_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.flights import write_table
@@ -13,6 +14,7 @@ from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding
 from lithobrake.pipeline.journeys.landers import Landers, followed
 from lithobrake.pipeline.journeys.touchdown import Touchdown
+from lithobrake.pipeline.run_flights import run_flight_dependencies
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
 from lithobrake.study import Study
@@ -47,7 +49,13 @@ def hard_ground_dependencies(study: Study) -> Any:
     # The measured line is no key of the study: a better measurement has to outdate the journeys, too.
     law = bounce_laws.INTERCEPT, bounce_laws.SLOPE
     own = study.hard_ground.model_dump(exclude_none=True)
-    return own | {"columns": tuple(FOLLOWED), "sliding_law": law, "duration": study.journey.duration}
+    return own | {
+        "columns": tuple(FOLLOWED),
+        "sliding_law": law,
+        "duration": study.journey.duration,
+        "landers": [design_dependencies(study), study.seed, study.design.run_count],
+        "flights": run_flight_dependencies(study),
+    }
 
 
 def hard_surface(study: Study) -> "HardSurface":
