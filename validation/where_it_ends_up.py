@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from hard_ground import HardGround
-from lithobrake.report.pages.journey_page import journey_content
+from lithobrake.report.pages.study_page import study_content
 
 import lithobrake
 from lithobrake.report.figures.style import figure_style
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.page_data import JourneyPage, page_results
+from lithobrake.results.page_data import page_results
 from lithobrake.results.study_files import json_values
 from lithobrake.vocabulary.estimate import Estimate
 
@@ -80,9 +80,8 @@ def row(found: dict[str, Any]) -> str:
 def draw(study: StudyResults) -> None:
     """Write the map of the places of rest as the report has it."""
     page = page_results(study)
-    assert isinstance(page, JourneyPage)
     with figure_style():
-        figure = next(plot.draw() for plot in journey_content(page).plots if plot.name == "ends")
+        figure = next(plot.draw() for plot in study_content(page).plots if plot.name == "ends")
         assert figure is not None
         figure.savefig(FIGURE, dpi=120)
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from lithobrake.files.atomic import write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot
-from lithobrake.report.figures.body_figures import agreement_figure, sites_figure
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
+from lithobrake.report.figures.site_figures import agreement_figure, sites_figure
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.study_page import study_content

@@ -8,7 +8,7 @@ from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.map_frames import track_map
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.live.explorer import deflated, script_data
-from lithobrake.report.live.views import AWAY, SCRIPTS, landing_arrays, landing_words
+from lithobrake.report.live.landing_view import AWAY, SCRIPTS, landing_arrays, landing_words
 from lithobrake.report.pages.html import own_file, page_head
 from lithobrake.results import JourneyMotion, JourneyTrack, MovingBodies, TouchdownFacts
 

@@ -20,8 +20,9 @@ from lithobrake.report.figures.place_map import (
 )
 from lithobrake.report.figures.run_figures import variance_figure
 from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.live.body_view import body_views
 from lithobrake.report.live.explorer import touchdown_sections
-from lithobrake.report.live.views import body_views, landing_views
+from lithobrake.report.live.landing_view import landing_views
 from lithobrake.report.pages.first_touchdown import (
     aim_point,
     first_touchdown,

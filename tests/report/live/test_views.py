@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lithobrake.report.figures.hulls import Scene
-from lithobrake.report.live.views import LARGEST, body_views, landing_arrays, landing_views
+from lithobrake.report.live.body_view import body_views
+from lithobrake.report.live.landing_view import LARGEST, landing_arrays, landing_views
 from lithobrake.results import MovingBodies
 from lithobrake.results.page_data import PageData
 from lithobrake.vocabulary.outcomes import FATE_COLOURS

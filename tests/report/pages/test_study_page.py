@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lithobrake.report.content import Content, PageTable
-from lithobrake.report.live.views import body_views
+from lithobrake.report.live.body_view import body_views
 from lithobrake.report.pages.study_page import study_content
 from lithobrake.results import Table
 from lithobrake.results.page_data import PageData
