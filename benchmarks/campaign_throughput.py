@@ -23,8 +23,9 @@ from harness import SCENARIOS, command_line, read_document
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.study import StudySource, read_study
-from lithobrake.study.touchdown_model import TouchdownModel, draw, engine_hash, medians
+from lithobrake.touchdown.touchdown_model import TouchdownModel, engine_hash
 
 STUDY = SCENARIOS / "first_bounce.toml"
 
@@ -35,7 +36,7 @@ class EqualLandings:
     def __init__(self, folder: Path) -> None:
         study = read_study(STUDY)
         self.model = TouchdownModel(study, (folder / "beds" / "bed_0.h5",), engine_hash())
-        self.values = draw(study, medians(study), study.seed, DrawnDesign(study).region)
+        self.values = draw(study, study.touchdown_medians(), study.seed, DrawnDesign(study).region)
 
     def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
         """Land."""

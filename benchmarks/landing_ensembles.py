@@ -22,11 +22,13 @@ from scipy.stats import ks_2samp
 
 from lithobrake.chaos import sobol_sequence
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, check_tables
-from lithobrake.study.touchdown_model import draw, lander, landing, medians
 from lithobrake.touchdown import Bed, Lander, Landing, land, pour_bed
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.touchdown_model import landing
 
 COMPARED = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "peak_acceleration")
 
@@ -54,7 +56,7 @@ def beds_of(study: Study, folder: Path) -> list[Bed]:
 def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
     inputs = DrawnDesign(study).inputs
     for number, row in enumerate(sobol_sequence(inputs, count, seed=3).tolist()):
-        values = draw(study, medians(study) | dict(zip(inputs, row, strict=True)), 1000 + number)
+        values = draw(study, study.touchdown_medians() | dict(zip(inputs, row, strict=True)), 1000 + number)
         yield round(values["bed"]), lander(study, values), landing(study, values)
 
 

@@ -20,9 +20,10 @@ import numpy as np
 from harness import Row, command_line, origin, write_document
 
 from lithobrake.study import Study, check_tables, load_tables
-from lithobrake.study.touchdown_model import lander, landing, stored_bed
 from lithobrake.touchdown import simulation
+from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.outcome_judge import REST_WAY, OutcomeJudge
+from lithobrake.touchdown.touchdown_model import landing, stored_bed
 
 PHASES = ("approach", "hop", "contact", "rest")
 

@@ -24,7 +24,7 @@ from lithobrake.pipeline.expansion.expansions import points
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.study import Study, read_study
-from lithobrake.study.touchdown_model import touchdown_version
+from lithobrake.touchdown.touchdown_model import touchdown_version
 from lithobrake.vocabulary.quantities import DRAWN_DESIGNS, PAPER_DESIGNS
 
 ROUNDING = 1e-12

@@ -3,7 +3,6 @@
 import itertools
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,18 +11,15 @@ from scipy.special import logsumexp, ndtr, ndtri
 from lithobrake.analysis import posterior
 from lithobrake.analysis.confidence import LEVEL
 from lithobrake.chaos.basis import checked_points
-from lithobrake.chaos.design import sample_inputs
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.density import BedEffect, observed_density
+from lithobrake.emulator.model import Emulator
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 from lithobrake.vocabulary.number_words import at_level
-
-if TYPE_CHECKING:
-    from lithobrake.chaos import Distribution
-    from lithobrake.emulator import Emulator
 
 REFIT_COUNT = 30
 POINT_COUNT = 1 << 12
@@ -63,7 +59,7 @@ class Posterior:
     likelihood over the prior, by points that were drawn from it and near it; remedy: where too few carry weight.
     """
 
-    inputs: dict[str, "Distribution"]
+    inputs: dict[str, Distribution]
     points: Array
     weights: Array
     effective_count: float
@@ -78,8 +74,7 @@ class Posterior:
     def sample(self, count: int, seed: int = 0) -> Array:
         """Draw points with replacement, [count, input_count]."""
         size = sample_count("count", count, len(self.inputs), at_least=0)
-        drawn: Array = self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
-        return drawn
+        return self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
 
     def learnt(self) -> dict[str, LearntInput]:
         """What was learnt of each input."""
@@ -128,13 +123,13 @@ class Posterior:
         return max(divergence - 0.5 * (STEPS - 1) / self.effective_count, 0.0)
 
 
-def _germ_deviation(law: "Distribution") -> float:
+def _germ_deviation(law: Distribution) -> float:
     """Standard deviation of a law on its own scale, in which a decade counts as a decade."""
     return float(law.germ(law.ppf((np.arange(1000) + 0.5) / 1000.0)).std())
 
 
 def infer(
-    model: "Emulator",
+    model: Emulator,
     observations: Sequence[posterior.Observation],
     *,
     own: Collection[str] = (),
@@ -166,7 +161,7 @@ def infer(
     return found if found.is_reliable else _walked(found, logarithm, seed)
 
 
-def _drawn(laws: "Mapping[str, Distribution]", logarithm: Likelihood, point_count: int, seed: int) -> Posterior:
+def _drawn(laws: Mapping[str, Distribution], logarithm: Likelihood, point_count: int, seed: int) -> Posterior:
     """The posterior by weighted points, of the prior and then near those that carry weight.
 
     Raises ValueError where none does.
@@ -212,13 +207,13 @@ def _walked(found: Posterior, logarithm: Likelihood, seed: int) -> Posterior:
     return replace(found, points=points, weights=np.full(len(points), 1.0 / len(points)), effective_count=effective)
 
 
-def _physical(laws: "Mapping[str, Distribution]", scores: Array) -> Array:
+def _physical(laws: Mapping[str, Distribution], scores: Array) -> Array:
     """Points [count, input_count] in physical units from normal scores."""
     shares = np.clip(ndtr(scores), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)
     return np.column_stack([law.ppf(share) for law, share in zip(laws.values(), shares.T, strict=True)])
 
 
-def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: Array) -> Posterior:
+def posterior_of(laws: Mapping[str, Distribution], points: Array, logarithms: Array) -> Posterior:
     """The posterior of points [point_count, input_count] that carry these logarithms of weights [point_count]."""
     weights = np.exp(logarithms - logsumexp(logarithms))
     evidence = float(logsumexp(logarithms)) - float(np.log(len(points)))
@@ -227,9 +222,9 @@ def posterior_of(laws: "Mapping[str, Distribution]", points: Array, logarithms: 
 
 @one_thread()
 def _likelihood(
-    models: "Sequence[Emulator]",
+    models: Sequence[Emulator],
     observations: Sequence[posterior.Observation],
-    shared: Mapping[str, "Distribution"],
+    shared: Mapping[str, Distribution],
     points: Array,
     bounds: Bounds | None,
     seed: int,
@@ -238,10 +233,8 @@ def _likelihood(
     inputs, total = models[0].runs.inputs, np.zeros((len(models), len(points)))
     at = []
     for number, one in enumerate(observations):
-        drawn = {name: law for name, law in inputs.items() if name not in shared and name not in one.known}
-        anew = dict(zip(drawn, sample_inputs(drawn, len(points), seed * 1000 + number).T, strict=True))
-        given = dict(zip(shared, points.T, strict=True)) | {n: np.full(len(points), v) for n, v in one.known.items()}
-        x = checked_points(inputs, np.column_stack([(given | anew)[name] for name in inputs]))
+        given = {**dict(zip(shared, points.T, strict=True)), **one.known}
+        x = checked_points(inputs, posterior.completed_points(inputs, given, len(points), seed * 1000 + number))
         at.append((models[0].terms.matrix(x), bounds(x) if bounds else (None, None)))
     for bed in posterior.by_bed(observations):
         for place, refit in enumerate(models):
@@ -250,11 +243,10 @@ def _likelihood(
                 found, effect = observed_density(refit, one.outputs, terms, one.errors, one.outcome, ends, effect)
                 total[place] += found
     # Each refit is one emulator of all bounces, so the mean is over products, not of means.
-    averaged: Array = logsumexp(total, axis=0) - np.log(len(models))
-    return averaged
+    return logsumexp(total, axis=0) - np.log(len(models))
 
 
-def _checked(model: "Emulator", observations: Sequence[posterior.Observation], own: Collection[str]) -> list[str]:
+def _checked(model: Emulator, observations: Sequence[posterior.Observation], own: Collection[str]) -> list[str]:
     """Names of the inputs that all bounces share. Raises ValueError for names and observations that cannot be."""
     inputs = model.runs.inputs
     if not observations or not all(one.outputs or one.outcome for one in observations):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import special
 
 from lithobrake.analysis.confidence import LEVEL, Bounds, answers, numbered_beds, share_interval, t_quantile
 from lithobrake.analysis.outcome_model import upper_limit
@@ -136,8 +137,6 @@ def _optimism(values: Array, bed_count: int) -> float:
 
 def _not_worse(values: Array, best: int, allowed: NDArray[np.intp], bed_count: int) -> tuple[int, ...]:
     """Places of the best and of those whose difference to it is within its error, all together (Bonferroni)."""
-    from scipy import special
-
     others = [int(one) for one in allowed if one != best]
     reach = float(special.stdtrit(bed_count - 1, 1.0 - (1.0 - LEVEL) / max(len(others), 1)))
     differences = {one: values[best] - values[one] for one in others}
@@ -162,8 +161,7 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
     deviations = means - means.mean()
     total = float(means.var(ddof=1))
     scale = math.sqrt(_error_variance(draws, bed_count) / total) if total > 0.0 else 0.0
-    scaled: NDArray[np.float64] = means.mean() + scale * deviations
-    return scaled
+    return means.mean() + scale * deviations
 
 
 @dataclass(frozen=True)

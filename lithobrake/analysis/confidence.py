@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import optimize, special
 
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import LEVEL as LEVEL
@@ -26,8 +27,6 @@ LEAST_SPREAD = 1e-6
 
 def t_quantile(freedom: float) -> float:
     """Quantile of Student's t that a two-sided interval of the level reaches to."""
-    from scipy import special
-
     return float(special.stdtrit(freedom, 0.5 + 0.5 * LEVEL))
 
 
@@ -39,7 +38,6 @@ def partial_quantile(width: float, error: float, freedom: float) -> float:
     the number then can be missed at one end only.
     Source: [Imbens-2004], Eq 6 and 7, valid for ends that cannot cross by [Stoye-2009], Lemma 3; Student's t for beds.
     """
-    from scipy import optimize, special
 
     def excess(quantile: float) -> float:
         return float(special.stdtr(freedom, quantile + width / error) - special.stdtr(freedom, -quantile)) - LEVEL
@@ -53,8 +51,6 @@ def partial_quantile(width: float, error: float, freedom: float) -> float:
 
 def normal_quantile() -> float:
     """Quantile of the standard normal distribution that a two-sided interval of the level reaches to."""
-    from scipy import special
-
     return float(special.ndtri(0.5 + 0.5 * LEVEL))
 
 
@@ -79,8 +75,6 @@ def share_spread(share: float, deviation: float) -> tuple[float, float]:
     """
     if NEAR_CERTAIN <= share <= 1.0 - NEAR_CERTAIN or share in (0.0, 1.0) or deviation == 0.0:
         return share_interval(share, normal_quantile() * deviation)
-    from scipy import special
-
     # No share has a larger variance than one that is 0 or 1.
     size = share * (1.0 - share) / deviation**2 - 1.0
     if size <= 0.0:
@@ -164,8 +158,6 @@ class BedComponents:
         At least 0, or, where it is not cut, above that with which beds would all have one sum. Exact for normal
         scatter, whatever the counts. Source: [Wald-1947]; [Thomas-1978] (a close approximation to it).
         """
-        from scipy import optimize, special
-
         count = len(self.squares)
         quantile = float(special.fdtri(count, self.within_freedom, 1.0 - probability))
         if self.within <= 0.0:

@@ -1,18 +1,16 @@
 """What the inputs alone explain of a run, and what auxiliary runs say of chaos and soil."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import special
 
 from lithobrake.analysis.confidence import LEVEL, answers
 from lithobrake.chaos.basis import basis_matrix, multi_index_set, points_of
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
-
-if TYPE_CHECKING:
-    from lithobrake.chaos import Distribution
 
 # Beds are dealt to so many folds; more folds cost time and change nothing that was measured.
 FOLD_COUNT = 10
@@ -26,7 +24,7 @@ PENALTIES = np.logspace(-3.0, 2.0, 22)
 SKEWNESS_FACTOR = 1.5
 
 
-def regression_terms(inputs: Mapping[str, "Distribution"], x: ArrayLike) -> tuple[Array, Labels]:
+def regression_terms(inputs: Mapping[str, Distribution], x: ArrayLike) -> tuple[Array, Labels]:
     """Terms of first and second degree at x [run_count, input_count], and the multi-index of each.
 
     Result: terms [run_count, term_count], indices [term_count, input_count]. Each term has mean 0 and variance 1 over
@@ -104,8 +102,6 @@ def chaos_variance(differences: ArrayLike) -> Estimate:
     NaN: not known. Raises ValueError where no difference is known, or one is infinite.
     Source: [Searle-1992], section 3.5 (chi-square interval).
     """
-    from scipy import special
-
     squares = _squares(differences)
     total, count = 0.5 * float(squares.sum()), len(squares)
     lower, upper = (total / float(special.chdtri(count, 0.5 - side * LEVEL)) for side in (0.5, -0.5))
@@ -122,8 +118,6 @@ def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> Estimate:
     than two differences or runs are known, or all runs are alike.
     Source: [Jansen-1999]; [Searle-1992] (Satterthwaite's degrees of freedom).
     """
-    from scipy import special
-
     halves, known = 0.5 * _squares(differences), answers("y", y)
     known = known[np.isfinite(known)]
     if len(halves) < 2 or len(known) < 2 or np.ptp(known) == 0.0:
@@ -143,5 +137,4 @@ def _squares(differences: ArrayLike) -> Array:
     known = known[np.isfinite(known)]
     if len(known) == 0:
         raise ValueError("no difference is known; give those of at least one pair in which both runs have the output")
-    squares: Array = known**2
-    return squares
+    return known**2

@@ -2,24 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, answers, numbered_beds
+from lithobrake.analysis.confidence import LEVEL, answered_runs, answers
 from lithobrake.analysis.outcome_model import refit_interval, unseen_limit
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
+from lithobrake.chaos.distributions import Distribution
+from lithobrake.emulator.model import Draws, Emulator
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import numbers_or_nan, random_numbers, whole_number
 from lithobrake.vocabulary.landing_fraction import LandingFraction
-
-if TYPE_CHECKING:
-    from lithobrake.chaos import Distribution
-    from lithobrake.emulator import Draws, Emulator
 
 DRAW_COUNT = 400
 # Of an event that is rarer (or whose opposite is) runs have met too few for the probability to be told from them alone.
@@ -50,7 +47,7 @@ class FailureInput:
 
 
 def failure_inputs(
-    inputs: Mapping[str, "Distribution"], x: ArrayLike, failing: ArrayLike, bed: ArrayLike, seed: int = 0
+    inputs: Mapping[str, Distribution], x: ArrayLike, failing: ArrayLike, bed: ArrayLike, seed: int = 0
 ) -> dict[str, FailureInput]:
     """Compare each input among failing runs with its law.
 
@@ -60,11 +57,10 @@ def failure_inputs(
     Source: [Spear-1980] (distribution functions of failing and other points compared); [Field-2007] (groups drawn
     whole).
     """
-    of_all = answers("failing", failing)
-    known = np.isfinite(of_all)
-    if not ((of_all[known] >= 0.0) & (of_all[known] <= 1.0)).all():
+    known = np.isfinite(answers("failing", failing))
+    weights, beds = answered_runs(failing, bed)
+    if not ((weights >= 0.0) & (weights <= 1.0)).all():
         raise ValueError("failing must lie between 0 and 1, or be NaN where nobody knows")
-    weights, beds = of_all[known], numbered_beds(numbered_beds(bed, len(of_all))[known], int(known.sum()))
     points = checked_points(inputs, x)[known]
     if not weights.sum() > 0.0:
         return {}
@@ -97,7 +93,7 @@ class OrderedInput:
     law: Array
 
     @classmethod
-    def of(cls, law: "Distribution", values: Array) -> "OrderedInput":
+    def of(cls, law: Distribution, values: Array) -> "OrderedInput":
         """The values of one input, by its law."""
         order = np.argsort(values, kind="stable")
         return cls(values[order], order, law.cdf(values[order]))
@@ -107,8 +103,7 @@ class OrderedInput:
         steps = np.cumsum(weights[:, self.order], axis=1)
         steps /= steps[:, -1:]
         before = np.column_stack([np.zeros(len(steps)), steps[:, :-1]])
-        furthest: Array = np.maximum(np.abs(steps - self.law), np.abs(before - self.law)).max(axis=1)
-        return furthest
+        return np.maximum(np.abs(steps - self.law), np.abs(before - self.law)).max(axis=1)
 
     def median(self, weights: Array) -> float:
         """Weighted median of the values."""
@@ -185,8 +180,8 @@ def failure_probability(
 
 
 def drawn_failures(
-    model: "Emulator",
-    failing: Callable[["Draws"], ArrayLike],
+    model: Emulator,
+    failing: Callable[[Draws], ArrayLike],
     *,
     refit_count: int = 50,
     sample_count: int = 100_000,

@@ -1,12 +1,14 @@
 """How wide the interval of a study will be, how many runs a width asks for, and when to stop."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import stats
 
 from lithobrake.analysis.confidence import LEVEL, answered_runs, answers, bed_components, numbered_beds, t_quantile
 from lithobrake.analysis.share_estimate import plain_interval, share_estimate
@@ -30,6 +32,8 @@ MOST_RUNS, FEWEST_STUDIES = 1_000_000, 100
 # Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
 # of their scatter is rough, so no look asks for more than twice the runs.
 SMALLEST_STEP, LARGEST_STEP = 1.1, 2.0
+# More beds than any half width asks for.
+MOST_BEDS = 2**60
 # Counts of runs are multiples of this.
 RUNS_A_STEP = 10
 
@@ -86,19 +90,12 @@ def runs_for_half_width(
     finite_number("half_width", half_width, above=0.0, at_least=NARROWEST * spread)
     whole_number("runs_per_bed", runs_per_bed, 1)
 
-    def width(bed_count: int) -> float:
+    def narrow_enough(bed_count: int) -> bool:
         found = expected_half_width(bed_count * runs_per_bed, bed_count, spread=spread, correlation=correlation)
-        return math.inf if found is None else found
+        return found is not None and found <= half_width
 
-    # The width falls with every bed, so doubling and halving the step finds the fewest.
-    upper = 2
-    while width(upper) > half_width:
-        upper *= 2
-    lower = upper // 2
-    while upper - lower > 1:
-        middle = (lower + upper) // 2
-        lower, upper = (middle, upper) if width(middle) > half_width else (lower, middle)
-    return upper * runs_per_bed
+    # The width falls with every bed.
+    return runs_per_bed * bisect_left(range(MOST_BEDS), True, lo=2, key=narrow_enough)
 
 
 def _check_scatter(spread: float, correlation: float) -> None:
@@ -107,11 +104,9 @@ def _check_scatter(spread: float, correlation: float) -> None:
     finite_number("correlation", correlation, at_least=0.0, at_most=1.0)
 
 
-class RunLaw(Protocol):
-    """What is known of the outcome of a run, 0 to 1, and what is not."""
-
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """Outcomes of so many independent runs of one study, whose own numbers are drawn first; [count]."""
+# What is known of the outcome of a run, 0 to 1, and what is not: gives those of so many independent runs of one study
+# [count], whose own numbers are drawn first.
+RunLaw = Callable[[np.random.Generator, int], Array]
 
 
 @dataclass(frozen=True)
@@ -124,8 +119,7 @@ class AllOrNothing:
     likeliest: float
     farthest: float
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         share = self.likeliest + (self.farthest - self.likeliest) * random.random() ** 2
         return (random.random(count) < share).astype(float)
 
@@ -138,8 +132,7 @@ class Shares:
     smallest_spread: float
     largest_spread: float
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         spread = self.smallest_spread + (self.largest_spread - self.smallest_spread) * random.random()
         size = self.mean * (1.0 - self.mean) / spread**2 - 1.0
         return random.beta(self.mean * size, (1.0 - self.mean) * size, count)
@@ -157,8 +150,7 @@ class LikeRuns:
     values: Array
     bed: Labels
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         weights = random.standard_exponential(int(self.bed.max()) + 1)[self.bed]
         values = self.values
         if np.isin(values, (0.0, 1.0)).all():
@@ -217,7 +209,7 @@ def _one(
 ) -> float | None:
     """Half width of a study that is made up; None where it has no interval."""
     new, bed_count = beds[len(known) :], int(beds.max()) + 1
-    drawn = law.study(random, len(new) + bed_count)
+    drawn = law(random, len(new) + bed_count)
     own, common = drawn[: len(new)], drawn[len(new) :]
     share = math.sqrt(correlation)
     # What runs on a bed have in common is what some run on it has shown, if that one took it.
@@ -236,8 +228,6 @@ def _likelihood(known: Array, beds: Labels) -> Array:
 
     For normal scatter; the runs of beds count as equally many. Source: [Searle-1992], section 3.6.
     """
-    from scipy import stats
-
     values, bed = answered_runs(known, beds)
     if len(values) < 2 or np.ptp(values) == 0.0 or not 2 <= int(bed.max()) + 1 < len(values):
         return np.ones_like(CORRELATIONS)
@@ -247,8 +237,7 @@ def _likelihood(known: Array, beds: Labels) -> Array:
     # Mean squares with these components are to each other as F times this.
     scale = 1.0 + float(found.counts.mean()) * CORRELATIONS / (1.0 - CORRELATIONS)
     density = stats.f.pdf(float(found.squares.mean()) / found.within / scale, len(found.squares), found.within_freedom)
-    likelihood: Array = density / scale
-    return likelihood
+    return density / scale
 
 
 def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:

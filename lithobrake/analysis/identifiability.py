@@ -2,20 +2,17 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import logsumexp
 
 from lithobrake.analysis.bayesian_inference import Bounds, Posterior, posterior_of
-from lithobrake.analysis.posterior import Observation
+from lithobrake.analysis.posterior import Observation, completed_points
 from lithobrake.chaos import sobol_sequence
 from lithobrake.chaos.design import sample_inputs
+from lithobrake.emulator.model import Emulator
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
-
-if TYPE_CHECKING:
-    from lithobrake.emulator import Emulator
 
 # Draws of what would be observed, beside what was.
 REPLICATES = 400
@@ -29,7 +26,7 @@ FEWEST_EFFECTIVE = 30.0
 
 
 def predictive_p_value(
-    model: "Emulator", posterior: Posterior, observation: Observation, *, bounds: Bounds | None = None, seed: int = 0
+    model: Emulator, posterior: Posterior, observation: Observation, *, bounds: Bounds | None = None, seed: int = 0
 ) -> float:
     """Probability that a bounce which follows the posterior is as unlikely by it as the one that was observed.
 
@@ -41,7 +38,8 @@ def predictive_p_value(
     if not observation.outputs:
         raise ValueError("the observation has no outputs; give one that has, as an outcome alone is never surprising")
     random, names = random_numbers(seed), list(observation.outputs)
-    x = _points(model, posterior, observation, POSTERIOR_POINTS, seed)
+    sample = dict(zip(posterior.inputs, posterior.sample(POSTERIOR_POINTS, seed).T, strict=True))
+    x = completed_points(model.runs.inputs, {**sample, **observation.known}, POSTERIOR_POINTS, seed)
     low, high = bounds(x) if bounds else (None, None)
     drawn = model.draw(x, max(1, REPLICATES // POSTERIOR_POINTS) * 2, seed, lower=low, upper=high)
     columns = [model.output_names.index(name) for name in names]
@@ -72,7 +70,7 @@ class Identifiability:
 
 
 def identifiability(
-    model: "Emulator",
+    model: Emulator,
     outputs: Collection[str],
     *,
     errors: dict[str, float] | None = None,
@@ -114,7 +112,7 @@ def identifiability(
 
 
 def _likelihoods(
-    model: "Emulator",
+    model: Emulator,
     truth: Array,
     points: Array,
     outputs: Collection[str],
@@ -128,10 +126,8 @@ def _likelihoods(
     inputs, names = model.runs.inputs, list(outputs)
 
     def with_own(shared: Array, offset: int) -> Array:
-        drawn = {name: inputs[name] for name in own}
-        anew = dict(zip(drawn, sample_inputs(drawn, len(shared), 7919 * seed + offset).T, strict=True))
         given = dict(zip((name for name in inputs if name not in own), shared.T, strict=True))
-        return np.column_stack([(given | anew)[name] for name in inputs])
+        return completed_points(inputs, given, len(shared), 7919 * seed + offset)
 
     at = with_own(np.tile(truth, (MOST_BOUNCES, 1)), 0)
     low, high = bounds(at) if bounds else (None, None)
@@ -163,13 +159,3 @@ def _halving(counts: Sequence[int], ratio: Array) -> float | None:
     # Straight between two counts on logarithmic scales, as a standard deviation falls with a power of their number.
     share = np.log(first / HALF) / np.log(first / second)
     return float(np.exp(np.log(counts[place - 1]) + share * np.log(counts[place] / counts[place - 1])))
-
-
-def _points(model: "Emulator", posterior: Posterior, observation: Observation, count: int, seed: int) -> Array:
-    """Points of the posterior with what is known of the bounce, the rest drawn anew, [count, input_count]."""
-    inputs = model.runs.inputs
-    given = dict(zip(posterior.inputs, posterior.sample(count, seed).T, strict=True))
-    given |= {name: np.full(count, value) for name, value in observation.known.items()}
-    drawn = {name: law for name, law in inputs.items() if name not in given}
-    given |= dict(zip(drawn, sample_inputs(drawn, count, seed).T, strict=True))
-    return np.column_stack([given[name] for name in inputs])

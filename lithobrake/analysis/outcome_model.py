@@ -2,19 +2,16 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
 from lithobrake.chaos.basis import checked_points
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
-
-if TYPE_CHECKING:
-    from lithobrake.chaos import Distribution
 
 # Points whose probabilities are worked out at once: bounds the memory of the polynomial features.
 _BLOCK = 65_536
@@ -30,7 +27,7 @@ class OutcomeModel:
     """
 
     def __init__(
-        self, inputs: Mapping[str, "Distribution"], x: np.ndarray, outcomes: Sequence[str], names: Sequence[str]
+        self, inputs: Mapping[str, Distribution], x: np.ndarray, outcomes: Sequence[str], names: Sequence[str]
     ) -> None:
         """Learn from runs: x [run_count, input_count] in physical units, outcomes [run_count], each one of the names.
 
@@ -86,8 +83,7 @@ class OutcomeModel:
         """An outcome for each point x [point_count, input_count], as its place among the names, shape [point_count]."""
         # The last one takes what rounding leaves of the whole.
         ends = np.cumsum(self.probability(x), axis=1)[:, :-1]
-        drawn: np.ndarray = (random.random(len(x))[:, None] >= ends).sum(axis=1)
-        return drawn
+        return (random.random(len(x))[:, None] >= ends).sum(axis=1)
 
     def _points(self, x: np.ndarray) -> np.ndarray:
         return checked_points(self._inputs, x)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import optimize, special
 
 from lithobrake.analysis.confidence import LEVEL, Bounds, answered_runs, normal_quantile, t_quantile
 from lithobrake.analysis.share_estimate import ONE_BED, standard_error
@@ -110,8 +111,6 @@ def _scatter(probability: float, run_count: float) -> Bounds:
 
     By the beta law with the mean and the variance of the binomial one.
     """
-    from scipy import special
-
     size = max(run_count - 1.0, 1e-3)
     ends = (0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL)
     lower, upper = (float(special.betaincinv(probability * size, (1.0 - probability) * size, one)) for one in ends)
@@ -181,8 +180,6 @@ def _length_bounds(length: float, error: float) -> Bounds:
     The square of the length over that of the error is chi-square with two degrees of freedom, and the square of the
     true ratio is its noncentrality. Source: [Mardia-2000], section 4.8.1.
     """
-    from scipy import optimize, special
-
     if error == 0.0:
         return length, length
 

@@ -1,23 +1,21 @@
 """Points of a posterior, and which observed bounces share a bed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
-from lithobrake.chaos import Uniform, sobol_sequence
+from lithobrake.chaos.design import sample_inputs, sobol_sequence
+from lithobrake.chaos.distributions import Distribution, Uniform
+from lithobrake.emulator.model import Emulator
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.number_words import percent
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from lithobrake.emulator import Emulator
 
 # Of the points drawn near others a part is drawn from the prior still, and the rest wider than what is known so far, so
 # that nothing is lost.
@@ -99,11 +97,20 @@ class Observation:
     a word for the bed it was on, which bounces with the same word share; None: one of its own.
     """
 
-    outputs: "Mapping[str, float]"
-    errors: "Mapping[str, float]" = field(default_factory=dict)
-    known: "Mapping[str, float]" = field(default_factory=dict)
+    outputs: Mapping[str, float]
+    errors: Mapping[str, float] = field(default_factory=dict)
+    known: Mapping[str, float] = field(default_factory=dict)
     outcome: str | None = None
     bed: str | None = None
+
+
+def completed_points(
+    inputs: Mapping[str, Distribution], given: Mapping[str, ArrayLike], count: int, seed: int
+) -> Array:
+    """Points [count, input_count]: given inputs, each a number or [count], and the others drawn by their laws."""
+    drawn = {name: law for name, law in inputs.items() if name not in given}
+    values = {**given, **dict(zip(drawn, sample_inputs(drawn, count, seed).T, strict=True))}
+    return np.column_stack([np.broadcast_to(values[name], count) for name in inputs])
 
 
 def by_bed(observations: Sequence[Observation]) -> list[list[int]]:
@@ -115,7 +122,7 @@ def by_bed(observations: Sequence[Observation]) -> list[list[int]]:
     return list(beds.values())
 
 
-def bed_shares(model: "Emulator") -> dict[str, float]:
+def bed_shares(model: Emulator) -> dict[str, float]:
     """Share of the scatter of each output that landings on one bed have in common, in the emulator's runs.
 
     Raises ValueError where no bed has two runs.
@@ -127,7 +134,7 @@ def bed_shares(model: "Emulator") -> dict[str, float]:
     return dict(zip(names, shares.tolist(), strict=True))
 
 
-def beds_statement(model: "Emulator", observations: Sequence[Observation]) -> str | None:
+def beds_statement(model: Emulator, observations: Sequence[Observation]) -> str | None:
     """What several bounces are taken to share, in a sentence; None for one bounce."""
     if len(observations) < 2:
         return None

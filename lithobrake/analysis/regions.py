@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import distance
 
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
 from lithobrake.vocabulary.array_types import Array
@@ -164,8 +165,6 @@ class _Density:
 
     def level(self, share: float) -> float:
         """The density above which this share of places lies: each point counts with the density of all others."""
-        from scipy.spatial import distance
-
         blocks = (self.points[start : start + BLOCK] for start in range(0, len(self.points), BLOCK))
         squares = (distance.cdist(block, self.points, "sqeuclidean") for block in blocks)
         others = np.concatenate([np.exp(-0.5 * one).sum(axis=1) for one in squares]) - 1.0
@@ -184,8 +183,7 @@ class _Density:
 
     def places(self, own: Array) -> Array:
         """Places on the map [m] of coordinates [..., 2] in bandwidths."""
-        found: Array = self.middle + (own * self.bandwidth) @ self.axes
-        return found
+        return self.middle + (own * self.bandwidth) @ self.axes
 
 
 def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) -> HighestDensity:
@@ -260,8 +258,6 @@ def _enclosed(line: Array) -> float:
 
 def _extent(directions: Array) -> float:
     """Largest distance between two of some points of a unit sphere [count, 3]."""
-    from scipy.spatial import distance
-
     few = directions[:: math.ceil(len(directions) / EXTENT_POINTS)]
     return float(distance.pdist(few).max(initial=0.0))
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,12 +10,10 @@ from numpy.typing import ArrayLike
 from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms
 from lithobrake.chaos.basis import checked_points
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
-
-if TYPE_CHECKING:
-    from lithobrake.chaos import Distribution
 
 # More terms than this for each run leave too little of the runs to tell scatter by.
 TERMS_PER_RUN = 1 / 3
@@ -108,7 +106,7 @@ class _Regression(NamedTuple):
 
 @one_thread()
 def variance_shares(
-    inputs: Mapping[str, "Distribution"],
+    inputs: Mapping[str, Distribution],
     x: ArrayLike,
     y: ArrayLike,
     bed: ArrayLike,
@@ -129,8 +127,8 @@ def variance_shares(
     of_all = confidence.answers("y", y)
     points = _checked_points(inputs, x, of_all, soil)
     known = np.isfinite(of_all)
-    points, values = points[known], of_all[known]
-    beds = confidence.numbered_beds(confidence.numbered_beds(bed, len(of_all))[known], len(values))
+    values, beds = confidence.answered_runs(of_all, bed)
+    points = points[known]
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
     used = _affordable(inputs, points, soil, _checked_attitude(attitude, known))
@@ -168,7 +166,7 @@ def _printed(total: float, parts: dict[str, _Part], soil: Collection[str], words
     )
 
 
-def _checked_points(inputs: Mapping[str, "Distribution"], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
+def _checked_points(inputs: Mapping[str, Distribution], x: ArrayLike, y: Array, soil: Collection[str]) -> Array:
     """Points [run_count, input_count] inside the law of the inputs. Raises ValueError for others, and for no inputs."""
     points = checked_points(inputs, x)
     if y.shape != (len(points),):
@@ -192,7 +190,7 @@ def _checked_attitude(attitude: ArrayLike | None, known: np.ndarray) -> Array:
 
 
 def _affordable(
-    inputs: Mapping[str, "Distribution"], points: Array, soil: Collection[str], attitude: Array
+    inputs: Mapping[str, Distribution], points: Array, soil: Collection[str], attitude: Array
 ) -> _Terms | None:
     """The terms that the runs can bear; None where not even linear ones.
 
@@ -211,7 +209,7 @@ def _affordable(
 
 
 def _groups(
-    inputs: Mapping[str, "Distribution"], indices: Labels, soil: Collection[str], attitude_count: int
+    inputs: Mapping[str, Distribution], indices: Labels, soil: Collection[str], attitude_count: int
 ) -> dict[str, np.ndarray]:
     """Which terms make up each part: soil, each soil input by its name, arrival and attitude where there are any.
 

@@ -54,7 +54,12 @@ def multi_index_set(
         row, power = np.nonzero(spent <= budget)
         rows = np.column_stack([rows[row], powers[power]])
         used = spent[row, power]
-    keys = [-rows[:, column] for column in reversed(range(input_count))]
+    return by_degree(rows)
+
+
+def by_degree(rows: Indices) -> Indices:
+    """Multi-indices [term_count, input_count] ordered by total degree, of one degree the first input's powers first."""
+    keys = [-rows[:, column] for column in reversed(range(rows.shape[1]))]
     return np.ascontiguousarray(rows[np.lexsort([*keys, rows.sum(axis=1)])])
 
 
@@ -79,7 +84,7 @@ def outside_count(inputs: Mapping[str, Distribution], points: Array) -> tuple[in
         lower, upper = entry.support
         slack = ROUNDING * (upper - lower if entry.bounded else abs(lower) if np.isfinite(lower) else 0.0)
         column = points[:, k]
-        wrong = ~((column >= lower - slack) & (column <= upper + slack))
+        wrong = ~((column >= lower - slack) & (column <= upper + slack) & np.isfinite(column))
         if entry.logarithmic:
             wrong |= column <= 0.0
         if wrong.any():

@@ -2,16 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos import sobol_indices
 from lithobrake.chaos.basis import Indices, basis_matrix
 from lithobrake.chaos.degree_selection import best_terms, with_low_degrees
 from lithobrake.chaos.gaussian_process import FAMILIES, fit_process
 from lithobrake.chaos.scores import absolute_percentage_error
+from lithobrake.chaos.sobol_indices import first_order, total_order
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training_data import Training, checked_training, one_thread
 from lithobrake.vocabulary.array_types import Array
@@ -63,10 +64,8 @@ def sobol_estimates(
     Source: [Davison-1997], sections 5.2 and 6.2; [Dubreuil-2014] (indices from expansions).
     """
     _check_resampling(count, level)
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
-    own, found = _own_indices(surrogate), []
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
+    own, found = _indices_of(surrogate.multi_indices, surrogate.coefficient_table), []
     for output in range(len(surrogate.output_names)):
         if np.ptp(training.y[:, output]) == 0.0:
             found.append(np.stack([own[..., output]] * 3))
@@ -89,9 +88,7 @@ def coefficient_changes(
     Result: multi_indices [term_count, input_count], and changes [count, term_count, output_count] as `sobol_estimates`
     fits its draws; 0 for an output that does not vary.
     """
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
     varying = np.flatnonzero(np.ptp(training.y, axis=0) > 0.0).tolist()
     refits = {output: _refit_of(surrogate, training, output) for output in varying}
     indices = np.unique(np.concatenate([surrogate.multi_indices, *(one.indices for one in refits.values())]), axis=0)
@@ -113,15 +110,11 @@ def sobol_intervals(
     one-dimensional y).
     """
     found, result = sobol_estimates(surrogate, x, y, count=count, level=level, seed=seed), {}
-    for own, key in zip(_own_indices(surrogate), ("first", "total"), strict=True):
+    own_indices = _indices_of(surrogate.multi_indices, surrogate.coefficient_table)
+    for own, key in zip(own_indices, ("first", "total"), strict=True):
         _, low, high = found[key].reshape(3, *own.shape)
         result[key] = surrogate.shaped(np.stack([np.minimum(low, own), np.maximum(high, own)]))
     return result
-
-
-def _own_indices(surrogate: Surrogate) -> Array:
-    """First-order and total indices of the expansion itself, [2, input_count, output_count]."""
-    return np.stack([surrogate.sobol_first, surrogate.sobol_total]).reshape(2, len(surrogate.inputs), -1)
 
 
 def _basic(refit: Refit, coefficients: Array, level: float) -> tuple[Array, Array, Array]:
@@ -167,10 +160,8 @@ def _debiased_parts(indices: Indices, coefficients: Array, noise: Array) -> tupl
 
 
 def _indices_of(indices: Indices, coefficients: Array) -> Array:
-    """First-order and total indices [2, input_count, draw_count] of coefficients [term_count, draw_count]."""
-    return np.stack(
-        [sobol_indices.first_order(indices, coefficients), sobol_indices.total_order(indices, coefficients)]
-    )
+    """First-order and total indices [2, input_count, any] of coefficients [term_count, any]."""
+    return np.stack([first_order(indices, coefficients), total_order(indices, coefficients)])
 
 
 def _check_resampling(count: int, level: float) -> None:
@@ -180,11 +171,20 @@ def _check_resampling(count: int, level: float) -> None:
     finite_number("level", level, above=0.0, below=1.0)
 
 
+def _drawn_runs(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, count: int, seed: int
+) -> tuple[Training, NDArray[np.int64]]:
+    """The runs x, y, and as many of them drawn with replacement, [count, run_count]."""
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    sample_count("count", count, training.count)
+    return training, random_numbers(seed).integers(training.count, size=(count, training.count))
+
+
 def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     """How one output was fitted, as the report says; the least squares of the best degree where it does not say."""
     entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
     method = entry.get("method")
-    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[:, output]
+    coefficients = surrogate.coefficient_table[:, output]
     # The expansion holds the terms of all outputs together; those that this one does not have are 0.
     indices = surrogate.multi_indices[(coefficients != 0.0) | (surrogate.multi_indices.sum(axis=1) == 0)]
     if method in ("lars", "omp") and "candidate_degree" in entry:
@@ -235,14 +235,10 @@ def _process_refit(training: Training, output: int, entry: dict[str, Any], indic
     """The process with its parameters kept, which is linear in the outputs."""
     process = fit_process(training, output, next(one for one in FAMILIES if one.name == entry["covariance"]))
     errors = process.leave_one_out
-
-    def coefficients(values: Array) -> Array:
-        return process.refitted(indices, values)
-
     truth = _indices_of(indices, process.coefficients(indices)[:, None])[..., 0]
     residuals = _grown(errors - errors.mean(), entry["rmse_estimate"])
     observed, fitted = training.y[:, output], process.predict(process.germs)
-    return Refit(indices, coefficients, observed, fitted, truth, residuals, shrinks=True)
+    return Refit(indices, partial(process.refitted, indices), observed, fitted, truth, residuals, shrinks=True)
 
 
 def score_intervals(
@@ -261,10 +257,8 @@ def score_intervals(
     Source: [Davison-1997], section 5.2 (studentised bootstrap).
     """
     _check_resampling(count, level)
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
     predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     result: dict[str, dict[str, tuple[float, float]]] = {}
     for k, name in enumerate(surrogate.output_names):
         low, high = _studentised(predicted[:, k], training.y[:, k], rows, level)

@@ -35,8 +35,11 @@ class UnivariateCovariance(ABC):
         """Covariance of germs [a] and [b]; result [a, b]."""
 
     @abstractmethod
-    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
-        """Covariance of germs [count] with themselves and its derivatives by both parameters, each [count, count]."""
+    def with_derivative(self, parameters: Array, germ: Array) -> tuple[Array, Array]:
+        """Covariance of germs [count] with themselves and its derivative by the first parameter, each [count, count].
+
+        By the second, the logarithm of a factor, its derivative is the covariance itself.
+        """
 
     @abstractmethod
     def variance(self, parameters: Array, germ: Array) -> Array:
@@ -57,11 +60,10 @@ class UnivariateGaussian(UnivariateCovariance):
         squares = ((first[:, None] - second[None, :]) / np.exp(parameters[0])) ** 2
         return np.exp(parameters[1] - 0.5 * squares)
 
-    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+    def with_derivative(self, parameters: Array, germ: Array) -> tuple[Array, Array]:
         squares = ((germ[:, None] - germ[None, :]) / np.exp(parameters[0])) ** 2
         part = np.exp(parameters[1] - 0.5 * squares)
-        # Derivatives by the logarithms of length and variance, in which the search takes its steps.
-        return part, part * squares, part
+        return part, part * squares
 
     def variance(self, parameters: Array, germ: Array) -> Array:
         return np.full(len(germ), np.exp(parameters[1]))
@@ -87,11 +89,10 @@ class UnivariatePolynomial(UnivariateCovariance):
     def between(self, parameters: Array, first: Array, second: Array) -> Array:
         return (self._table(first).T * self._variances(parameters)[0]) @ self._table(second)
 
-    def with_derivatives(self, parameters: Array, germ: Array) -> tuple[Array, Array, Array]:
+    def with_derivative(self, parameters: Array, germ: Array) -> tuple[Array, Array]:
         table = self._table(germ)
         variances, derivatives = self._variances(parameters)
-        part = (table.T * variances) @ table
-        return part, (table.T * derivatives) @ table, part
+        return (table.T * variances) @ table, (table.T * derivatives) @ table
 
     def variance(self, parameters: Array, germ: Array) -> Array:
         return self._variances(parameters)[0] @ self._table(germ) ** 2
@@ -176,7 +177,7 @@ class ProductCovariance(Covariance):
         return list(zip(self.parts, theta[:-1].reshape(2, -1).T, strict=True))
 
     def with_gradient(self, theta: Array, germs: Array) -> tuple[Array, Gradient]:
-        rows = [part.with_derivatives(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
+        rows = [part.with_derivative(one, germ) for (part, one), germ in zip(self._split(theta), germs, strict=True)]
         factors = [1.0 + row[0] for row in rows]
         scale = float(np.exp(theta[-1]))
         total = scale * np.prod(factors, axis=0)
@@ -191,7 +192,7 @@ class ProductCovariance(Covariance):
             after = weight.copy()
             for k in range(len(factors) - 1, -1, -1):
                 rest = before[k] * after
-                result[:, k] = np.vdot(rest, rows[k][1]), np.vdot(rest, rows[k][2])
+                result[:, k] = np.vdot(rest, rows[k][1]), np.vdot(rest, rows[k][0])
                 after *= factors[k]
             return np.append(result.ravel(), np.vdot(weight, total))
 

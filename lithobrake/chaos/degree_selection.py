@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import qr, solve_triangular
 
-from lithobrake.chaos.basis import Indices, basis_matrix, condition_number, multi_index_set
+from lithobrake.chaos.basis import Indices, basis_matrix, by_degree, condition_number, multi_index_set
 from lithobrake.chaos.training_data import Training
 from lithobrake.vocabulary.array_types import Array
 
@@ -19,49 +20,11 @@ LOST_LISTED = 20
 HIGHEST_DEGREE = 15
 
 
-@dataclass(frozen=True)
-class LeastSquares:
-    """coefficients [term_count, output_count]; orthogonal factor [count, term_count]; residuals; condition number;
-    predicted_variance: of a prediction averaged over the inputs, for outputs that scatter with variance 1.
-    """
-
-    coefficients: Array
-    orthogonal: Array
-    residuals: Array
-    condition: float
-    predicted_variance: float
-
-    def left_out(self, groups: Sequence[NDArray[np.int64]]) -> Array:
-        """Error at each point of the fit without it (or without its group of rows), [count, output_count].
-
-        Source: [Allen-1974] (PRESS); [Cook-1982], section 3.6 (groups).
-        """
-        if not groups:
-            leverage = np.einsum("ij,ij->i", self.orthogonal, self.orthogonal)
-            return self.residuals / np.maximum(1.0 - leverage, np.finfo(float).eps)[:, None]
-        errors = np.empty_like(self.residuals)
-        for rows in groups:
-            part = self.orthogonal[rows]
-            # A group that alone determines a direction leaves nothing to predict it by: the pseudo-inverse says 0
-            # there, as far as rounding lets it.
-            own = np.eye(len(rows)) - part @ part.T
-            errors[rows] = np.linalg.pinv(own, rcond=1e-12, hermitian=True) @ self.residuals[rows]
-        return errors
-
-
-def term_name(index: Sequence[int], names: Sequence[str]) -> str:
-    """A term in words, for instance "friction^2 speed"."""
-    parts = [f"{name}^{power}" if power > 1 else name for name, power in zip(names, index, strict=True) if power]
-    return " ".join(parts) or "constant"
-
-
 def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequence[str], count: int) -> str:
     """The sentence that refuses a rank-deficient fit; pivoting finds terms that the others determine."""
-    from scipy.linalg import qr
-
     _, _, order = qr(triangle, mode="economic", pivoting=True)
     rank = int(np.sum(values > RANK_TOLERANCE * values[0]))
-    lost = [term_name(indices[k], names) for k in sorted(order[rank:])]
+    lost = [_term_name(indices[k], names) for k in sorted(order[rank:])]
     more = f" and {len(lost) - LOST_LISTED} more" if len(lost) > LOST_LISTED else ""
     return (
         f"the {count} points determine only {rank} of {len(indices)} terms "
@@ -70,27 +33,45 @@ def _lost_terms(triangle: Array, values: Array, indices: Indices, names: Sequenc
     )
 
 
-def solve_least_squares(
-    matrix: Array, y: Array, *, indices: Indices, names: Sequence[str], weights: Array | None = None
-) -> LeastSquares:
-    """Solve min sum w_k (y_k - H_k c)**2 by QR; matrix H [count, term_count], y [count, output_count].
+def _term_name(index: Sequence[int], names: Sequence[str]) -> str:
+    """A term in words, for instance "friction^2 speed"."""
+    parts = [f"{name}^{power}" if power > 1 else name for name, power in zip(names, index, strict=True) if power]
+    return " ".join(parts) or "constant"
 
-    It takes at least as many points as terms. Raises ValueError for rank deficiency, naming terms that cannot be told
-    apart.
+
+def _least_squares(training: Training, indices: Indices) -> tuple[Array, Array, Array, Array]:
+    """Minimise sum w_k (y_k - H_k c)**2 by QR of H, the terms at the points.
+
+    Coefficients [term_count, output_count], residuals [count, output_count], orthogonal factor [count, term_count] and
+    singular values [term_count]. Raises ValueError for rank deficiency, naming terms that cannot be told apart.
     Source: [Landings-PCE], Eqs 15 and 16; [Golub-2013], section 5.5.
     """
-    from scipy.linalg import solve_triangular
-
-    root = None if weights is None else np.sqrt(weights)[:, None]
-    orthogonal, triangle = np.linalg.qr(matrix if root is None else matrix * root)
+    matrix = basis_matrix(training.inputs, indices, training.x)
+    root = 1.0 if training.weights is None else np.sqrt(training.weights)[:, None]
+    orthogonal, triangle = np.linalg.qr(matrix * root)
     values = np.linalg.svd(triangle, compute_uv=False)
     if values[-1] <= RANK_TOLERANCE * values[0]:
-        raise ValueError(_lost_terms(triangle, values, indices, names, len(matrix)))
-    coefficients = solve_triangular(triangle, orthogonal.T @ (y if root is None else y * root), check_finite=False)
-    residuals = y - matrix @ coefficients
-    # In an orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.
-    spread = float(np.sum(values**-2.0)) if weights is None else 0.0
-    return LeastSquares(coefficients, orthogonal, residuals, float(values[0] / values[-1]), spread)
+        raise ValueError(_lost_terms(triangle, values, indices, list(training.inputs), training.count))
+    coefficients = solve_triangular(triangle, orthogonal.T @ (training.y * root), check_finite=False)
+    return coefficients, training.y - matrix @ coefficients, orthogonal, values
+
+
+def _left_out(residuals: Array, orthogonal: Array, groups: Sequence[NDArray[np.int64]]) -> Array:
+    """Error at each point of the fit without it (or without its group of rows), [count, output_count].
+
+    Source: [Allen-1974] (PRESS); [Cook-1982], section 3.6 (groups).
+    """
+    if not groups:
+        leverage = np.einsum("ij,ij->i", orthogonal, orthogonal)
+        return residuals / np.maximum(1.0 - leverage, np.finfo(float).eps)[:, None]
+    errors = np.empty_like(residuals)
+    for rows in groups:
+        part = orthogonal[rows]
+        # A group that alone determines a direction leaves nothing to predict it by: the pseudo-inverse says 0 there, as
+        # far as rounding lets it.
+        own = np.eye(len(rows)) - part @ part.T
+        errors[rows] = np.linalg.pinv(own, rcond=1e-12, hermitian=True) @ residuals[rows]
+    return errors
 
 
 @dataclass(frozen=True)
@@ -123,9 +104,7 @@ def joined(solutions: Sequence[Solution]) -> tuple[Indices, Array]:
     if all(one.indices is solutions[0].indices for one in solutions):
         return solutions[0].indices, np.column_stack([one.coefficients for one in solutions])
     stacked = np.concatenate([one.indices for one in solutions])
-    distinct = np.unique(stacked, axis=0)
-    keys = [-distinct[:, column] for column in reversed(range(distinct.shape[1]))]
-    indices = np.ascontiguousarray(distinct[np.lexsort([*keys, distinct.sum(axis=1)])])
+    indices = by_degree(np.unique(stacked, axis=0))
     place = {tuple(row): k for k, row in enumerate(indices.tolist())}
     coefficients = np.zeros((len(indices), len(solutions)))
     for output, one in enumerate(solutions):
@@ -166,24 +145,23 @@ def solve_ols(training: Training, indices: Indices) -> list[Solution]:
             f"{training.count} points cannot determine {len(indices)} terms: give at least {len(indices)} points or "
             "lower the degree"
         )
-    matrix = basis_matrix(training.inputs, indices, training.x)
-    names = list(training.inputs)
-    solved = solve_least_squares(matrix, training.y, indices=indices, names=names, weights=training.weights)
-    squares = np.mean(solved.left_out(training.groups) ** 2, axis=0)
-    # Leave-one-out does not see the tails where no run stands; the residuals carried through the basis do.
-    residual = np.sum(solved.residuals**2, axis=0) / max(training.count - len(indices), 1)
-    errors = np.sqrt(np.maximum(squares, residual * (1.0 + solved.predicted_variance)))
-    facts = {"condition_number": solved.condition}
+    coefficients, residuals, orthogonal, values = _least_squares(training, indices)
+    squares = np.mean(_left_out(residuals, orthogonal, training.groups) ** 2, axis=0)
+    # Leave-one-out does not see the tails where no run stands; the residuals carried through the basis do: in an
+    # orthonormal basis the mean of psi (H'H)**-1 psi over the inputs is the trace of the inverse.
+    carried = float(np.sum(values**-2.0)) if training.weights is None else 0.0
+    residual = np.sum(residuals**2, axis=0) / max(training.count - len(indices), 1)
+    errors = np.sqrt(np.maximum(squares, residual * (1.0 + carried)))
+    facts = {"condition_number": float(values[0] / values[-1])}
     # As many terms as points leave no point to judge by: the spread of the output is then the honest guess.
     if len(indices) == training.count:
         errors = np.std(training.y, axis=0)
     estimate = (
         "leave-one-out and predicted variance" if len(indices) < training.count else "none (as many terms as points)"
     )
-    columns = range(training.y.shape[1])
     return [
-        Solution("ols", indices, solved.coefficients[:, k], float(errors[k]), estimate, facts, solved.residuals[:, k])
-        for k in columns
+        Solution("ols", indices, coefficients[:, k], float(errors[k]), estimate, facts, residuals[:, k])
+        for k in range(training.y.shape[1])
     ]
 
 
@@ -214,11 +192,7 @@ def ols_by_degree(
 
 
 def best_terms(
-    training: Training,
-    q_norm: float = 1.0,
-    max_degrees: Sequence[int] | None = None,
-    *,
-    term_limit: float = np.inf,
+    training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None, *, term_limit: float = np.inf
 ) -> Indices:
     """Terms of the degree with the smallest leave-one-out error relative to the spread, averaged over outputs.
 

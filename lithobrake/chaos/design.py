@@ -1,8 +1,7 @@
 """Designs by count, by grid or for a basis, and points of inputs that depend on each other."""
 
 import warnings
-from collections.abc import Mapping, Sequence
-from itertools import product
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,34 +23,6 @@ RULE_NODES = 200
 CANDIDATES_PER_TERM = 15
 
 
-def checked_count(count: int, input_count: int = 1) -> int:
-    return sample_count("count", count, input_count)
-
-
-def tensor_count(input_count: int, level: int) -> int:
-    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
-    return (whole_number("level", level, 0) + 1) ** whole_number("input_count", input_count, 1)
-
-
-def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
-    """Full tensor of the Gauss nodes of each input, level + 1 in each, physical units, [node_count, input_count].
-
-    level: one number, or one for each input. The grid determines all polynomials of degree level in each input.
-    Raises ValueError for a level below 0 or more than ten million nodes.
-    """
-    distributions = checked_inputs(inputs)
-    given = list(level) if isinstance(level, Sequence | np.ndarray) else [level] * len(distributions)
-    levels = [whole_number("level", one, 0) for one in given]
-    if len(levels) != len(distributions):
-        raise ValueError(f"level has {len(levels)} entries, but must be one number or one for each input")
-    if np.prod([one + 1.0 for one in levels]) > 1e7:
-        raise ValueError(f"a tensor grid of level {level} in {len(levels)} inputs has over 1e7 nodes: use smolyak")
-    nodes = []
-    for entry, one in zip(distributions.values(), levels, strict=True):
-        nodes.append(entry.physical(entry.recurrence(int(one) + 1).gauss_rule()[0]))
-    return np.array(list(product(*nodes)), dtype=float)
-
-
 def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *, skip: int = 0) -> Array:
     """First `count` points of a scrambled Sobol sequence after `skip`, physical units, [count, input_count].
 
@@ -62,7 +33,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
     from scipy.stats import qmc
 
     distributions = checked_inputs(inputs)
-    size = checked_count(count, len(distributions))
+    size = sample_count("count", count, len(distributions))
     passed = whole_number("skip", skip, 0, MOST_SOBOL - size)
     engine = qmc.Sobol(len(distributions), scramble=True, rng=random_numbers(seed))
     if passed:
@@ -77,7 +48,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
 def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 0) -> Array:
     """Latin hypercube in probability, physical units, shape [count, input_count]. Source: [McKay-1979]."""
     distributions = checked_inputs(inputs)
-    generator, size = random_numbers(seed), checked_count(count, len(distributions))
+    generator, size = random_numbers(seed), sample_count("count", count, len(distributions))
     columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]
     return _physical(distributions, np.column_stack(columns))
 
@@ -135,7 +106,7 @@ class GaussianCopula:
         """Dependent points from a scrambled Sobol sequence, physical units, [count, input_count]."""
         independent = {name: Normal(0.0, 1.0) for name in self.inputs}
         uniforms = special.ndtr(sobol_sequence(independent, count, seed=seed) @ self._factor.T)
-        return self._physical(uniforms)
+        return _physical(self.inputs, uniforms)
 
     def dependent(self, points: ArrayLike) -> Array:
         """Dependent points from independent ones of the same inputs, both physical, [count, input_count].
@@ -147,12 +118,9 @@ class GaussianCopula:
         normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
         # Not by a matrix product, whose rounding depends on how many rows there are.
         together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
-        found = self._physical(special.ndtr(together))
+        found = _physical(self.inputs, special.ndtr(together))
         found[:, 0] = independent[:, 0]
         return found
-
-    def _physical(self, uniforms: Array) -> Array:
-        return np.column_stack([entry.ppf(uniforms[:, k]) for k, entry in enumerate(self.inputs.values())])
 
 
 def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: Indices) -> Array:
@@ -171,7 +139,7 @@ def christoffel(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *
     Source: [Cohen-2017], section 5.
     """
     distributions = checked_inputs(inputs)
-    size, generator = checked_count(count, len(distributions)), random_numbers(seed)
+    size, generator = sample_count("count", count, len(distributions)), random_numbers(seed)
     indices = multi_index_set(len(distributions), degree)
     # The density is a mean over terms, so a term is drawn first, and then each input from the square of its polynomial.
     powers = indices[generator.integers(len(indices), size=size)]
@@ -215,10 +183,10 @@ def fekete(
         raise ValueError("fekete needs a count, a degree, or both, but got neither")
     if degree is None:
         degree = 0
-        while term_count(len(distributions), degree + 1) <= checked_count(count or 0):
+        while term_count(len(distributions), degree + 1) <= sample_count("count", count or 0, 1):
             degree += 1
     indices = multi_index_set(len(distributions), degree)
-    wanted = len(indices) if count is None else checked_count(count)
+    wanted = len(indices) if count is None else sample_count("count", count, 1)
     if wanted < len(indices):
         raise ValueError(
             f"count is {wanted}, but degree {degree} has {len(indices)} terms: give at least as many points as terms"
@@ -263,7 +231,7 @@ def d_optimal(
     """
     distributions = checked_inputs(inputs)
     indices = multi_index_set(len(distributions), degree)
-    wanted = checked_count(count)
+    wanted = sample_count("count", count, 1)
     if candidates is None:
         size = CANDIDATES_PER_TERM * max(len(indices), wanted)
         pool = christoffel(distributions, size, degree=max(degree, 1), seed=seed)

@@ -76,18 +76,13 @@ class Distribution(ABC):
         """Value that is exceeded with probability one half."""
         return float(self.ppf(0.5))
 
-    def sample(self, uniforms: ArrayLike) -> Array:
-        """Values from uniform random numbers in (0, 1), by inversion: same numbers, same values."""
-        return self.ppf(uniforms)
-
     def to_json(self) -> dict[str, Any]:
         """Kind and parameters as plain JSON values; an infinite limit is the text "inf", as JSON has no such number."""
         content: dict[str, Any] = {"kind": self.kind}
         for field in fields(self):  # type: ignore[arg-type]
             value = getattr(self, field.name)
-            content[field.name] = (
-                list(value) if isinstance(value, tuple) else value if np.isfinite(value) else str(value)
-            )
+            as_it_is = list(value) if isinstance(value, tuple) else value
+            content[field.name] = as_it_is if np.all(np.isfinite(value)) else str(value)
         return content
 
     def _clip(self, x: Array) -> Array:
@@ -129,6 +124,13 @@ class Distribution(ABC):
 class Limited(Distribution):
     """An input between two finite limits, which are -1 and 1 of the germ."""
 
+    lower: float
+    upper: float
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
     @property
     def _limits(self) -> tuple[float, float]:
         """The limits, or their logarithms."""
@@ -161,10 +163,6 @@ class Uniform(Limited):
     def __post_init__(self) -> None:
         above = 0.0 if self.logarithmic else None
         self._ordered(self._number("lower", above), self._number("upper", above))
-
-    @property
-    def support(self) -> Support:
-        return self.lower, self.upper
 
     def ppf(self, u: ArrayLike) -> Array:
         # Through the germ, so that the median is the middle node of a grid to the last bit.
@@ -199,10 +197,6 @@ class Beta(Limited):
         self._number("alpha", above=0.0)
         self._number("beta", above=0.0)
         self._ordered(self._number("lower"), self._number("upper"))
-
-    @property
-    def support(self) -> Support:
-        return self.lower, self.upper
 
     def ppf(self, u: ArrayLike) -> Array:
         fraction = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import LinAlgError, cho_solve, cholesky, solve_triangular
+from scipy.optimize import minimize
 
 from lithobrake.chaos.basis import Indices, basis_matrix, germs_of, multi_index_set
 from lithobrake.chaos.counts import term_count
@@ -56,8 +58,6 @@ class GaussianProcess:
         germs [input_count, count] of fresh inputs, which sees the tails where no run stands.
         Source: [Rasmussen-2006], Eq 2.26.
         """
-        from scipy.linalg import solve_triangular
-
         cross = solve_triangular(self.factor, self.covariance.between(self.theta, self.germs, germs), lower=True)
         variance = np.maximum(self.covariance.variance(self.theta, germs) - (cross**2).sum(axis=0), 0.0)
         predicted = self.scale**2 * (float(variance.mean()) + self.noise)
@@ -69,8 +69,6 @@ class GaussianProcess:
 
     def refitted(self, indices: Indices, y: Array) -> Array:
         """The same with the parameters kept and other outputs y [count, any] at the same points, [term_count, any]."""
-        from scipy.linalg import cho_solve
-
         return self._projected(indices, cho_solve((self.factor, True), (y - self.shift) / self.scale))
 
     def _projected(self, indices: Indices, weights: Array) -> Array:
@@ -97,8 +95,6 @@ def fit_process(training: Training, output: int, family: type[Covariance]) -> Ga
 
     Source: [Rasmussen-2006], Eqs 5.8, 5.9 (likelihood) and 5.12 (leave-one-out in closed form).
     """
-    from scipy.linalg import cho_solve
-
     entries = list(training.inputs.values())
     covariance = family(entries, highest_degrees(entries))
     germs, y = germs_of(training.inputs, training.x), training.y[:, output]
@@ -117,8 +113,6 @@ def fit_process(training: Training, output: int, family: type[Covariance]) -> Ga
 
 def _factor(matrix: Array, noise: float) -> tuple[Array, float]:
     """Cholesky factor of matrix plus nugget, with the smallest nugget from `noise` on that rounding allows."""
-    from scipy.linalg import LinAlgError, cholesky
-
     while True:
         try:
             return cholesky(matrix + noise * np.eye(len(matrix)), lower=True), noise
@@ -139,8 +133,6 @@ def _learning_set(germs: Array, z: Array) -> tuple[Array, Array]:
 
 def _most_likely(covariance: Covariance, germs: Array, z: Array) -> tuple[Array, float]:
     """Parameters and nugget of the highest likelihood, from one start (a second one hardly ever wins)."""
-    from scipy.optimize import minimize
-
     first, bounds = covariance.start()
 
     def target(vector: Array) -> tuple[float, Array]:
@@ -158,8 +150,6 @@ def _most_likely(covariance: Covariance, germs: Array, z: Array) -> tuple[Array,
 
 
 def _negative_likelihood(covariance: Covariance, vector: Array, germs: Array, z: Array) -> tuple[float, Array]:
-    from scipy.linalg import LinAlgError, cho_solve, cholesky
-
     matrix, gradient = covariance.with_gradient(vector[:-1], germs)
     noise = np.exp(vector[-1])
     noisy = matrix.copy()

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos.basis import germs_of, recurrences_of
-from lithobrake.chaos.design import checked_count
 from lithobrake.chaos.sobol_indices import SAMPLE_COUNT, skewness_and_kurtosis
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import numbers, random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
 
 
 def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int = 0) -> dict[str, Any]:
@@ -20,18 +19,10 @@ def shape_moments(surrogate: Surrogate, *, count: int = SAMPLE_COUNT, seed: int 
 
     "exact" says whether they are; where not, they come from `count` points, and `skewness_and_kurtosis` says when.
     """
-    found = skewness_and_kurtosis(
-        surrogate.inputs,
-        surrogate.multi_indices,
-        surrogate.coefficients.reshape(surrogate.term_count, -1),
-        count=count,
-        seed=seed,
+    skewness, kurtosis, exact = skewness_and_kurtosis(
+        surrogate.inputs, surrogate.multi_indices, surrogate.coefficient_table, count=count, seed=seed
     )
-    return {
-        "skewness": surrogate.shaped(found.skewness),
-        "kurtosis": surrogate.shaped(found.kurtosis),
-        "exact": found.exact,
-    }
+    return {"skewness": surrogate.shaped(skewness), "kurtosis": surrogate.shaped(kurtosis), "exact": exact}
 
 
 def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:
@@ -44,11 +35,10 @@ def marginal(surrogate: Surrogate, names: Sequence[str]) -> Surrogate:
         raise ValueError(f"marginal needs at least one of {', '.join(surrogate.inputs)}")
     others = [k for k in range(len(surrogate.inputs)) if k not in columns]
     kept = surrogate.multi_indices[:, others].sum(axis=1) == 0
-    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)
     return Surrogate(
         {surrogate.input_names[k]: list(surrogate.inputs.values())[k] for k in columns},
         np.ascontiguousarray(surrogate.multi_indices[kept][:, columns]),
-        coefficients[kept],
+        surrogate.coefficient_table[kept],
         output_names=surrogate.output_names,
         one_dimensional=surrogate.one_dimensional,
         report={"marginal_of": surrogate.report.get("data_hash")},
@@ -62,7 +52,7 @@ def main_effect(surrogate: Surrogate, name: str, points: ArrayLike | int = 50) -
     """
     entry = surrogate.inputs[surrogate.input_names[surrogate.columns([name])[0]]]
     if isinstance(points, int | np.integer):
-        values = np.asarray(entry.ppf(np.linspace(0.005, 0.995, checked_count(int(points)))))
+        values = np.asarray(entry.ppf(np.linspace(0.005, 0.995, sample_count("count", int(points), 1))))
     else:
         values = numbers("points", points)
     return values, marginal(surrogate, [name])(values[:, None])
@@ -76,7 +66,7 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
     """
     points = surrogate.checked_points(x)
     indices = surrogate.multi_indices
-    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)
+    coefficients = surrogate.coefficient_table
     germs = germs_of(surrogate.inputs, points)
     recurrences = recurrences_of(surrogate.inputs, indices)
     values = [one.values(germ)[indices[:, k]] for k, (one, germ) in enumerate(zip(recurrences, germs, strict=True))]
@@ -93,9 +83,9 @@ def gradient(surrogate: Surrogate, x: ArrayLike) -> Array:
 
 def sampled_outputs(surrogate: Surrogate, count: int = 100_000, *, seed: int = 0) -> Array:
     """Outputs at random inputs, [count, output_count] or [count]."""
-    shape = checked_count(count, len(surrogate.inputs)), len(surrogate.inputs)
+    shape = sample_count("count", count, len(surrogate.inputs)), len(surrogate.inputs)
     uniforms = random_numbers(seed).random(shape)
-    columns = [entry.sample(uniforms[:, k]) for k, entry in enumerate(surrogate.inputs.values())]
+    columns = [entry.ppf(uniforms[:, k]) for k, entry in enumerate(surrogate.inputs.values())]
     return surrogate(np.column_stack(columns))
 
 
@@ -136,7 +126,7 @@ def density(
 def output_correlation(surrogate: Surrogate) -> Array:
     """Correlation of the outputs over the inputs, exact from the coefficients, [output_count, output_count]."""
     varying = surrogate.multi_indices.sum(axis=1) > 0
-    coefficients = surrogate.coefficients.reshape(surrogate.term_count, -1)[varying]
+    coefficients = surrogate.coefficient_table[varying]
     covariance = coefficients.T @ coefficients
     scale = np.sqrt(np.where(np.diag(covariance) > 0.0, np.diag(covariance), 1.0))
     return covariance / np.outer(scale, scale)

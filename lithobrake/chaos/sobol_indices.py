@@ -1,7 +1,6 @@
 """Sobol indices, skewness and kurtosis of an expansion, from its coefficients and the products of its terms."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,15 +192,6 @@ def interaction(indices: Indices, coefficients: Array, members: Sequence[int]) -
     return _shares(indices, coefficients, ((indices > 0) == wanted).all(axis=1)[None, :])[0]
 
 
-@dataclass(frozen=True)
-class ShapeMoments:
-    """Skewness and kurtosis (3 for a normal) of each output, [output_count]; 0 where nothing varies."""
-
-    skewness: Array
-    kurtosis: Array
-    exact: bool
-
-
 @one_thread()
 def skewness_and_kurtosis(
     inputs: Mapping[str, Distribution],
@@ -210,9 +200,10 @@ def skewness_and_kurtosis(
     *,
     count: int = SAMPLE_COUNT,
     seed: int = 0,
-) -> ShapeMoments:
-    """Moments of the expansion with these terms [term_count, input_count] and coefficients [term_count, output_count].
+) -> tuple[Array, Array, bool]:
+    """Skewness and kurtosis (3 for a normal) of each output [output_count], 0 where nothing varies; whether exact.
 
+    Of the expansion with these terms [term_count, input_count] and coefficients [term_count, output_count].
     Two ways are exact, and the cheaper is taken: the square of the expansion written as an expansion, and a full grid
     of Gauss nodes, of which 2 d + 1 an input integrate a fourth power without error. Beyond twenty million entries of
     products and thirty million nodes, `count` points of a scrambled Sobol sequence stand in.
@@ -231,9 +222,8 @@ def skewness_and_kurtosis(
         third, fourth = _by_grid(inputs, indices, coefficients, rules)
     variance = variance_of(indices, coefficients)
     scale = np.where(variance > 0.0, variance, 1.0)
-    return ShapeMoments(
-        np.where(variance > 0.0, third / scale**1.5, 0.0), np.where(variance > 0.0, fourth / scale**2, 0.0), bool(exact)
-    )
+    skewness, kurtosis = third / scale**1.5, fourth / scale**2
+    return np.where(variance > 0.0, skewness, 0.0), np.where(variance > 0.0, kurtosis, 0.0), bool(exact)
 
 
 def _by_grid(

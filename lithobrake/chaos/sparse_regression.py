@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.degree_selection import Solution, solve_ols, terms_to_try
@@ -164,8 +165,6 @@ def _path(matrix: Array, y: Array, order: Integers) -> tuple[Array, Array, Array
 
 def _fold_errors(matrix: Array, y: Array, method: str, folds: Sequence[Integers]) -> Array:
     """Mean squared error at left-out points for each number of chosen terms, [length + 1]."""
-    from scipy.linalg import solve_triangular
-
     total: Array | None = None
     for rows in folds:
         rest = np.delete(np.arange(len(y)), rows)

@@ -14,7 +14,7 @@ from lithobrake.chaos.basis import Indices, outside_count, points_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.evaluation import EvaluationPlan, evaluate, make_plan
 from lithobrake.chaos.numerical_distributions import checked_inputs
-from lithobrake.chaos.sobol_indices import ShapeMoments, skewness_and_kurtosis
+from lithobrake.chaos.sobol_indices import skewness_and_kurtosis
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers
@@ -26,8 +26,9 @@ class Surrogate:
     """A polynomial chaos expansion of one or several outputs; made by `fit` or `load`.
 
     inputs: name -> distribution, in column order; multi_indices [term_count, input_count]; coefficients of the
-    orthonormal terms [term_count, output_count] ([term_count] for a one-dimensional y); report: how it was fitted,
-    plain JSON values; residuals of the training points [count, output_count], kept jointly over outputs.
+    orthonormal terms [term_count, output_count] ([term_count] for a one-dimensional y; as coefficient_table always with
+    an axis of outputs); report: how it was fitted, plain JSON values; residuals of the training points
+    [count, output_count], kept jointly over outputs.
     Source: [Landings-PCE], Eq 13; [Xiu-2002].
     """
 
@@ -48,7 +49,7 @@ class Surrogate:
         self.one_dimensional = one_dimensional
         self.residuals = np.zeros((0, len(self.output_names))) if residuals is None else residuals
         self.report = report or {}
-        self._coefficients = coefficients
+        self.coefficient_table = coefficients
 
     @property
     def input_names(self) -> list[str]:
@@ -58,7 +59,7 @@ class Surrogate:
     @property
     def coefficients(self) -> Array:
         """Coefficients of the orthonormal terms [term_count, output_count], or [term_count]."""
-        return self._coefficients[:, 0] if self.one_dimensional else self._coefficients
+        return self.coefficient_table[:, 0] if self.one_dimensional else self.coefficient_table
 
     @property
     def degree(self) -> int:
@@ -77,7 +78,7 @@ class Surrogate:
 
     @cached_property
     def _plan(self) -> EvaluationPlan:
-        return make_plan(self.inputs, self.multi_indices, self._coefficients)
+        return make_plan(self.inputs, self.multi_indices, self.coefficient_table)
 
     def __call__(self, x: ArrayLike, *, outside: str = "raise") -> Array:
         """Evaluate at points x in physical units [count, input_count]; result [count, output_count] or [count].
@@ -121,44 +122,44 @@ class Surrogate:
     @property
     def mean(self) -> Any:
         """Mean of each output [output_count], or a number. Source: [Landings-PCE], Eq 18."""
-        return self.shaped(sobol_indices.mean_of(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.mean_of(self.multi_indices, self.coefficient_table))
 
     @property
     def variance(self) -> Any:
         """Variance of each output [output_count], or a number. Source: [Landings-PCE], Eq 21."""
-        return self.shaped(sobol_indices.variance_of(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.variance_of(self.multi_indices, self.coefficient_table))
 
     @cached_property
-    def _shape_moments(self) -> ShapeMoments:
-        return skewness_and_kurtosis(self.inputs, self.multi_indices, self._coefficients)
+    def _shape_moments(self) -> tuple[Array, Array, bool]:
+        return skewness_and_kurtosis(self.inputs, self.multi_indices, self.coefficient_table)
 
     @property
     def skewness(self) -> Any:
         """Skewness of each output [output_count], or a number; `shape_moments` says how, and whether exactly."""
-        return self.shaped(self._shape_moments.skewness)
+        return self.shaped(self._shape_moments[0])
 
     @property
     def kurtosis(self) -> Any:
         """Kurtosis of each output (3 for a normal) [output_count], or a number; as for the skewness."""
-        return self.shaped(self._shape_moments.kurtosis)
+        return self.shaped(self._shape_moments[1])
 
     @property
     def sobol_first(self) -> Array:
         """First-order Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(sobol_indices.first_order(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.first_order(self.multi_indices, self.coefficient_table))
 
     @property
     def sobol_total(self) -> Array:
         """Total Sobol indices [input_count, output_count] or [input_count]; 0 where nothing varies."""
-        return self.shaped(sobol_indices.total_order(self.multi_indices, self._coefficients))
+        return self.shaped(sobol_indices.total_order(self.multi_indices, self.coefficient_table))
 
     def sobol_group(self, names: Sequence[str]) -> Array:
         """Share of the variance in all terms of these inputs only, [output_count] or a number."""
-        return self.shaped(sobol_indices.group_share(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(sobol_indices.group_share(self.multi_indices, self.coefficient_table, self.columns(names)))
 
     def sobol_interaction(self, names: Sequence[str]) -> Array:
         """Sobol index of exactly this set of inputs (any order), [output_count] or a number."""
-        return self.shaped(sobol_indices.interaction(self.multi_indices, self._coefficients, self.columns(names)))
+        return self.shaped(sobol_indices.interaction(self.multi_indices, self.coefficient_table, self.columns(names)))
 
     def columns(self, names: Sequence[str]) -> list[int]:
         """Column of each named input. Raises ValueError for an unknown name."""
@@ -202,7 +203,7 @@ class Surrogate:
             "output_names": self.output_names,
             "one_dimensional": self.one_dimensional,
             "multi_indices": self.multi_indices.tolist(),
-            "coefficients": self._coefficients.tolist(),
+            "coefficients": self.coefficient_table.tolist(),
             "report": self.report,
             "residuals": self.residuals.tolist(),
         }

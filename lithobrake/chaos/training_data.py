@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lithobrake.chaos.basis import checked_weights, outside_count, points_of
+from lithobrake.chaos.basis import checked_points, checked_weights, points_of
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.scores import equal_rows
@@ -79,12 +79,12 @@ def checked_training(
     check_magnitude("y", kept)
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
-    _check_points(distributions, rows)
+    counted = None if weights is None else checked_weights(weights, len(points))[~missing]
     return Training(
         distributions,
-        rows,
+        checked_points(distributions, rows),
         kept,
-        _checked_weights(weights, missing),
+        None if counted is None else counted / counted.mean(),
         _names(output_names, kept.shape[1], one_dimensional),
         one_dimensional,
         int(missing.sum()),
@@ -102,21 +102,6 @@ def check_magnitude(name: str, values: Array) -> None:
             f"{name} varies by {spread[spread > 0.0].min():g}, but must vary by at least {1.0 / LARGEST:g}, or not at "
             "all: give it in a smaller unit"
         )
-
-
-def _check_points(distributions: dict[str, Distribution], rows: Array) -> None:
-    if not np.all(np.isfinite(rows)):
-        raise ValueError("x holds values that are not finite: remove these points")
-    outside, sentence = outside_count(distributions, rows)
-    if outside:
-        raise ValueError(f"{outside} of {len(rows)} points of x are outside the support of the inputs ({sentence})")
-
-
-def _checked_weights(weights: ArrayLike | None, missing: NDArray[np.bool_]) -> Array | None:
-    if weights is None:
-        return None
-    values = checked_weights(weights, len(missing))
-    return values[~missing] / values[~missing].mean()
 
 
 def _names(output_names: Sequence[str] | None, count: int, one_dimensional: bool) -> list[str]:

@@ -3,6 +3,7 @@
 Other parts use this one by the names that stand here.
 """
 
+from lithobrake.dem.bodies.mesh_hull import read_hull
 from lithobrake.dem.bodies.rigid_body import Part, RigidBody, checked_inertia, new_body
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere, equivalent_radius
 from lithobrake.dem.bodies.vectors import folded, period_of
@@ -16,5 +17,5 @@ from lithobrake.vocabulary.material_properties import Material
 __all__ = [
     "BodyMotion", "Box", "ConvexHull", "Material", "Part", "RigidBody", "Shape", "Sphere", "StepTooLargeError", "World",
     "checked_inertia", "contact_duration", "equivalent_radius", "folded", "new_body", "pair_law", "period_of",
-    "rotation_matrices",
+    "read_hull", "rotation_matrices",
 ]  # fmt: skip

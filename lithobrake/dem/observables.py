@@ -103,7 +103,7 @@ class Observables:
 
     @gravity.setter
     def gravity(self, value: ArrayLike) -> None:
-        self._gravity = vector(value, "World gravity")
+        self._gravity = vector(value, "World.gravity")
 
     def _step(self, time_step: float) -> Step:
         reduced = self._state.options["damping_mass"] == "paper"

@@ -29,10 +29,11 @@ from lithobrake.dem.stepping.time_loop import (
 from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.material_properties import Material
 
 
-class StepTooLargeError(ValueError):
+class StepTooLargeError(FieldError):
     """A contact that was met asks for a smaller time step; the step at which it was met has been taken."""
 
 
@@ -61,7 +62,7 @@ class World(Observables):
     ) -> None:
         options = contact_options(shear_modulus_rule, damping_mass, pair_rule, tangential_dashpot)
         if time_step is not None:
-            checked_step(time_step, "a finite value above 0, or None")
+            checked_step(time_step, "is a finite value above 0, or None")
         super().__init__(WorldState(options, period_of(period)), gravity)
         self._clock = Clock(0.0, time_step, time_step)
 
@@ -183,7 +184,7 @@ class World(Observables):
     @thread_count.setter
     def thread_count(self, value: int) -> None:
         if value != int(value) or value < 1:
-            raise ValueError(f"World thread_count is {value!r}; allowed is a whole number of at least 1: change it")
+            raise FieldError("World.thread_count", value, "is a whole number of at least 1")
         self._state.use_threads(int(value))
 
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
@@ -224,18 +225,19 @@ class World(Observables):
         if not self.bodies:
             raise ValueError("World.run_locally has no body to move: add one first")
         for name, value, least, si in (
-            ("duration", duration, 0.0, " s"),
+            ("duration", duration, 0.0, "s"),
             ("steps_per_contact", steps_per_contact, FEWEST_STEPS, ""),
-            ("resolved_speed", resolved_speed, 0.0, " m/s"),
-            ("held_speed", held_speed, 0.0, " m/s"),
-            ("reach", reach, 0.0, " m"),
+            ("resolved_speed", resolved_speed, 0.0, "m/s"),
+            ("held_speed", held_speed, 0.0, "m/s"),
+            ("reach", reach, 0.0, "m"),
         ):
             if not least <= value < math.inf:
-                allowed = f"a finite value of at least {least:g}"
-                raise ValueError(f"World.run_locally {name} is {value!r}{si}; allowed is {allowed}: change it")
+                raise FieldError(
+                    f"World.run_locally {name}", value, f"is a finite value of at least {least:g}", unit=si
+                )
         if held_speed > 0.0 and self._state.watched == NOTHING_WATCHED:
-            raise ValueError(
-                f"World.run_locally held_speed is {held_speed!r} m/s, but no body is watched: call watch first"
+            raise FieldError(
+                "World.run_locally held_speed", held_speed, "is 0 while no body is watched", "call watch first", "m/s"
             )
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
@@ -250,12 +252,14 @@ class World(Observables):
     def _refuse(self, reason: int) -> None:
         if reason == STEP_TOO_LARGE:
             raise StepTooLargeError(
-                f"World time_step is {self.time_step:.6g} s; allowed for the contact met at t = {self.time:.6g} s "
-                f"is at most {self.largest_step:.6g} s: make it smaller"
-            )
+                "World.time_step", float(f"{self.time_step:.6g}"),
+                f"for the contact met at t = {self.time:.6g} s is at most {self.largest_step:.6g} s",
+                "make it smaller", "s",
+            )  # fmt: skip
         assert reason == DIVERGED
         raise FloatingPointError(
-            f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers"
+            f"the motion diverged at t = {self.time:.6g} s: positions are no longer finite numbers; take more "
+            "steps_per_contact, or a smaller time_step"
         )
 
     # --- the watched body ----------------------------------------------------------------------------------------

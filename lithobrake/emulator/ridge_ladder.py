@@ -1,7 +1,8 @@
 """Location and scale: ridges that walk from no inputs to all of them, and one that learns how its terms fade."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -35,50 +36,54 @@ LEAST_LEFT = 0.1
 LEAST_FREE = 0.05
 
 
+@dataclass(frozen=True)
+class _Sums:
+    """Sums of squares of centred terms [term_count, term_count], with the target, and of the target, of count runs."""
+
+    gram: Array
+    moments: Array
+    total: float
+    count: float
+
+
 def exponents(indices: Indices) -> Array:
     """Powers of amplitudes and of fades in the deviation of each term, [term_count, 2 * input_count]."""
     return np.hstack([indices > 0, np.maximum(indices - 1, 0)]).astype(float)
 
 
-def learnt(indices: Indices, gram: Array, moments: Array, total: float, count: int) -> tuple[float, Array]:
+def learnt(indices: Indices, sums: _Sums) -> tuple[float, Array]:
     """Evidence, the logarithm of the marginal likelihood over that of no inputs, and logarithms of amplitudes, fades
     and penalty [2 * input_count + 1].
-
-    gram, moments, total: sums of squares of centred terms, with the target, and of the target; of count runs.
     """
-    inputs, powers = indices.shape[1], exponents(indices)
-
-    def loss(vector: Array) -> tuple[float, Array]:
-        return _loss(powers, vector, gram, moments, total, count)
-
-    bounds = [*[AMPLITUDES] * inputs, *[FADES] * inputs, FADING_PENALTIES]
-    options = {"maxiter": STEPS, "ftol": TOLERANCE / count}
-    found = []
-    for fade in FADES_FIRST:
-        first = np.array([*[AMPLITUDE] * inputs, *[fade] * inputs, PENALTY])
-        found.append(optimize.minimize(loss, first, jac=True, method="L-BFGS-B", bounds=bounds, options=options))
+    inputs = indices.shape[1]
+    search = partial(
+        optimize.minimize, _loss, args=(exponents(indices), sums), jac=True, method="L-BFGS-B",
+        bounds=[*[AMPLITUDES] * inputs, *[FADES] * inputs, FADING_PENALTIES],
+        options={"maxiter": STEPS, "ftol": TOLERANCE / sums.count},
+    )  # fmt: skip
+    found = [search(np.array([*[AMPLITUDE] * inputs, *[fade] * inputs, PENALTY])) for fade in FADES_FIRST]
     best = min(found, key=lambda one: float(one.fun))
     return -float(best.fun), np.asarray(best.x)
 
 
-def _loss(powers: Array, vector: Array, gram: Array, moments: Array, total: float, count: int) -> tuple[float, Array]:
+def _loss(vector: Array, powers: Array, sums: _Sums) -> tuple[float, Array]:
     """Negative evidence and its gradient; the deviation of the scatter is that of most evidence."""
-    factors, ridge = np.exp(powers @ vector[:-1]), count * np.exp(vector[-1])
-    scaled = factors[:, None] * gram * factors
+    factors, ridge = np.exp(powers @ vector[:-1]), sums.count * np.exp(vector[-1])
+    scaled = factors[:, None] * sums.gram * factors
     scaled[np.diag_indices_from(scaled)] += ridge
     try:
         lower = linalg.cholesky(scaled, lower=True, check_finite=False)
     except linalg.LinAlgError:
         # The search steps back from parameters for which rounding makes the matrix indefinite.
         return REFUSED, np.zeros_like(vector)
-    weighted = factors * moments
+    weighted = factors * sums.moments
     slopes = linalg.cho_solve((lower, True), weighted, check_finite=False)
     # Rounding may leave nothing, or less, of outputs without scatter.
-    unexplained = max(1.0 - float(weighted @ slopes) / total, 1e-12)
-    value = 0.5 * (count - 1.0) * np.log(unexplained)
+    unexplained = max(1.0 - float(weighted @ slopes) / sums.total, 1e-12)
+    value = 0.5 * (sums.count - 1.0) * np.log(unexplained)
     value += np.log(np.diag(lower)).sum() - 0.5 * len(factors) * np.log(ridge)
     diagonal = np.diag(linalg.lapack.dpotri(lower, lower=1)[0])
-    by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (count - 1.0) / (unexplained * total)
+    by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (sums.count - 1.0) / (unexplained * sums.total)
     # The penalty is one over the square of a factor that all terms have.
     return float(value), np.append(powers.T @ by_factor, -0.5 * by_factor.sum())
 
@@ -119,19 +124,15 @@ class TermTable:
         """That of some of the runs, chosen [count]."""
         return TermTable(self.indices, self.matrix[chosen], self.weights[chosen])
 
+    def sums(self, target: Array) -> _Sums:
+        """The sums of squares of which ridges on a target [count] are made."""
+        y = target - self.weights @ target / self.total
+        weighted = self.weights * y
+        return _Sums(self.gram, self.centred.T @ weighted, float(y @ weighted), self.total)
+
     def at(self, coefficients: Array) -> Array:
         """What coefficients [1 + term_count] of an expansion give at the runs [count]."""
         return np.asarray(coefficients[0] + self.matrix @ coefficients[1:])
-
-
-@dataclass(frozen=True)
-class _Sums:
-    """Sums of squares of centred terms [term_count, term_count], with the target, and of the target, of count runs."""
-
-    gram: Array
-    moments: Array
-    total: float
-    count: float
 
 
 def best_ladder(design: TermTable, target: Array, *, fades: bool = True, doubt: bool = False) -> Ladder:
@@ -141,9 +142,7 @@ def best_ladder(design: TermTable, target: Array, *, fades: bool = True, doubt: 
     one with amplitudes and fades of most evidence, if fades is true. doubt: no inputs are as likely as all rungs
     together, before the runs are seen, and not as each.
     """
-    y = target - design.weights @ target / design.total
-    weighted = design.weights * y
-    sums = _Sums(design.gram, design.centred.T @ weighted, float(y @ weighted), design.total)
+    sums = design.sums(target)
     if sums.total <= 1e-24 * sums.count * float(np.abs(target).max()) ** 2:
         return ()
     rungs = [*_walked(design.indices, sums), *([_fading(design.indices, sums)] if fades else [])]
@@ -152,11 +151,9 @@ def best_ladder(design: TermTable, target: Array, *, fades: bool = True, doubt: 
 
 def fading_rung(design: TermTable, target: Array) -> Rung | None:
     """The rung of learnt amplitudes and fades; None where the target [count] is constant or no input counts."""
-    y = target - design.weights @ target / design.total
-    weighted = design.weights * y
-    if float(y @ weighted) <= 0.0:
+    sums = design.sums(target)
+    if sums.total <= 0.0:
         return None
-    sums = _Sums(design.gram, design.centred.T @ weighted, float(y @ weighted), design.total)
     rung = _fading(design.indices, sums)[1]
     return rung if any(rung.amplitudes) else None
 
@@ -179,8 +176,7 @@ def _walked(indices: Indices, sums: _Sums) -> list[tuple[float, Rung]]:
 
 def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[tuple[float, Rung]]:
     """Rungs on these inputs with their evidence, the logarithm of their marginal likelihood over that of no inputs."""
-    amplitudes = tuple(float(k in inputs) for k in range(indices.shape[1]))
-    amplitudes = tuple(FADE * one for one in amplitudes)
+    amplitudes = tuple(FADE * (k in inputs) for k in range(indices.shape[1]))
     fades = (FADE,) * len(amplitudes)
     for degree in (1, 2) if len(inputs) <= MOST_OF_SECOND_DEGREE else (1,):
         factors = Rung(amplitudes, fades, degree, 0.0).factors(indices) / FADE
@@ -200,7 +196,7 @@ def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[t
 def _fading(indices: Indices, sums: _Sums) -> tuple[float, Rung]:
     """The rung of most evidence, less what its parameters would gain by luck. Source: [Schwarz-1978]."""
     inputs = indices.shape[1]
-    evidence, logarithms = learnt(indices, sums.gram, sums.moments, sums.total, int(sums.count))
+    evidence, logarithms = learnt(indices, sums)
     amplitudes, fades = np.exp(logarithms[:inputs]), np.exp(logarithms[inputs:-1])
     squares = np.exp(2.0 * exponents(indices) @ logarithms[:-1] - logarithms[-1])
     kept = np.max((indices > 0) * squares[:, None], axis=0) > LEAST_LEFT
@@ -222,7 +218,7 @@ def _averaged(rungs: list[tuple[float, Rung]], alone: float) -> Ladder:
     kept = weights >= LEAST_WEIGHT
     share = weights.sum() / weights[kept].sum() if kept.any() else 1.0
     return tuple(
-        Rung(rung.amplitudes, rung.fades, rung.degree, rung.penalty, float(weight * share))
+        replace(rung, weight=float(weight * share))
         for (_, rung), weight, keep in zip(rungs, weights, kept, strict=True)
         if keep
     )

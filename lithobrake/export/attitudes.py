@@ -20,7 +20,7 @@ from lithobrake.smallbody import tumble
 from lithobrake.smallbody.bounce import impact_frame
 from lithobrake.smallbody.tumbling import turned_freely
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import lander
+from lithobrake.touchdown.lander_model import lander
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, VELOCITY_OUT

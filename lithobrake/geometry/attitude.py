@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.bed_limits import alike
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.quantities import ORIENTATION, ORIENTATION_OUT, SPIN, SPIN_OUT
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, ORIENTATION_OUT, SPIN, SPIN_OUT
 
 UPRIGHT, LEAN, ALONG, FACING, HEADING = "upright", "lean", "along", "facing", "heading"
 # The smallest and the largest value of each term.
@@ -214,7 +214,7 @@ def arriving(inputs: Mapping[str, float], axes: np.ndarray) -> tuple[Rotation, n
 
     inputs: of the touchdown, in the frame of its bed; axes: of the touchdown in rows, [3, 3], body-fixed.
     """
-    out_of_bed = from_frame(axes) * about_z(-math.radians(inputs["impact.azimuth_deg"]))
+    out_of_bed = from_frame(axes) * about_z(-math.radians(inputs[IMPACT_AZIMUTH]))
     return out_of_bed * attitude_of(inputs, ORIENTATION), out_of_bed.apply([inputs[name] for name in SPIN])
 
 

@@ -12,7 +12,6 @@ from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quan
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.soils import felt
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN, follow_emulated
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
@@ -21,7 +20,7 @@ from lithobrake.pipeline.sky_at_rest import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
 from lithobrake.study.design_sections import SkyBody
-from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION
+from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION, REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN

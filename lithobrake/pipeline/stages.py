@@ -11,7 +11,7 @@ from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.expansion import expansions
-from lithobrake.pipeline.expansion.expansion_samples import sample_expansion
+from lithobrake.pipeline.expansion.expansion_samples import draw_samples
 from lithobrake.pipeline.first_bounces import emulator
 from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_samples, write_paths
 from lithobrake.pipeline.job import Job, Stage, no_dependencies, same_files
@@ -64,9 +64,8 @@ FLIGHT_PARTS = (
     "vocabulary/known_bodies.py", "vocabulary/quantities.py",
 )  # fmt: skip
 JOURNEY_PARTS = (
-    "pipeline/journeys/campaign.py", "pipeline/journeys/first_arrivals.py", "pipeline/journeys/landers.py",
-    "pipeline/journeys/simulated_touchdowns.py", "pipeline/journeys/touchdown.py", "geometry/attitude.py", *RUN_PARTS,
-    *FLIGHT_PARTS,
+    "pipeline/journeys/campaign.py", "pipeline/journeys/landers.py", "pipeline/journeys/touchdown.py",
+    "pipeline/journeys/first_arrivals.py", "pipeline/journeys/simulated_touchdowns.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (
     "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
@@ -119,12 +118,6 @@ def _screening_dependencies(study: Study) -> Any:
     # The points of one design are best for the degree that is fitted to them.
     own = _expansion("points", "replicate_count", "screening_level", "screening_count", "screening_degree")
     return [design_dependencies(study), study.seed, own(study)]
-
-
-def sample(job: Job) -> None:
-    """Sample the first touchdown by the refined expansion, or else by the emulator."""
-    made = sample_expansion if expanded(job.study) else emulator.draw_emulator_samples
-    made(job)
 
 
 def _sample_files(study: Study) -> list[str]:
@@ -245,7 +238,7 @@ SAMPLE = Stage(
     "sample",
     "samples",
     _sample_files,
-    sample,
+    draw_samples,
     ("emulator", "refine", "test"),
     sample_dependencies,
     (*EXPANSION_PARTS, *EMULATOR_PARTS),
@@ -285,7 +278,7 @@ AIM = Stage(
     delivery_options.follow_options,
     ("emulated",),
     delivery_options.option_dependencies,
-    EMULATED_PARTS,
+    (*EXPANSION_PARTS, *EMULATED_PARTS),
 )
 SKY = Stage(
     "sky",

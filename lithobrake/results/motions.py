@@ -11,7 +11,8 @@ import numpy as np
 
 from lithobrake.files.reading import read_json, reading
 from lithobrake.study import Study, check_tables, load_tables
-from lithobrake.study.touchdown_model import TouchdownModel, engine_hash, lander, landing, stored_bed, touchdown_version
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.touchdown_model import TouchdownModel, engine_hash, landing, stored_bed, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress
 from lithobrake.vocabulary.file_names import LANDING_FILE, STUDY_FILE
 from lithobrake.vocabulary.plain_text import short_repr

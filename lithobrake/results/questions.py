@@ -112,7 +112,7 @@ class AimResult:
     """of the names, in the units of the study file"""
     soil: AimOnGround
     hard: AimOnGround | None
-    """null with [journey]: landers are followed on the soil alone"""
+    """null with hard_ground.count = 0: landers are followed on the soil alone"""
 
 
 @dataclass(frozen=True)

@@ -191,7 +191,7 @@ def results_in(kind: type[T], content: Any, place: str = "") -> T:
         where = ".".join(map(str, [*([place] if place else []), *keys, *lacking]))
         if lacking:
             raise KeyError(where) from None
-        raise ValueError(f"{where} is {first['input']!r}, and {first['msg'].replace('Input should', 'must')}") from None
+        raise ValueError(f"{where} is {first['input']!r}: {first['msg']}") from None
     return result
 
 

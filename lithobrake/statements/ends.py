@@ -202,10 +202,12 @@ def hard_ground_ends(grounds: "Mapping[str, FollowedLanders]", limit: float, dig
     """How many landers come to rest on other ground than that of the study within a time [s]."""
     said = []
     for ground, found in grounds.items():
-        share, lost, of, where = found.ends[JourneyEnd.AT_REST].share, "", "landers", f" on {GROUND_WORDS[ground]}"
-        if found.unknown > 0.0:
-            of, lost = "landers with a known outcome", f"; {unknown_outcome(found.unknown, digits)}"
-        said.append(f"{at_rest(share, limit, where, of, digits=digits)}{lost}.")
+        where, lost = f"on {GROUND_WORDS[ground]}", unknown_outcome(found.unknown, digits)
+        if found.unknown == 1.0:
+            said.append(f"{where.capitalize()} {lost}.")
+            continue
+        of, more = ("landers with a known outcome", f"; {lost}") if found.unknown > 0.0 else ("landers", "")
+        said.append(f"{at_rest(found.ends[JourneyEnd.AT_REST].share, limit, f' {where}', of, digits=digits)}{more}.")
     return said
 
 

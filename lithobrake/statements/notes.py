@@ -1,6 +1,6 @@
 """The notes of the tables of the page."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
@@ -82,22 +82,31 @@ def flights(found: "FlightResults") -> str:
 def on_other_ground(found: "Mapping[str, FollowedLanders]") -> str:
     """Which journeys the columns are of."""
     of = "; ".join(f"{GROUND_WORDS[ground]}: {one.of}" for ground, one in found.items())
-    why = next((f" {as_sentence(one.why)}" for one in found.values() if one.why), "")
-    return f"From the first impact. {as_sentence(of)}{why}"
+    why = [
+        as_sentence(f"No interval on {GROUND_WORDS[ground]}: {one.why[:1].lower()}{one.why[1:]}")
+        for ground, one in found.items()
+        if one.why
+    ]
+    return " ".join(["From the first impact.", as_sentence(of), *why])
 
 
-def hard_ground(section: Mapping[str, Any]) -> str:
-    """The laws of bounces and slides; section: [hard_ground] of the study file."""
+def hard_ground(section: Mapping[str, Any], grounds: Iterable[str]) -> str:
+    """The laws of bounces and slides; section: [hard_ground] of the study file; grounds: on which landers were
+    followed.
+    """
+    like_soil = (
+        "Hard ground like the soil samples the restitution that the soil implies at each speed and incidence "
+        "(restitution.csv). "
+    )
     slides = "slides on by Coulomb friction, on soil that of hull and grain,"
     if section["rolling_friction"] is not None:
         slides = f"rolls on like a sphere against a resistance of {section['rolling_friction']:g} of the normal force,"
     return (
         f"Hard ground: restitution {section['normal_restitution']:g} normal, {section['tangential_restitution']:g} "
         f"tangential, friction {section['friction']:g}; at rest where a rebound rises less than "
-        f"{section['rest_height']:g} m. Hard ground like the soil samples the restitution that the soil implies at "
-        "each speed and incidence (restitution.csv). The path is the sum of straight lines between impacts. A "
-        f"captured lander {slides} from facet to facet until it rests or leaves the ground again; this law "
-        "was not fitted to landings."
+        f"{section['rest_height']:g} m. {like_soil if 'equivalent' in grounds else ''}The path is the sum of straight "
+        f"lines between impacts. A captured lander {slides} from facet to facet until it rests or leaves the ground "
+        "again; this law was not fitted to landings."
     )
 
 

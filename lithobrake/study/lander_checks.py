@@ -42,7 +42,7 @@ def solid(section: LanderSection | PartSection) -> Solid:
     if section.diameter is not None:
         radius = reach(section.diameter)[1] / 2
         return Solid([centre], radius, 4.0 / 3.0 * math.pi * radius**3, centre)
-    from lithobrake.touchdown import read_hull
+    from lithobrake.dem import read_hull
 
     hull = read_hull(Path(str(section.file)), section.unit)
     return Solid(list(map(tuple, hull.vertices.tolist())), 0.0, hull.volume, tuple(hull.centroid.tolist()))

@@ -76,7 +76,7 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
         return f"{key} is {show(found)}; allowed: a table; write [{key}] with its keys below"
     if kind in TYPES:
         return f"{key} is {show(found)}; allowed: {TYPES[kind]}"
-    return f"{key} is {show(found)}; {error['msg'].replace('Input should be', 'it must be')}"
+    return f"{key} is {show(found)}; {error['msg']}"
 
 
 class Named(Protocol):

@@ -11,7 +11,8 @@ from pydantic import BaseModel, Field, PrivateAttr, model_validator
 from lithobrake.study import design_sections, ground_sections, impact_sections
 from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
 from lithobrake.study.lander_section import CentreSection, LanderSection
-from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole
+from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole, median
+from lithobrake.vocabulary.quantities import PLACE
 
 
 class Study(Section):
@@ -126,8 +127,12 @@ class Study(Section):
         values.pop("impact.pointing_error_deg", None)
         if self.impact.region is None and self.impact.place is None:
             # Every run has a place, drawn over the bed in place of this.
-            values |= {"impact.place.x": 0.0, "impact.place.y": 0.0}
+            values |= dict.fromkeys(PLACE, 0.0)
         return values
+
+    def touchdown_medians(self) -> dict[str, float]:
+        """The same, uncertain ones at their median."""
+        return {name: median(value) for name, value in self.touchdown_values().items()}
 
     def site_values(self) -> dict[str, Scalar]:
         """Every scalar that only the flight reads, by dotted key, those of kernels among them.

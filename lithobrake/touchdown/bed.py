@@ -15,6 +15,7 @@ from lithobrake.dem import ConvexHull, Material, World, folded, pair_law, period
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import reading
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.quantities import describe
 
 RAYS_PER_DIAMETER = 4
@@ -103,17 +104,14 @@ class ContactModel:
 
     def __post_init__(self) -> None:
         if self.stepping not in ("global", "local"):
-            raise ValueError(f'ContactModel.stepping is {self.stepping!r}; allowed are "global" and "local": change it')
+            raise FieldError("ContactModel.stepping", self.stepping, 'are "global" and "local"')
         if not 0.0 <= self.resolved_speed <= 1.0:
-            raise ValueError(
-                f"ContactModel.resolved_speed is {self.resolved_speed!r}; allowed is 0 <= value <= 1: change it"
-            )
+            raise FieldError("ContactModel.resolved_speed", self.resolved_speed, "is 0 <= value <= 1")
         if not 0.0 <= self.held_speed < 1.0:
-            raise ValueError(f"ContactModel.held_speed is {self.held_speed!r}; allowed is 0 <= value < 1: change it")
+            raise FieldError("ContactModel.held_speed", self.held_speed, "is 0 <= value < 1")
         if self.held_speed > 0.0 and self.stepping != "local":
-            raise ValueError(
-                f'ContactModel.held_speed is {self.held_speed!r} with stepping "{self.stepping}"; allowed above 0 is '
-                '"local" only: change either'
+            raise FieldError(
+                "ContactModel.held_speed", self.held_speed, f'with stepping "{self.stepping}" is 0', "change either"
             )
 
     def world(self, gravity: tuple[float, float, float], period: tuple[float, float] | None = None) -> World:

@@ -8,6 +8,7 @@ import numpy as np
 from lithobrake.dem import ConvexHull, folded, period_of
 from lithobrake.geometry.bed_limits import BOULDER_REACH, LARGEST_COVERAGE
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.field_errors import FieldError
 
 SIZE_DISTRIBUTIONS = ("constant", "uniform", "normal", "power_law")
 
@@ -48,22 +49,24 @@ class GrainSizes:
     def __post_init__(self) -> None:
         kind = self.distribution
         if kind not in SIZE_DISTRIBUTIONS:
-            raise ValueError(f"grain size distribution is {kind!r}; allowed are {', '.join(SIZE_DISTRIBUTIONS)}")
+            raise FieldError("GrainSizes.distribution", kind, f"are {', '.join(SIZE_DISTRIBUTIONS)}", "choose one")
         if not 0.0 < self.lower <= self.upper < math.inf or (kind == "constant") != (self.lower == self.upper):
-            raise ValueError(
-                f"grain diameters run from {self.lower!r} to {self.upper!r} m; allowed is 0 < lower < upper "
-                "(lower = upper for a constant size): change them"
-            )
+            raise FieldError(
+                "GrainSizes.lower", self.lower,
+                f"with upper {self.upper!r} m is 0 < lower < upper (lower = upper for a constant size)",
+                "change them", "m",
+            )  # fmt: skip
         if kind == "normal" and not self._is_normal():
-            raise ValueError(
-                f"normal grain sizes have mean {self.mean!r} and std {self.std!r} m; allowed: std above 0, and a mean "
-                f"within {FARTHEST_MEAN:g} of it from {self.lower!r} to {self.upper!r} m: change them"
-            )
+            raise FieldError(
+                "GrainSizes.mean", self.mean,
+                f"with std {self.std!r} m, above 0, is within {FARTHEST_MEAN:g} of it from {self.lower!r} to "
+                f"{self.upper!r} m", "change them", "m",
+            )  # fmt: skip
         if kind == "power_law" and not (self.exponent is not None and 0.0 <= self.exponent < math.inf):
-            raise ValueError(
-                f"power-law grain sizes have exponent {self.exponent!r}; allowed: at least 0, as their number falls "
-                "with diameter**-exponent: leave the sign of a slope out"
-            )
+            raise FieldError(
+                "GrainSizes.exponent", self.exponent, "is at least 0, as the number of grains falls with "
+                "diameter**-exponent", "leave the sign of a slope out",
+            )  # fmt: skip
 
     def _is_normal(self) -> bool:
         """Whether mean and standard deviation are those of a normal distribution that has grains in the limits."""
@@ -142,16 +145,10 @@ class Boulders:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.coverage <= LARGEST_COVERAGE:
-            raise ValueError(
-                f"BedRecipe.boulders.coverage is {self.coverage!r}; allowed is 0 < value <= {LARGEST_COVERAGE:g}: "
-                "change it"
-            )
+            raise FieldError("Boulders.coverage", self.coverage, f"is 0 < value <= {LARGEST_COVERAGE:g}")
         low, high = self.cover
         if not -math.inf < low <= high < math.inf:
-            raise ValueError(
-                f"BedRecipe.boulders.cover is {self.cover!r} m; allowed are two finite lengths, the smaller first: "
-                "change it"
-            )
+            raise FieldError("Boulders.cover", self.cover, "are two finite lengths, the smaller first", unit="m")
 
     @property
     def longest(self) -> float:

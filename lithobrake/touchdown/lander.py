@@ -1,7 +1,6 @@
 """The lander: a rigid body of one convex part or several, and the smallest bed for it."""
 
 import math
-import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,9 +19,8 @@ from lithobrake.dem import (
     equivalent_radius,
     new_body,
 )
-from lithobrake.geometry.mesh import refuse_malformed
-from lithobrake.geometry.mesh_files import read_mesh
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.field_errors import FieldError
 
 # Points at which a part is looked for above the ground: so many steps from its centroid to each of its vertices.
 FOOTPRINT_STEPS = 4
@@ -49,14 +47,15 @@ class Lander:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.mass < np.inf:
-            raise ValueError(f"Lander.mass is {self.mass!r} kg; allowed is a finite value above 0: change it")
+            raise FieldError("Lander.mass", self.mass, "is a finite value above 0", unit="kg")
         if self.inertia is not None:
             checked_inertia(self.inertia, "Lander.inertia")
         if self.own_mass <= 0.0:
-            raise ValueError(
-                f"Lander.mass is {self.mass!r} kg, and its parts have {self.mass - self.own_mass:.6g} kg; allowed is "
-                "more than that, for its main shape: raise it, or make the parts lighter"
-            )
+            raise FieldError(
+                "Lander.mass", self.mass,
+                f"is more than the {self.mass - self.own_mass:.6g} kg of its parts, for its main shape",
+                "raise it, or make the parts lighter", "kg",
+            )  # fmt: skip
 
     @property
     def own_mass(self) -> float:
@@ -114,21 +113,6 @@ class Lander:
             points.append((shape.centroid - self.body.centre_of_mass + steps * corners).reshape(-1, 3))
         across: Floats = (np.concatenate(points) @ rotation.T)[:, :2]
         return across
-
-
-def read_hull(path: str | os.PathLike[str], unit: str = "m") -> ConvexHull:
-    """Return the convex envelope of a closed OBJ or STL mesh whose coordinates are in `unit` (m, km, cm, mm).
-
-    The mesh may have several pieces, say solar panels. Raises ValueError for one that is not closed or cannot be read.
-    """
-    vertices, faces = read_mesh(path, unit)
-    refuse_malformed(vertices, faces, f"lander mesh {path}")
-    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    forward = {(a, b) for a, b in edges.tolist()}
-    if len(forward) != len(edges) or any((b, a) not in forward for a, b in forward):
-        raise ValueError(f"lander mesh {path} is not closed, or its triangles turn both ways: mend it in a mesh editor")
-    # Vertices that no face uses are not of the lander.
-    return ConvexHull(vertices[np.unique(faces)])
 
 
 def wave_speed(rock: Material, diameter: float, speed: float) -> float:

@@ -13,6 +13,7 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.touchdown.bed import Bed, ContactModel, write_hulls
 from lithobrake.touchdown.lander import Lander
 from lithobrake.vocabulary.array_types import Floats, Vector
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OVER_RIM, SPIN_OUT, describe
 
@@ -47,17 +48,17 @@ class Landing:
 
     def __post_init__(self) -> None:
         for name, fine, allowed in (
-            ("speed", 0.0 < self.speed < math.inf, "a finite value above 0 m/s"),
-            ("incidence", 0.0 <= self.incidence < 0.5 * math.pi, "0 <= value < pi/2 rad"),
-            ("azimuth", math.isfinite(self.azimuth), "a finite angle"),
-            ("gravity", all(math.isfinite(g) for g in self.gravity), "three finite numbers"),
-            ("spin", all(math.isfinite(w) for w in self.spin), "three finite numbers"),
-            ("orientation", 0.0 < math.hypot(*self.orientation) < math.inf, "four finite numbers, not all zero"),
-            ("time_limit", 0.0 < self.time_limit < math.inf, "a finite value above 0 s"),
-            ("hop_height", self.hop_height is None or 0.0 < self.hop_height < math.inf, "a finite height above 0 m"),
+            ("speed", 0.0 < self.speed < math.inf, "is a finite value above 0 m/s"),
+            ("incidence", 0.0 <= self.incidence < 0.5 * math.pi, "is 0 <= value < pi/2 rad"),
+            ("azimuth", math.isfinite(self.azimuth), "is a finite angle"),
+            ("gravity", all(math.isfinite(g) for g in self.gravity), "are three finite numbers"),
+            ("spin", all(math.isfinite(w) for w in self.spin), "are three finite numbers"),
+            ("orientation", 0.0 < math.hypot(*self.orientation) < math.inf, "are four finite numbers, not all zero"),
+            ("time_limit", 0.0 < self.time_limit < math.inf, "is a finite value above 0 s"),
+            ("hop_height", self.hop_height is None or 0.0 < self.hop_height < math.inf, "is a finite height above 0 m"),
         ):
             if not fine:
-                raise ValueError(f"Landing.{name} is {getattr(self, name)!r}; allowed is {allowed}: change it")
+                raise FieldError(f"Landing.{name}", getattr(self, name), allowed)
 
     @property
     def velocity(self) -> Floats:

@@ -13,6 +13,7 @@ from lithobrake.touchdown.bed import SIDES, Bed, ContactModel, Floats, boxed_wor
 from lithobrake.touchdown.grains import Boulders, GrainSizes, make_grain_within, place_boulders, random_orientation
 from lithobrake.vocabulary.array_types import Vector
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.field_errors import FieldError
 
 RAIN_PLACES = 100  # tried for each grain
 RAIN_DEPTH = 4.0  # of the largest bounding radius, below which no place is looked for at first
@@ -65,7 +66,7 @@ class BedRecipe:
             ("pour_gravity", strength <= self.pour_gravity < math.inf, f"at least the local one, {strength:g} m/s2"),
         ):
             if not fine:
-                raise ValueError(f"BedRecipe.{name} is {getattr(self, name)!r}; allowed is {allowed}: change it")
+                raise FieldError(f"BedRecipe.{name}", getattr(self, name), f"is {allowed}")
 
 
 class Recorder:

@@ -14,6 +14,7 @@ from lithobrake.touchdown.lander import Lander, smallest_bed
 from lithobrake.touchdown.landing import Landing, Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift, rest_time
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.field_errors import FieldError
 
 RELAX_FADING = 5.0  # periods in which the damping of contacts falls by a factor of e: what has to slide must be free to
 CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contact
@@ -41,12 +42,12 @@ def land(
     where the motion diverged.
     """
     if bed.period is None and max(abs(at) / across for at, across in zip(landing.place, bed.width, strict=True)) >= 0.5:
-        raise ValueError(f"Landing.place is {landing.place!r} m; allowed is inside the box of {bed.width} m: move it")
+        raise FieldError("Landing.place", landing.place, f"is inside the box of {bed.width} m", "move it", "m")
     if 2.0 * lander.reach >= min(bed.width):
-        raise ValueError(
-            f"the lander is {2.0 * lander.reach:.3g} m across; allowed is less than the bed's width, "
-            f"{min(bed.width)} m: make the bed wider"
-        )
+        raise FieldError(
+            "Bed.width", bed.width, f"is more than the {2.0 * lander.reach:.3g} m that the lander is across",
+            "make the bed wider", "m",
+        )  # fmt: skip
     world = bed.world(landing.grain, bed.gravity, landing.contact, landing.gravity)
     locally = landing.contact.stepping == "local"
     if locally and released_speed(bed, landing.grain) < CALM_SPEED * landing.speed:

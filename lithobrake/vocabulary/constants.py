@@ -15,3 +15,5 @@ FEWEST_BEDS_OF_TAIL = 10
 FEWEST_BEDS_OF_CORRELATION = 8
 # Of landings and emulator compared in a region.
 FEWEST_BEDS_OF_REGION = 4
+# Fits of an emulator to beds drawn with replacement: each sample or lander is of one of them, and keeps it.
+REFIT_COUNT = 50

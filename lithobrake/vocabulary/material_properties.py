@@ -4,6 +4,8 @@ import math
 from dataclasses import MISSING, dataclass, field, fields
 from typing import Any
 
+from lithobrake.vocabulary.field_errors import FieldError
+
 
 @dataclass(frozen=True)
 class MaterialProperty:
@@ -126,7 +128,7 @@ class Material:
         for name, known in PROPERTIES.items():
             value = getattr(self, name)
             if not known.allows(value):
-                raise ValueError(f"Material.{name} is {value!r}; allowed is {known.range_words}: change it")
+                raise FieldError(f"Material.{name}", value, f"is {known.range_words}")
 
 
 PROPERTIES: dict[str, MaterialProperty] = {

@@ -46,6 +46,8 @@ VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
 # How a lander arrives at a touchdown, by the keys of the study file.
 IMPACT_SPEED, IMPACT_INCIDENCE, IMPACT_AZIMUTH = "impact.speed", "impact.incidence_deg", "impact.azimuth_deg"
 ARRIVAL = (IMPACT_SPEED, IMPACT_INCIDENCE)
+# Where on the bed the lander's centre of mass starts [m].
+PLACE = ("impact.place.x", "impact.place.y")
 # Attitude and spin of a lander as a touchdown begins, in the frame of the bed.
 ORIENTATION = ("impact.orientation.w", "impact.orientation.x", "impact.orientation.y", "impact.orientation.z")
 SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
@@ -53,6 +55,8 @@ SPIN = ("impact.spin_x", "impact.spin_y", "impact.spin_z")
 SPIN_OUT = ("spin_out_x", "spin_out_y", "spin_out_z")
 ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y", "orientation_out_z")
 OVER_RIM = "over_rim"
+# What is left of a journey [s], at most, for one of its touchdowns.
+TIME_LEFT = "journey.time_left"
 # The acceleration of a touchdown, by the keys of the study file.
 GROUND = ("surface.gravity", "surface.slope_deg", "surface.slope_azimuth_deg")
 # Of touchdowns that are followed to rest: see Landing.hop_height.

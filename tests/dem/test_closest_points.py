@@ -146,10 +146,10 @@ def test_degenerate_clouds_are_refused(points, word):
 
 @pytest.mark.parametrize("radius", [0.0, -1.0, math.nan, math.inf])
 def test_spheres_without_a_radius_are_refused(radius):
-    with pytest.raises(ValueError, match="Sphere radius"):
+    with pytest.raises(ValueError, match=r"Sphere\.radius"):
         Sphere(radius)
 
 
 def test_boxes_without_lengths_are_refused():
-    with pytest.raises(ValueError, match="Box lengths"):
+    with pytest.raises(ValueError, match=r"Box\.lengths"):
         Box((1.0, 0.0, 1.0))

@@ -71,7 +71,7 @@ def test_gravity_may_be_given_anew_and_is_refused_where_it_is_no_vector():
     world.time_step = 1e-3
     world.run(steps=100)
     assert world.velocity[0, 2] == pytest.approx(-0.2)
-    with pytest.raises(ValueError, match=r"World gravity is 1\.0; allowed are three finite numbers"):
+    with pytest.raises(ValueError, match=r"World\.gravity is 1\.0; allowed are three finite numbers"):
         world.gravity = 1.0
 
 
@@ -477,7 +477,7 @@ def test_own_steps_find_neighbours_in_cells_as_among_all(monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("period", [(1.0,), (1.0, 0.0), (1.0, math.inf), (math.nan, 1.0), (-1.0, 1.0)])
 def test_a_period_is_two_positive_lengths(period: tuple[float, ...]) -> None:
-    with pytest.raises(ValueError, match=r"World period is .* allowed are two finite lengths above 0"):
+    with pytest.raises(ValueError, match=r"World\.period is .* allowed are two finite lengths above 0"):
         World(period=period)
 
 
@@ -492,7 +492,7 @@ def test_a_period_in_which_two_could_meet_twice_is_refused(stepping: str) -> Non
         if fine:
             advance(world, 1e-3, stepping)
         else:
-            with pytest.raises(ValueError, match=r"World period is .* at least 0\.32 m"):
+            with pytest.raises(ValueError, match=r"World\.period is .* at least 0\.32 m"):
                 advance(world, 1e-3, stepping)
 
 

@@ -280,7 +280,7 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
 ) -> None:
     """What a touchdown was given is the attitude at the end of the flight before, in the frame of its bed."""
     from lithobrake.smallbody import Shape
-    from lithobrake.smallbody.hopping import impact_frame
+    from lithobrake.smallbody.bounce import impact_frame
 
     (path,) = write_attitudes(delivered, tmp_path, [3], frame="fixed")
     parts, shape = attitudes(path), Shape(*delivered.body_shape)

@@ -242,5 +242,5 @@ def test_a_world_keeps_its_tangential_dashpot_in_a_file(tmp_path) -> None:
     older = World.load(tmp_path / "world.h5")
     older.run(duration=0.01)
     assert older.energy()["damping"] > 0.0
-    with pytest.raises(ValueError, match="World tangential_dashpot is 'half'; allowed are mindlin, none: choose one"):
+    with pytest.raises(ValueError, match=r"World\.tangential_dashpot is 'half'; allowed are mindlin, none: choose one"):
         World(tangential_dashpot="half")

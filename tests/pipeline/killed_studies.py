@@ -23,7 +23,7 @@ FORKS = multiprocessing.get_context("forkserver")
 FORKS.set_forkserver_preload(
     ["lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
         "lithobrake.pipeline.planning.planner", "lithobrake.pipeline.study_run", "lithobrake.report.pages.journey_page",
-        "lithobrake.report.pages.paper_page", "lithobrake.report.reports", "lithobrake.smallbody.hopping",
+        "lithobrake.report.pages.paper_page", "lithobrake.report.reports", "lithobrake.smallbody.flight",
         "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "scipy.stats"]
 )  # fmt: skip
 COMMAND = """

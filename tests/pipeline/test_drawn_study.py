@@ -65,7 +65,7 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     assert "10 of 10 stages are current: runs, side runs, flights of the runs" in status
 
 
-def test_a_stage_that_the_study_does_not_ask_for_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
+def test_a_stage_that_nothing_asks_for_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:
     source = StudySource.read(grown[0] / "study.toml")
     with pytest.raises(ValueError, match='"screen" is no stage of this study; allowed: bed,'):
         run_study(source, tmp_path / "out", until="screen")
@@ -92,7 +92,8 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("soil")
     text = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
-    (folder / "study.toml").write_text(f"{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n")
+    asked = "[journey]\ntouchdowns = 1\n[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n"
+    (folder / "study.toml").write_text(f"{text}{asked}")
     run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
     return folder
 

@@ -105,7 +105,9 @@ def test_sites_are_mapped_and_two_studies_compared_on_regions_of_soil(asked: Stu
     )  # fmt: skip
     assert len(site_map.cells) >= 10
     assert 0.0 < site_map.at_rest.value <= 1.0
-    slower = to_rest(expansion=None, delivery={"incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 20.0}})
+    steep = {"distribution": "uniform", "lower": 0.0, "upper": 20.0}
+    slower = to_rest(delivery=QUESTIONS["delivery"] | {"incidence_deg": steep})
+    del slower["expansion"]
     with quick_studies():
         other = lithobrake.run(slower, tmp_path / "other", workers=1, model=land, report=False)
     answers = compare_studies(asked.folder, other.folder).answers
@@ -116,9 +118,8 @@ def test_sites_are_mapped_and_two_studies_compared_on_regions_of_soil(asked: Stu
 def first(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """A study of first touchdowns alone, with what was asked of landers to rest."""
     pointed = {**QUESTIONS["delivery"], "orientation": [1.0, 0.0, 0.0, 0.0], "pointing_error_deg": 30.0}
-    tables = bouncing_lander.journey_tables(
-        **QUESTIONS | {"delivery": pointed, "journey": {"touchdowns": 1, "emulated_count": None}, "expansion": None}
-    )
+    tables = bouncing_lander.journey_tables(**QUESTIONS | {"delivery": pointed, "journey": {"touchdowns": 1}})
+    del tables["expansion"], tables["journey"]["emulated_count"]
     tables["bed"]["boulders"] = {"diameter": {"distribution": "constant", "value": 0.15}, "coverage": 0.1}
     tables["bed"]["width"] = [1.0, 1.0]
     with quick_studies():

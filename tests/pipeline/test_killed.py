@@ -29,8 +29,8 @@ test_count = 6
 """
 # Stages in which to kill; those in which much is made several times. Fits and scores end within a blink, before a kill
 # could hit them.
-MOMENTS = ("bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "paths", "hard_ground",
-    "summary", "report")  # fmt: skip
+MOMENTS = ("bed", "landing", *["screening_runs"] * 2, "refined_runs", "test_runs", "sample", "fly", "paths",
+    "hard_ground", "summary", "report")  # fmt: skip
 AT_ONCE = {"screen", "refine", "test"}
 MAKE_RUNS = ("screening_runs", "refined_runs", "test_runs")
 LEDGER = ("runs.sqlite", "runs.sqlite-wal", "runs.sqlite-shm")

@@ -29,11 +29,12 @@ ELSEWHERE = (
         "progress",
     ),  # how files are written
     *("campaign", "compilation"),  # who makes runs, and how kernels are compiled
-    *("dem", "touchdown", "study/touchdown_model.py"),  # the hash of the engine
+    *("dem", "touchdown"),  # the hash of the engine
     *("study", "vocabulary"),  # by their values, which each stage reads; words
     *("pipeline/runs/beds.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     # inputs of the first touchdowns of journeys, which the keys of runs hold
     *("pipeline/design/arrivals.py", "pipeline/design/descents.py", "pipeline/design/drawn_design.py"),
+    "pipeline/design/random_inputs.py",  # inputs of runs, likewise
     "__init__.py",
 )
 # The site that a design holds: its runs take of it the same inputs of first touchdowns alone. What else reads the site
@@ -88,7 +89,7 @@ def before(stage: Stage) -> tuple[str, ...]:
     return stage.parts + tuple(part for name in stage.after for part in before(by_name[name]))
 
 
-@pytest.mark.parametrize("stage", [one for one in STAGES if one.parts], ids=lambda stage: stage.name)
+@pytest.mark.parametrize("stage", [one for one in STAGES[:-1] if one.parts], ids=lambda stage: stage.name)
 def test_each_stage_is_outdated_by_all_code_that_decides_its_files(stage: Stage) -> None:
     start = file_of(stage.make.__module__)[0]
     lacking = {path for path in closure(start) if not is_in(path, before(stage))}
@@ -132,7 +133,7 @@ def edited(files: list[Path]) -> Iterator[None]:
     ("report/pages", {"report"}),
     ("statements", {"estimate", "summary", "report"}),
     ("results/study_results.py", {"estimate", "summary", "report"}),
-    ("pipeline/first_bounces/bounce_laws.py", {"hard_ground", "emulated", "aim", "summary", "report"}),
+    ("pipeline/first_bounces/bounce_laws.py", {"hard_ground", "aim", "summary", "report"}),
     ("pipeline/answer", {"estimate", "summary", "report"}),
 ])  # fmt: skip
 def test_a_comma_outdates_what_its_room_makes_and_nothing_else(
@@ -143,5 +144,5 @@ def test_a_comma_outdates_what_its_room_makes_and_nothing_else(
     with edited([place] if place.is_file() else list(place.glob("*.py"))):
         changed = stage_keys(study)
     assert stage_keys(study) == keys
-    written = {stage.name for stage in STAGES if stage.files(study)}
-    assert {name for name in written if keys[name] != changed[name]} == outdated & written
+    made = {stage.name for stage in STAGES if stage.files(study)}
+    assert {name for name in keys if keys[name] != changed[name]} == outdated & made

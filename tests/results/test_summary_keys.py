@@ -72,9 +72,9 @@ def test_a_key_that_is_not_there_is_named_with_its_place(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("changes", "words"), [
-    ({"share": "much"}, r"shares\.impact\.share is 'much', and must be a valid number"),
-    ({"count": True}, r"shares\.impact\.count is True, and must be a valid integer"),
-    ({"lower": "none"}, r"shares\.impact\.lower is 'none', and must be a valid number"),
+    ({"share": "much"}, r"shares\.impact\.share is 'much': Input should be a valid number"),
+    ({"count": True}, r"shares\.impact\.count is True: Input should be a valid integer"),
+    ({"lower": "none"}, r"shares\.impact\.lower is 'none': Input should be a valid number"),
 ])  # fmt: skip
 def test_a_value_of_another_type_is_named_with_its_place(changes: dict[str, Any], words: str) -> None:
     entry = {"count": 1, "share": 0.5, "lower": None, "upper": None}

@@ -12,7 +12,7 @@ from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.delivered_states import read_states
 from lithobrake.study.lander_checks import lander_radius
 from lithobrake.study.source import fixed_study
-from lithobrake.study.touchdown_model import lander, medians
+from lithobrake.touchdown.lander_model import lander
 
 from ..paper_tables import SMALL_GROUND, paper_tables, with_keys
 
@@ -237,7 +237,7 @@ def study(**changes: Any) -> Study:
 
 def test_reach_and_masses_are_those_of_the_engine() -> None:
     one = study(part={"boom": BOOM, "aside": ASIDE, "foot": FOOT})
-    body = lander(one, medians(one))
+    body = lander(one, one.touchdown_medians())
     # Edges and corners of hulls are rounded, by a fiftieth of their least width at most.
     assert lander_radius(one.lander) == pytest.approx(body.reach, rel=1e-3)
     assert body.own_mass == pytest.approx(12.0 - 0.1 - 1000.0 * np.pi / 6.0 * 0.06**3)
@@ -252,14 +252,14 @@ def test_centre_of_mass_and_inertia_are_the_sums_over_point_like_parts() -> None
     ball = {"shape": "sphere", "diameter": 0.01, "mass": 1.0}
     ends = {"one": {**ball, "centre": [1.0, 0.0, 0.0]}, "two": {**ball, "centre": [0.0, 1.0, 0.0]}}
     one = study(part=ends, mass=2.0 + 1e-6)
-    body = lander(one, medians(one)).body
+    body = lander(one, one.touchdown_medians()).body
     np.testing.assert_allclose(body.centre_of_mass, [0.5, 0.5, 0.0], atol=1e-6)
     np.testing.assert_allclose(body.inertia, [[0.5, 0.5, 0], [0.5, 0.5, 0], [0, 0, 1.0]], atol=1e-4)
 
 
 def test_what_is_given_stands_in_the_axes_of_the_lander() -> None:
     one = study(centre_of_mass={"x": 0.01, "z": -0.02}, inertia=[0.2, 0.3, 0.4, 0.05, 0.0, -0.02])
-    body = lander(one, medians(one)).body
+    body = lander(one, one.touchdown_medians()).body
     np.testing.assert_allclose(body.centre_of_mass, [0.01, 0.0, -0.02])
     np.testing.assert_allclose(body.inertia, [[0.2, 0.05, 0.0], [0.05, 0.3, -0.02], [0.0, -0.02, 0.4]])
 
@@ -267,7 +267,7 @@ def test_what_is_given_stands_in_the_axes_of_the_lander() -> None:
 def test_uncertain_properties_of_parts_are_inputs_by_their_keys() -> None:
     law = {"distribution": "uniform", "lower": 0.1, "upper": 0.3}
     one = study(part={"foot": {**FOOT, "restitution": law}}, centre_of_mass={"y": {**law, "lower": -0.1}})
-    values = medians(one)
+    values = one.touchdown_medians()
     assert values["lander.part.foot.restitution"] == pytest.approx(0.2)
     values |= {"lander.part.foot.restitution": 0.15, "lander.centre_of_mass.y": 0.05}
     made = lander(one, values)
@@ -278,11 +278,11 @@ def test_numbers_of_a_run_stand_in_the_tables_of_parts() -> None:
     one = study(part={"foot": FOOT}, centre_of_mass={"y": 0.0})
     given = {"lander.part.foot.restitution": 0.4, "lander.centre_of_mass.y": 0.03}
     orientation = {f"impact.orientation.{part}": float(part == "w") for part in "wxyz"}
-    fixed = fixed_study(one, {**medians(one), **orientation, **given})
+    fixed = fixed_study(one, {**one.touchdown_medians(), **orientation, **given})
     assert (fixed.lander.part["foot"].restitution, fixed.lander.centre_of_mass.y) == (0.4, 0.03)
     for key in ("lander.part.foot", "lander.part.hand.restitution", "lander.part.foot.speed"):
         with pytest.raises(StudyError, match=key):
-            fixed_study(one, {**medians(one), **orientation, key: 0.4})
+            fixed_study(one, {**one.touchdown_medians(), **orientation, key: 0.4})
 
 
 def test_a_landing_depends_on_the_parts_and_on_nothing_more_without_any() -> None:

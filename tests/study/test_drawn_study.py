@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline import flights
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import Study, StudyError, StudySource, check_tables, read_study
 from lithobrake.study.ground_sections import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count
 from lithobrake.study.reader import BESIDE, shipped, shipped_by_name, study_path
 from lithobrake.study.template import template
-from lithobrake.study.touchdown_model import draw, medians
 from lithobrake.study.units import input_units, run_units
 from lithobrake.touchdown import OUTPUTS as OUTPUTS_OF_A_TOUCHDOWN
 from lithobrake.vocabulary.quantities import (
@@ -270,7 +270,7 @@ def test_a_copy_replaces_nothing(tmp_path: Path) -> None:
 
 def test_every_input_of_a_run_has_its_unit() -> None:
     study = check_tables(tomllib.loads(template()), Path())
-    inputs, units = draw(study, medians(study), 1, None), input_units()
+    inputs, units = draw(study, study.touchdown_medians(), 1, None), input_units()
     # The number of the bed that a run draws counts nothing.
     assert set(inputs) - set(units) == {"bed"}
     assert (units["grain.young_modulus"], units["grain.friction"], units["impact.incidence_deg"]) == ("Pa", "-", "deg")

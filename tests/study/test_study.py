@@ -15,7 +15,7 @@ from lithobrake.study import Study, StudyError, check_tables, known_keys, read_s
 from lithobrake.study.quantity import uncertain
 from lithobrake.study.short_study import LANDERS, all_keys, escape_speed, known_body, known_lander, short_study
 from lithobrake.study.template import template
-from lithobrake.study.touchdown_model import boulders
+from lithobrake.touchdown.soil import boulders
 from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody
 
 from ..paper_tables import paper_tables

@@ -72,7 +72,7 @@ def test_the_mean_diameter_is_that_of_the_law():
     {"distribution": "normal", "lower": 0.1, "upper": 0.2, "mean": 0.15, "std": float("nan")},
 ])  # fmt: skip
 def test_wrong_sizes_are_refused(wrong):
-    with pytest.raises(ValueError, match=r"grain|sizes"):
+    with pytest.raises(ValueError, match=r"GrainSizes\."):
         GrainSizes(**wrong)
 
 

@@ -23,7 +23,7 @@ from lithobrake.vocabulary.given_numbers import (
     whole_number,
 )
 from lithobrake.vocabulary.number_words import LEVEL, part, percent, rare_percent, span, with_interval
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyStatus, SampleOutcome, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import CapturedFate, FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 
 
 @pytest.mark.parametrize("value", [1.5, "3", None, True, float("nan"), float("inf"), -1, 8, [3]])
@@ -143,15 +143,14 @@ def test_all_names_come_with_a_star() -> None:
 
 def test_words_are_plain_text_and_each_has_its_sentence():
     assert FlightStatus.IMPACT == "impact"
-    assert f"{JourneyStatus.SETTLED}" == "settled"
+    assert f"{CapturedFate.SETTLED}" == "settled"
     assert [*TouchdownOutcome] == ["clear", "captured", "left_sideways", "time_limit"]
     assert [*SampleOutcome] == [*TouchdownOutcome, "outside"]
     assert [*FlightStatus] == ["flying", "impact", "escaped", "partner"]
-    assert set(JourneyStatus) == {
-        *("settled", "lofted", "outside", "sliding", "bouncing", "flying", "escaped", "partner")
-    }
-    for status in (*TouchdownOutcome, *SampleOutcome, *FlightStatus, *JourneyStatus):
-        assert status.sentence.startswith("The ")
+    assert [*CapturedFate] == ["settled", "lofted"]
+    assert [*JourneyEnd] == ["at_rest", "escaped", "partner", "under_way", "failed"]
+    for status in (*TouchdownOutcome, *SampleOutcome, *FlightStatus, *CapturedFate, *JourneyEnd):
+        assert status.sentence.startswith(("The ", "A "))
         assert status.sentence.endswith(".")
         assert type(status.value) is str
 
@@ -164,7 +163,7 @@ def test_the_numbers_of_the_kernels_are_in_the_order_of_the_words():
 
 
 def test_no_other_file_types_such_a_word():
-    words = {str(word) for word in (*TouchdownOutcome, *FlightStatus, *JourneyStatus)}
+    words = {str(word) for word in (*TouchdownOutcome, *FlightStatus, *CapturedFate)}
     # These also name a table of the study file, a table of the site, and a setting of a landing.
     words -= {"impact", "partner", "time_limit"}
     for path in (Path(__file__).parents[2] / "lithobrake").rglob("*.py"):

@@ -29,7 +29,7 @@ from samples import BINS, CELLS, ENDS, FACES, GROUNDS, Sample, categories, sampl
 from scipy.stats import rankdata
 
 import lithobrake
-from lithobrake.study.touchdown_model import touchdown_version
+from lithobrake.touchdown.touchdown_model import touchdown_version
 
 HERE = Path(__file__).parent
 FORECAST = "forecast.json"

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.material_properties import Material
 
 Offset = tuple[float, ...]
@@ -119,7 +120,7 @@ def new_body(
     Raises ValueError for a mass that is not positive, a centre that is not finite, and an inertia that no body has.
     """
     if mass is not None and not 0.0 < mass < np.inf:
-        raise ValueError(f"add_body mass is {mass!r} kg; allowed is a finite value above 0: change it")
+        raise FieldError("add_body mass", mass, "is a finite value above 0", unit="kg")
     centre = None if centre_of_mass is None else vector(centre_of_mass, "add_body centre_of_mass")
     if others or centre is not None:
         return _body_of_parts((Part(shape, material), *others), mass, inertia, centre)
@@ -187,14 +188,14 @@ def checked_inertia(inertia: ArrayLike, name: str) -> Floats:
     symmetric = tensor.shape == (3, 3) and np.isfinite(tensor).all() and np.array_equal(tensor, tensor.T)
     moments = np.linalg.eigvalsh(tensor) if symmetric else np.zeros(3)
     if moments[0] <= 0.0:
-        raise ValueError(
-            f"{name} is {tensor.tolist()} kg m2; allowed is a symmetric positive definite 3 x 3 tensor: mend it"
-        )
+        raise FieldError(name, tensor.tolist(), "is a symmetric positive definite 3 x 3 tensor", "mend it", "kg m2")
     if moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
-        raise ValueError(
-            f"{name} has the principal moments {', '.join(f'{moment:.6g}' for moment in moments)} kg m2; allowed is "
-            "each at most the sum of the other two, as every body has it: mend it"
-        )
+        shown = ", ".join(f"{moment:.6g}" for moment in moments)
+        raise FieldError(
+            name, tensor.tolist(),
+            f"are principal moments each at most the sum of the other two, as every body has it, and not {shown}",
+            "mend it", "kg m2",
+        )  # fmt: skip
     return tensor
 
 
@@ -202,7 +203,7 @@ def vector(value: ArrayLike, name: str) -> Floats:
     """Return three finite numbers. Raises ValueError for anything else."""
     array = np.array(value, dtype=np.float64)
     if array.shape != (3,) or not np.isfinite(array).all():
-        raise ValueError(f"{name} is {value!r}; allowed are three finite numbers: change it")
+        raise FieldError(name, value, "are three finite numbers")
     return array
 
 
@@ -228,6 +229,6 @@ def units(vectors: Floats, name: str) -> Floats:
     # Stated as what is allowed: NaN fails every comparison, so it would pass a test for what is not.
     if not ((length > 0.0) & (length < np.inf)).all():
         wrong = vectors[~((length > 0.0) & (length < np.inf))][0].tolist()
-        raise ValueError(f"{name} is {wrong}; allowed is any finite vector other than zero: change it")
+        raise FieldError(name, wrong, "is any finite vector other than zero")
     unit: Floats = vectors / length[:, None]
     return unit

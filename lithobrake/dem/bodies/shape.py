@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull as Quickhull
 from scipy.spatial import QhullError
 
+from lithobrake.vocabulary.field_errors import FieldError
+
 # Facets whose unit normals differ by less are one face: far above round-off, far below any angle one would draw.
 COPLANAR = 1e-9
 # Rounding radius over the distance from the centroid to the nearest face.
@@ -197,12 +199,12 @@ class Sphere:
 
     def __init__(self, radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         if not 0.0 < radius < math.inf:
-            raise ValueError(f"Sphere radius is {radius!r} m; allowed is a finite value above 0: change it")
+            raise FieldError("Sphere.radius", radius, "is a finite value above 0", unit="m")
         self.radius = float(radius)
         self.volume = 4.0 / 3.0 * math.pi * self.radius**3
         self.centroid = np.array(centre, dtype=np.float64)
         if self.centroid.shape != (3,) or not np.isfinite(self.centroid).all():
-            raise ValueError(f"Sphere centre is {centre!r} m; allowed are three finite numbers: change it")
+            raise FieldError("Sphere.centre", centre, "are three finite numbers", unit="m")
         self.inertia_per_density = 0.4 * self.volume * self.radius**2 * np.eye(3)
         self.rounding = self.radius
         self.core_polyhedron = single_point()
@@ -305,9 +307,7 @@ class Box(ConvexHull):
 
     def __init__(self, lengths: Sequence[float]) -> None:
         if len(lengths) != 3 or not all(0.0 < length < math.inf for length in lengths):
-            raise ValueError(
-                f"Box lengths are {tuple(lengths)!r} m; allowed are three finite values above 0: change them"
-            )
+            raise FieldError("Box.lengths", tuple(lengths), "are three finite values above 0", "change them", "m")
         self.lengths = tuple(float(length) for length in lengths)
         signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         super().__init__(signs * np.array(self.lengths))

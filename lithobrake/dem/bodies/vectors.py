@@ -9,6 +9,7 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Period
 from lithobrake.vocabulary.array_types import Floats, Vector
+from lithobrake.vocabulary.field_errors import FieldError
 
 NO_PERIOD = Period(0.0, 0.0, 0.0, 0.0)
 # Over which bounding radii and skins of the two largest bodies a period extends at least.
@@ -124,9 +125,7 @@ def period_of(lengths: Sequence[float] | None) -> Period:
     if lengths is None:
         return NO_PERIOD
     if len(lengths) != 2 or not all(0.0 < length < math.inf for length in lengths):
-        raise ValueError(
-            f"World period is {lengths!r} m; allowed are two finite lengths above 0 along x and y, or None: change it"
-        )
+        raise FieldError("World.period", lengths, "are two finite lengths above 0 along x and y, or None", unit="m")
     x, y = (float(length) for length in lengths)
     return Period(x, y, 1.0 / x, 1.0 / y)
 
@@ -145,10 +144,12 @@ def refuse_short_period(period: Period, bounding_radius: Floats, skin: float) ->
     """Raise ValueError where two bodies could meet through two images."""
     least = shortest_period(bounding_radius, skin)
     if period != NO_PERIOD and min(period.x, period.y) < least:
-        raise ValueError(
-            f"World period is {(period.x, period.y)!r} m; allowed for its two largest bodies is at least {least:.4g} m "
-            "along x and y, so that no two meet through two images: make it longer, or the bodies smaller"
-        )
+        raise FieldError(
+            "World.period", (period.x, period.y),
+            f"for its two largest bodies is at least {least:.4g} m along x and y, so that no two meet through two "
+            "images",
+            "make it longer, or the bodies smaller", "m",
+        )  # fmt: skip
 
 
 def refuse_tilted_plane(period: Period, normal: Floats) -> None:

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES, Material
 
 SHEAR_MODULUS_RULES = ("mindlin", "paper")
@@ -74,7 +75,7 @@ def contact_options(
     every = (SHEAR_MODULUS_RULES, DAMPING_MASSES, PAIR_RULES, TANGENTIAL_DASHPOTS)
     for (name, value), allowed in zip(options.items(), every, strict=True):
         if value not in allowed:
-            raise ValueError(f"World {name} is {value!r}; allowed are {', '.join(allowed)}: choose one")
+            raise FieldError(f"World.{name}", value, f"are {', '.join(allowed)}", "choose one")
     return options
 
 

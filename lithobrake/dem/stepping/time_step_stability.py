@@ -14,6 +14,7 @@ from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
 from lithobrake.vocabulary.array_types import Floats, Vector
+from lithobrake.vocabulary.field_errors import FieldError
 from lithobrake.vocabulary.material_properties import Material
 
 # Steps in the shortest contact when a world chooses its own step.
@@ -26,17 +27,17 @@ STABLE_FRACTION = 0.8
 LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 
-def checked_step(time_step: float, allowed: str = "a finite value above 0") -> float:
+def checked_step(time_step: float, allowed: str = "is a finite value above 0") -> float:
     """Return a time step [s]. Raises ValueError for one that is not finite and positive; `allowed` says what is."""
     if not 0.0 < time_step < math.inf:
-        raise ValueError(f"World time_step is {time_step!r} s; allowed is {allowed}: change it")
+        raise FieldError("World.time_step", time_step, allowed, unit="s")
     return float(time_step)
 
 
 def checked_count(steps: float) -> int:
     """Return a number of steps. Raises ValueError for one that is not whole, or below 0."""
     if steps != int(steps) or steps < 0:
-        raise ValueError(f"World.run steps is {steps!r}; allowed is a whole number of at least 0: change it")
+        raise FieldError("World.run steps", steps, "is a whole number of at least 0")
     return int(steps)
 
 
@@ -62,9 +63,7 @@ class Clock:
         Raises ValueError for a duration that is not finite, or below 0.
         """
         if duration is None or not 0.0 <= duration < math.inf:
-            raise ValueError(
-                f"World.run duration is {duration!r} s; allowed is a finite value of at least 0: change it"
-            )
+            raise FieldError("World.run duration", duration, "is a finite value of at least 0", unit="s")
         if duration == 0.0:
             return 0
         if self.time_step is None:
@@ -117,7 +116,7 @@ def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict
     options: see material.contact_options. Raises ValueError for a speed of zero, and where no two things can meet.
     """
     if not speed > 0.0:
-        raise ValueError("World time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
+        raise ValueError("World.time_step cannot be chosen while nothing moves or falls: give a time_step [s]")
     parts = [
         (part.material, mass, part.shape.contact_radius)
         for body in bodies
@@ -127,7 +126,7 @@ def shortest_contact(bodies: list[RigidBody], planes: list[Plane], options: dict
     rules = options["shear_modulus_rule"], options["pair_rule"]
     duration = shortest_contact_duration(parts, made_of, speed, *rules)
     if duration == math.inf:
-        raise ValueError("World time_step cannot be chosen while nothing can collide: give a time_step [s]")
+        raise ValueError("World.time_step cannot be chosen while nothing can collide: give a time_step [s]")
     return duration
 
 

@@ -14,7 +14,6 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import why_no_interval
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, FRESH, OWN, most_landings
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
@@ -24,6 +23,7 @@ from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome

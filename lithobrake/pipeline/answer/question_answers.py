@@ -12,7 +12,6 @@ from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.flights import read_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.run_flights import RunFlights
@@ -28,6 +27,7 @@ from lithobrake.study.design_sections import AT_REST, SIDE, AimLimit
 from lithobrake.study.lander_section import side_words
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary import outcomes
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import AIM_FILE, SAMPLE_FLIGHTS_FILE
 from lithobrake.vocabulary.limit_state import LimitState
@@ -159,7 +159,7 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
 
 @dataclass(frozen=True)
 class OptionLanders:
-    """OptionLanders on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
+    """Landers on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
 
     status: np.ndarray
     time: np.ndarray

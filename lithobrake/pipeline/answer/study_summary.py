@@ -45,7 +45,9 @@ from lithobrake.results.summary import Estimates, Provenance, Results, RunTimes,
 from lithobrake.statements.answers import study_answer, study_headline
 from lithobrake.statements.touchdowns import disagreement
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import grain, lander, stored_bed
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.soil import grain
+from lithobrake.touchdown.touchdown_model import stored_bed
 from lithobrake.vocabulary.file_names import RUNS_FILE, SUMMARY_FILE
 from lithobrake.vocabulary.quantities import (
     DRAWN_DESIGNS,

@@ -24,11 +24,10 @@ from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.study_files import intact_file, json_values
 from lithobrake.statements.comparison import lines, other_beds, pairs
 from lithobrake.study import Study, StudySource
-from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN, counted
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import ORIENTATION, TOUCHDOWN
+from lithobrake.vocabulary.quantities import ORIENTATION, PLACE, TOUCHDOWN
 
 # What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
 COMMON = {

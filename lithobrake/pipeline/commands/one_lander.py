@@ -12,6 +12,7 @@ from lithobrake.campaign import Record, RunStatus, run_key
 from lithobrake.pipeline.design.arrivals import on_local_ground
 from lithobrake.pipeline.design.dependencies import touchdown_dependencies
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.campaign import Journeys
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
@@ -22,11 +23,13 @@ from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS
 from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
-from lithobrake.study.touchdown_model import TIME_LEFT, draw, in_words_of_the_study, lander, landing, touchdown_version
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.study_keys import by_study_keys
+from lithobrake.touchdown.touchdown_model import landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TOUCHDOWN
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TIME_LEFT, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
@@ -133,7 +136,7 @@ def bed_of(study: Study, number: int, progress: Progress) -> "Bed":
     from lithobrake.touchdown.bed import Bed
 
     # A folder of its own, since no file of a study is read or written here.
-    with in_words_of_the_study(), TemporaryDirectory(prefix="lithobrake-") as folder:
+    with by_study_keys(), TemporaryDirectory(prefix="lithobrake-") as folder:
         recipe, path = bed_recipe(study, number), Path(folder) / "bed.h5"
 
         def pour() -> "Bed":
@@ -150,7 +153,7 @@ def landed(
     """Land once with all that a landing reads on this bed; the study has the gravity of its site."""
     from lithobrake.touchdown import land
 
-    with in_words_of_the_study():
+    with by_study_keys():
         body, arrival = lander(study, values), landing(study, values)
         return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
 

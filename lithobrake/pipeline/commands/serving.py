@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake.campaign import LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.first_bounces.emulator import DrawnLandings, why_no_emulator
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
@@ -27,7 +28,6 @@ from lithobrake.results.study_files import intact_file
 from lithobrake.serve import ClientGoneError, ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
 from lithobrake.study.quantity import is_number
-from lithobrake.study.touchdown_model import draw
 from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import closest, show

@@ -12,7 +12,6 @@ from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -25,6 +24,7 @@ from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values
 from lithobrake.statements.sites import with_words
 from lithobrake.study import Study, StudySource
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
 

@@ -14,7 +14,8 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.study.impact_sections import SiteSection
-from lithobrake.study.touchdown_model import grain, grain_sizes, lander, medians
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.soil import grain, grain_sizes
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.quantities import GROUND, IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION, SPIN
 
@@ -252,7 +253,7 @@ def smallest_width(study: Study) -> float:
     """Width [m] of the smallest bed of a study at its medians; stiffness and speed cancel in it."""
     from lithobrake.touchdown import smallest_bed
 
-    values: dict[str, Any] = medians(study)
+    values: dict[str, Any] = study.touchdown_medians()
     diameter = float(grain_sizes(study).draw((np.arange(SIZE_COUNT) + 0.5) / SIZE_COUNT).mean())
     speed = values.get(IMPACT_SPEED, ANY_SPEED)
     return smallest_bed(lander(study, values), grain(values), diameter, speed)[0]

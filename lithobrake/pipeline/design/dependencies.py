@@ -11,7 +11,7 @@ from lithobrake.campaign import Command, run_key
 from lithobrake.files.reading import content_hash
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import engine_hash, medians, touchdown_version
+from lithobrake.touchdown.touchdown_model import engine_hash, touchdown_version
 
 
 def bed_files(study: Study) -> list[str]:
@@ -23,7 +23,7 @@ def bed_files(study: Study) -> list[str]:
 
 def bed_dependencies(study: Study) -> dict[str, Any]:
     """What the beds depend on: uncertain quantities count with their medians."""
-    values = medians(study)
+    values = study.touchdown_medians()
     return {
         "seed": pour_seed(study, 0),
         "bed": bed_setting(study),

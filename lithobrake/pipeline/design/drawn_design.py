@@ -14,15 +14,15 @@ from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.descents import RELEASE, Descents
+from lithobrake.pipeline.design.random_inputs import given_attitude
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
 from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain, usual_reach
-from lithobrake.study.touchdown_model import PLACE, TIME_LEFT, given_attitude, medians
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION
+from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION, PLACE, TIME_LEFT
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -80,7 +80,7 @@ class DrawnDesign:
         Of landers that are flown to the ground, also the medians of what their flights tell.
         """
         told = [key for key in ARRIVAL if self.is_flown]
-        return medians(self.study) | {key: float(np.median([row[key] for row in self.rows])) for key in told}
+        return self.study.touchdown_medians() | {key: float(np.median([row[key] for row in self.rows])) for key in told}
 
     @property
     def is_flown(self) -> bool:
@@ -226,7 +226,7 @@ class DrawnDesign:
 
     def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
-        rows, known = [], medians(self.study)
+        rows, known = [], self.study.touchdown_medians()
         # A point has the inputs first, then what a run draws, then what a release draws: each zip takes the part that
         # it needs.
         for bed, point in zip(beds, x.tolist(), strict=True):

@@ -10,7 +10,7 @@ from lithobrake.geometry.attitude import AttitudeTerms, orthonormal, seen_from_l
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import Study
 from lithobrake.study.lander_section import side_toward
-from lithobrake.study.touchdown_model import lander, medians
+from lithobrake.touchdown.lander_model import lander
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, SIDES
 
@@ -26,7 +26,7 @@ def attitude_terms(study: Study) -> AttitudeTerms | None:
     if section.is_plain_box:
         moments = None if section.inertia is None else np.array(section.inertia)
         return AttitudeTerms.of_box(np.array(section.edges), moments)
-    return AttitudeTerms.of_body(lander(study, medians(study)).body.inertia)
+    return AttitudeTerms.of_body(lander(study, study.touchdown_medians()).body.inertia)
 
 
 def attitude_inputs_of(terms: AttitudeTerms, inputs: Mapping[str, np.ndarray]) -> dict[str, Array]:

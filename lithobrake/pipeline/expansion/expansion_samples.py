@@ -10,12 +10,13 @@ from lithobrake.analysis import OutcomeModel, sample_inputs
 from lithobrake.chaos import basis_matrix, input_tables, sobol_sequence
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.expansion.expansions import runs_of_designs
-from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, REFIT_COUNT, save_explorer
+from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, draw_emulator_samples, save_explorer
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CLEAR, Samples, sampling_seed, touchdown_values
 from lithobrake.results.table import ExplorerTables
 from lithobrake.study.quantity import median
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import REFINED_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_SPEED
@@ -65,7 +66,7 @@ class Scatter:
         return drawn
 
 
-def draw_samples(job: Job) -> None:
+def _draw_expansion_samples(job: Job) -> None:
     from lithobrake.chaos import load
 
     study, inputs = job.study, job.design.inputs
@@ -107,8 +108,12 @@ def _evaluate(surrogate: "Surrogate", x: np.ndarray, job: Job) -> np.ndarray:
     return outputs
 
 
-def sample_expansion(job: Job) -> None:
-    draw_samples(job)
+def draw_samples(job: Job) -> None:
+    """Sample the first touchdown by the refined expansion where the study has one, else by the emulator."""
+    if job.study.expansion is None:
+        draw_emulator_samples(job)
+        return
+    _draw_expansion_samples(job)
     write_expansion_explorer(job)
 
 

@@ -11,7 +11,8 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import CAPTURED, VELOCITY, Samples, touchdown_values
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
-from lithobrake.study.touchdown_model import grain_sizes, lander
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.soil import grain_sizes
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_INCIDENCE, IMPACT_SPEED, SPIN
 

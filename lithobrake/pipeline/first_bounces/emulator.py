@@ -25,6 +25,7 @@ from lithobrake.pipeline.runs.energy_bound import (
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import EMULATOR_FILE, EXPLORER_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
@@ -37,8 +38,6 @@ SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "
 STEEPEST = 0.5 * math.pi
 # What is drawn with its run: directions, and numbers beside the motion.
 RIDERS = (AZIMUTH, *SPIN_OUT, "contact_duration", "penetration", "peak_acceleration", "energy_lost")
-# Fits to beds drawn with replacement: each sample is of one of them and keeps it from bounce to bounce.
-REFIT_COUNT = 50
 # A lander that leaves straight up, or does not turn, is put this far inside the bounds of what is drawn.
 MARGIN = 1e-6
 

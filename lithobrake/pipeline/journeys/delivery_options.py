@@ -7,7 +7,6 @@ import numpy as np
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import with_side_down
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
@@ -19,6 +18,7 @@ from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
 from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END

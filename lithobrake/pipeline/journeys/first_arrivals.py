@@ -9,8 +9,8 @@ from lithobrake.geometry.attitude import about_z
 from lithobrake.pipeline.design.arrivals import first_axes
 from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.site import Site
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, SPIN
 
 Row = dict[str, float]

@@ -13,7 +13,7 @@ from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates, Touchdown, into_frame, out_of_frame
 from lithobrake.pipeline.runs.energy_bound import gyrations
-from lithobrake.study.touchdown_model import lander
+from lithobrake.touchdown.lander_model import lander
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END

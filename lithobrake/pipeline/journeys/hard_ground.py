@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lithobrake.pipeline.design.dependencies import design_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.flights import write_table
@@ -47,8 +48,14 @@ def hard_ground_dependencies(study: Study) -> Any:
     """What these journeys depend on; a table with other columns or law is made anew."""
     # The measured line is no key of the study: a better measurement has to outdate the journeys, too.
     law = bounce_laws.INTERCEPT, bounce_laws.SLOPE
-    own = study.hard_ground.model_dump(exclude_none=True) | {"flights": run_flight_dependencies(study)}
-    return own | {"columns": tuple(FOLLOWED), "sliding_law": law, "duration": study.journey.duration}
+    own = study.hard_ground.model_dump(exclude_none=True)
+    return own | {
+        "columns": tuple(FOLLOWED),
+        "sliding_law": law,
+        "duration": study.journey.duration,
+        "landers": [design_dependencies(study), study.seed, study.design.run_count],
+        "flights": run_flight_dependencies(study),
+    }
 
 
 def hard_surface(study: Study) -> "HardSurface":

@@ -19,14 +19,15 @@ from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
 from lithobrake.pipeline.journeys.landers import touchdown_uniforms
 from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates, Touchdown
 from lithobrake.pipeline.runs.landings import touchdowns
-from lithobrake.study.touchdown_model import PLACE, TIME_LEFT
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
     ORIENTATION_OUT,
+    PLACE,
     SOIL,
+    TIME_LEFT,
     TO_REST,
     VELOCITY_OUT,
 )

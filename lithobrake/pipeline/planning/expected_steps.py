@@ -10,11 +10,13 @@ import numpy as np
 from lithobrake.chaos import smolyak_count
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.expansion.expansions import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.study.touchdown_model import draw, lander, landing
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.file_names import SCREENING_FILE
 from lithobrake.vocabulary.quantities import PAPER_DESIGNS
 

@@ -17,7 +17,8 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
 from lithobrake.study.ground_checks import LEAST_FRICTION
-from lithobrake.study.touchdown_model import boulders, grain_sizes, in_words_of_the_study
+from lithobrake.touchdown.soil import boulders, grain_sizes
+from lithobrake.touchdown.study_keys import by_study_keys
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN, percent
 from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
@@ -44,7 +45,7 @@ def planned_beds(study: Study, folder: StudyFolder) -> PlannedBeds:
 
     key, files = stage_keys(study)["bed"], bed_files(study)
     absent = [index for index, file in enumerate(files) if not folder.is_current([file], key)]
-    with in_words_of_the_study():
+    with by_study_keys():
         stored = sum(is_stored(bed_recipe(study, index)) for index in absent)
     return PlannedBeds(len(files), len(files) - len(absent), stored)
 

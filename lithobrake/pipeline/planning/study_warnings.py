@@ -13,10 +13,10 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.study import Study
 from lithobrake.study.quantity import Scalar, Uncertain, uncertain
-from lithobrake.study.touchdown_model import PLACE
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.material_properties import SHARED_PROPERTIES
 from lithobrake.vocabulary.number_words import percent
+from lithobrake.vocabulary.quantities import PLACE
 
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing

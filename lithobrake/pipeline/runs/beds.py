@@ -11,7 +11,10 @@ from lithobrake.campaign import LocalExecutor, available_cores
 from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
-from lithobrake.study import Study, touchdown_model
+from lithobrake.study import Study
+from lithobrake.touchdown import touchdown_model
+from lithobrake.touchdown.soil import boulders, grain, grain_sizes
+from lithobrake.touchdown.study_keys import by_study_keys
 from lithobrake.vocabulary.callbacks import Progress, silent
 
 if TYPE_CHECKING:
@@ -114,7 +117,7 @@ def pour_one(
     from lithobrake.touchdown import pour_bed, stored_or_poured
 
     touchdown_model.refuse_other_code(engine)
-    with touchdown_model.in_words_of_the_study():
+    with by_study_keys():
         # Another study may have poured it meanwhile, and a worker on another machine may have a library of its own.
         stored_or_poured(recipe, path, lambda: pour_bed(recipe, progress=tell))
 
@@ -176,7 +179,7 @@ def pour_beds(job: Job) -> None:
 
     (job.folder / "beds").mkdir(exist_ok=True)
     names = {index: name for index, name in enumerate(bed_files(job.study)) if name in job.wanted}
-    with touchdown_model.in_words_of_the_study():
+    with by_study_keys():
         recipes = {index: bed_recipe(job.study, index) for index in names}
         new = {index: recipe for index, recipe in recipes.items() if not take_stored(recipe, job.folder / names[index])}
     found = len(names) - len(new)
@@ -191,17 +194,17 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
     """What the bed of a number follows from, uncertain quantities at their median."""
     from lithobrake.touchdown import BedRecipe
 
-    values = touchdown_model.medians(study)
+    values = study.touchdown_medians()
     return BedRecipe(
         grain_count=study.bed.grain_count,
-        sizes=touchdown_model.grain_sizes(study),
+        sizes=grain_sizes(study),
         cloud_point_count=study.bed.cloud_point_count,
         width=study.bed.width,
-        material=touchdown_model.grain(values),
+        material=grain(values),
         gravity=touchdown_model.acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
         seed=pour_seed(study, index),
         contact=touchdown_model.contact(study),
         sides=study.bed.sides,
-        boulders=touchdown_model.boulders(study),
+        boulders=boulders(study),
     )

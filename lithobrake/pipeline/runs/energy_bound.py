@@ -12,7 +12,8 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
-from lithobrake.study.touchdown_model import lander, stored_bed
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.touchdown_model import stored_bed
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, SPIN
 

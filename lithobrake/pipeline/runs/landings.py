@@ -12,14 +12,19 @@ from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.pipeline.design import dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign, inputs_of
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.beds import compile_kernels
 from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, SolverModel
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.study import Study, touchdown_model
+from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
+from lithobrake.touchdown import touchdown_model
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.study_keys import by_study_keys
+from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.file_names import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS
@@ -77,7 +82,7 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
 
 def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
     study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
-    drawn = touchdown_model.draw(study, values, campaign.run_seed(values, study.seed, replicate), design.region)
+    drawn = draw(study, values, campaign.run_seed(values, study.seed, replicate), design.region)
     return {name: float(value) for name, value in drawn.items()}
 
 
@@ -170,7 +175,7 @@ def landing_values(design: DrawnDesign) -> dict[str, float]:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if not design.study.design.run_count:
         # Without a lander that is drawn the landing is that of the medians.
-        return touchdown_model.draw(design.study, design.medians, design.study.seed, design.region)
+        return draw(design.study, design.medians, design.study.seed, design.region)
     return design.shown_row
 
 
@@ -209,8 +214,8 @@ def _land(job: Job, values: dict[str, float], file: str, **notes: str) -> str:
     from lithobrake.touchdown import land
 
     bed = touchdown_model.stored_bed(job.folder / dependencies.bed_files(job.study)[round(values["bed"])])
-    with touchdown_model.in_words_of_the_study():
-        body, arrival = touchdown_model.lander(job.study, values), touchdown_model.landing(job.study, values)
+    with by_study_keys():
+        body, arrival = lander(job.study, values), landing(job.study, values)
         outcome = land(bed, body, arrival, SNAPSHOT_FRAMES, lambda fraction, what: job.progress(fraction, 1.0, what))
     outcome.save_frames(job.folder / file, bed, body, arrival, **notes)
     return str(outcome.status)

@@ -118,7 +118,8 @@ def flight_table(data: PageData) -> PageTable:
     flights, words = data.results.flights, {"time_s": "time of flight [s]", "impact_speed": "impact speed [m/s]"}
     words |= {"impact_incidence_deg": "incidence at the impact, from the normal [deg]"}
     columns = ["flights that impact the surface again", "5 %", "median", "95 %"]
-    known = flights.impacts.known
+    samples = data.results.samples if data.journeys is None else None
+    known = flights.impacts.known if samples is None else samples.flights.known
     rows = [[words[key], *(_with_ends(one, level) for level in QUANTILES)] for key, one in known.items()]
     return PageTable("Flights to the next impact", columns, rows, notes.flights(flights), frozenset(columns[1:]))
 
@@ -150,13 +151,13 @@ def ground_ends(data: PageData) -> PageTable:
 def ground_times(data: PageData) -> PageTable:
     """Times and ways of the landers at rest on other ground."""
     columns = ["landers at rest", "ground", "5 %", "median", "95 %"]
-    rows = [
-        [words, GROUND_WORDS[ground], *(number(getattr(table, key)[level]) for level in QUANTILES)]
-        for key, words in FOLLOWED.items()
-        for ground, table in data.results.hard_ground.items()
-        if getattr(table, key)
-    ]
-    note = notes.hard_ground(data.study["hard_ground"])
+    grounds, rows = data.results.hard_ground, []
+    for key, words in FOLLOWED.items():
+        found = {ground: getattr(table, key) for ground, table in grounds.items() if getattr(table, key)}
+        scale = max((value for one in found.values() for value in one.values()), default=0.0)
+        for ground, one in found.items():
+            rows.append([words, GROUND_WORDS[ground], *(number(one[level], scale=scale) for level in QUANTILES)])
+    note = notes.hard_ground(data.study["hard_ground"], grounds)
     return PageTable("Journeys on other ground", columns, rows, note, frozenset(columns[2:]))
 
 

@@ -52,7 +52,7 @@ def delivery_table(data: PageData) -> PageTable:
     """How the landers come down first, whatever the ground does with them."""
     columns = ["first impacts", "5 %", "median", "95 %"]
     found = data.results.delivery
-    if found is None:
+    if found is None or not (data.to_rest or data.study["delivery"]):
         return PageTable("How they are delivered", columns, [])
     spreads = {
         "speed [cm/s]": [100.0 * one for one in found.speed],

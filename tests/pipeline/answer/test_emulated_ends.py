@@ -5,9 +5,9 @@ import pytest
 
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, _agrees, _narrowed
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES
 from lithobrake.results.run_results import CountedShare
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd
 

@@ -23,8 +23,9 @@ from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource, read_study
-from lithobrake.study.touchdown_model import lander, landing
 from lithobrake.touchdown import land
+from lithobrake.touchdown.lander_model import lander
+from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from ...few_grains import few_grains

@@ -20,6 +20,7 @@ from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files,
 from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
+from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
@@ -30,9 +31,8 @@ from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.lander_section import directions_of_sides, side_words, sides_down
 from lithobrake.study.source import StudySource
 from lithobrake.study.template import template
-from lithobrake.study.touchdown_model import PLACE, draw, medians
 from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.quantities import ORIENTATION
+from lithobrake.vocabulary.quantities import ORIENTATION, PLACE
 
 from ...paper_tables import SMALL_GROUND, with_keys
 from ...smallbody.meshes import sphere_mesh
@@ -407,12 +407,12 @@ def test_an_error_of_pointing_tilts_each_run_within_its_cone() -> None:
 def test_the_papers_runs_take_an_error_of_pointing_too() -> None:
     arrival = {"orientation": [1, 0, 0, 0], "pointing_error_deg": 10.0}
     study = check_tables(QUICK | {"impact": {**QUICK["impact"], **arrival}}, Path())
-    draws = [draw(study, medians(study), seed, None) for seed in range(50)]
+    draws = [draw(study, study.touchdown_medians(), seed, None) for seed in range(50)]
     assert 8.0 < np.degrees(2.0 * np.arccos(columns(draws, ORIENTATION[0])[:, 0])).max() <= 10.0
     # The error is drawn after all else, which is as it was without it.
     given = {**QUICK["impact"], "orientation": [1, 0, 0, 0]}
     without = check_tables(QUICK | {"impact": given}, Path())
-    before, no_attitude = draw(without, medians(without), 3, None), dict.fromkeys(ORIENTATION, 0.0)
+    before, no_attitude = draw(without, without.touchdown_medians(), 3, None), dict.fromkeys(ORIENTATION, 0.0)
     assert before | no_attitude == draws[3] | no_attitude
 
 

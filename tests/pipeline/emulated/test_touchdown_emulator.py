@@ -19,7 +19,6 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import plan_lines, plan_study, served_models
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS, option_arrivals
 from lithobrake.pipeline.study_run import run_study
@@ -29,6 +28,7 @@ from lithobrake.results.journey_results import EmulatedJourneys
 from lithobrake.study import StudyError, StudySource
 from lithobrake.study.lander_section import sides_down
 from lithobrake.study.reader import check_tables
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION
 

@@ -23,8 +23,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.stages import STAGES
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
-from lithobrake.study.touchdown_model import PLACE
-from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.quantities import OUTPUTS, PLACE
 
 from ...command_line import lithobrake as command
 from ...paper_tables import paper_tables

@@ -21,7 +21,7 @@ from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, fly
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
-from lithobrake.study.touchdown_model import acceleration
+from lithobrake.touchdown.touchdown_model import acceleration
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ...paper_tables import SMALL_GROUND, with_keys
@@ -249,10 +249,10 @@ def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path:
 
 
 def test_what_no_impact_reads_is_refused() -> None:
-    lonely = {key: table for key, table in rough_tables(12.0).items() if key not in ("journey", "delivery")}
-    lonely |= {"impact": {"speed": 0.05, "incidence_deg": 10.0}, "surface": {"gravity": 5e-5}, "rest": {"count": 0}}
-    with pytest.raises(StudyError, match=r"site.roughness_deg is 12, and no impact of the study reads it"):
-        StudySource.of_tables(lonely)
+    one_ground = rough_tables(12.0) | {"surface": {"gravity": 5e-5}}
+    one_ground["journey"] = {"count": 24, "touchdowns": 1}
+    with pytest.raises(StudyError, match=r"site.roughness_deg is 12, and surface.gravity = 5e-05 gives all touchdowns"):
+        StudySource.of_tables(one_ground)
     aimed = rough_tables(12.0) | {"aim": {"grid": {"delivery.incidence_deg": [10.0, 20.0]}}}
     with pytest.raises(StudyError, match=r'aim.grid has "delivery.incidence_deg", and site.roughness_deg'):
         StudySource.of_tables(aimed)

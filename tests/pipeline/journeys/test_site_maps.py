@@ -18,7 +18,6 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.runs.solver import function_identity
@@ -37,6 +36,7 @@ from lithobrake.results import StudyResults
 from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values, results_in
 from lithobrake.study.source import StudySource
+from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.number_words import LEVEL
 
 from ...smallbody.meshes import sphere_mesh

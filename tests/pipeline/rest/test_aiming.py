@@ -12,7 +12,6 @@ from lithobrake.pipeline.first_bounces.bounces_to_rest import _distances
 import lithobrake
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.first_bounces.bounce_laws import implied
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import DrawnResults
@@ -20,6 +19,7 @@ from lithobrake.smallbody import HardSurface, Impacts, didymos
 from lithobrake.statements.limits import options
 from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
+from lithobrake.vocabulary.constants import REFIT_COUNT
 
 from ...synthetic_landings import WEAK
 from ..synthetic_lander import SyntheticLander, synthetic_tables

@@ -63,10 +63,12 @@ FLYING = """
 import sys
 from pathlib import Path
 from dataclasses import replace
+import numpy as np
 from lithobrake.compilation.compiled import Kernel
 from lithobrake.pipeline.runs.beds import fly_briefly
 from lithobrake.pipeline.site import Site
-from lithobrake.smallbody import HardSurface, Launch, fly, hop
+from lithobrake.smallbody import fly
+from lithobrake.smallbody.sliding import OnGround, slide
 from lithobrake.study import read_study
 
 def called():
@@ -81,7 +83,10 @@ site = Site(study)
 origin, axes = site.frames(site.columns(3))
 velocity = 0.01 * axes[:, 2]
 fly(replace(site.body, partner=None), origin, velocity, 60.0, gravity="table", threads=2).jacobi_drift
-ends = hop(site.body, Launch(origin, velocity, captured=[False, True, False]), HardSurface(0.5), 3600.0, friction=1.0)
+body, facet = site.body, site.body.shape.nearest(origin)[1]
+one = np.ones(3)
+ground = OnGround(body, facet, one, body.mass * one, body.spin_period * one, 0.0 * one)
+ends = slide(ground, origin, 0.01 * axes[:, 0], 3600.0 * one)
 print(len(ahead), [form for form in called() if form not in ahead], ends.time.max() > 0.0)
 """
 

@@ -98,7 +98,9 @@ def poured(library: None, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
 
 def test_a_bed_that_fails_is_named_when_the_others_are_there(poured: tuple[Path, str, int]) -> None:
     folder, said, workers = poured
-    assert said.startswith("bed 2 of 3 cannot be poured (World gravity is (0.0, 0.0, nan); allowed ")
+    assert said.startswith(
+        "bed 2 of 3 cannot be poured (surface.gravity with surface.slope_deg, as a vector, is (0.0, 0.0, nan); allowed "
+    )
     assert [name for name in NAMES if (folder / name).is_file()] == [NAMES[0], NAMES[2]]
     assert workers == 2
 
@@ -122,7 +124,10 @@ def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence
     assert (told.said, told.works) == (["bed: 2 of 2 were in the library of beds"], [])
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
     Broken(monkeypatch, 1, 2)
-    with LocalExecutor(1) as executor, pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(World"):
+    with (
+        LocalExecutor(1) as executor,
+        pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(surface\.gravity"),
+    ):
         pour(tmp_path, NAMES[1:], executor)
     with pytest.raises(ValueError, match=r"^bed 2 of 3 cannot be poured"):
         pour(tmp_path, NAMES[1:2])

@@ -16,7 +16,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import SolverModel
 from lithobrake.results import open_study
 from lithobrake.study import Study, StudySource, check_tables
-from lithobrake.study.touchdown_model import lander, medians
+from lithobrake.touchdown.lander_model import lander
 
 from ...few_grains import few_grains
 from ..synthetic_lander import synthetic_tables
@@ -147,7 +147,7 @@ def test_what_the_speed_takes_is_not_left_for_the_spin() -> None:
 
 def landed(speed_out: float, spin_out: float, speed: float = 0.2, outcome: str = "clear") -> Record:
     """A run of a ball of 0.1 m, whose radius of gyration squared is 1e-3 m2."""
-    inputs = medians(study()) | {"impact.speed": speed}
+    inputs = study().touchdown_medians() | {"impact.speed": speed}
     unknown = dict.fromkeys(Record.__dataclass_fields__)
     outputs = {"speed_out": speed_out, "spin_out": spin_out}
     return Record(**{**unknown, "outcome": outcome, "inputs": inputs, "outputs": outputs})

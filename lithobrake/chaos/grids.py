@@ -1,6 +1,6 @@
-"""The Smolyak sparse grid of nested Clenshaw-Curtis nodes: the design of [Landings-PCE]."""
+"""Grids of nodes: tensors of Gauss nodes, and the sparse grid of [Landings-PCE] of nested Clenshaw-Curtis nodes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
@@ -9,6 +9,7 @@ from lithobrake.chaos.counts import check_level, smolyak_count
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.given_numbers import whole_number
 
 MOST_NODES = 10_000_000
 
@@ -64,3 +65,22 @@ def smolyak(inputs: Mapping[str, Distribution], level: int) -> Array:
             germ_rows.append(np.array(list(product(*(new_nodes(one) for one in levels)))))
     germs = np.concatenate(germ_rows)
     return np.column_stack([entry.physical(germs[:, k]) for k, entry in enumerate(distributions.values())])
+
+
+def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
+    """Full tensor of the Gauss nodes of each input, level + 1 in each, physical units, [node_count, input_count].
+
+    level: one number, or one for each input. The grid determines all polynomials of degree level in each input.
+    Raises ValueError for a level below 0 or more than ten million nodes.
+    """
+    distributions = checked_inputs(inputs)
+    given = list(level) if isinstance(level, Sequence | np.ndarray) else [level] * len(distributions)
+    levels = [whole_number("level", one, 0) for one in given]
+    if len(levels) != len(distributions):
+        raise ValueError(f"level has {len(levels)} entries, but must be one number or one for each input")
+    if np.prod([one + 1.0 for one in levels]) > 1e7:
+        raise ValueError(f"a tensor grid of level {level} in {len(levels)} inputs has over 1e7 nodes: use smolyak")
+    nodes = []
+    for entry, one in zip(distributions.values(), levels, strict=True):
+        nodes.append(entry.physical(entry.recurrence(int(one) + 1).gauss_rule()[0]))
+    return np.array(list(product(*nodes)), dtype=float)

@@ -1,4 +1,4 @@
-"""Regions of highest density of made-up places, against closed forms."""
+"""Regions of made-up places against closed forms: ellipses, highest density, and cells of equal area."""
 
 import math
 import sys
@@ -8,11 +8,51 @@ import numpy as np
 import pytest
 from matplotlib.path import Path as Outline
 
-from lithobrake.analysis import highest_density
+from lithobrake.analysis import EqualAreaCells, dispersion_ellipses, highest_density
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "validation"))
 from density_regions import page_table
+
+
+def test_a_normal_cloud_gives_its_own_axes() -> None:
+    """Spreads of 2 and 0.5 deg along and across a heading of 30 deg, at latitude 50, across the date line."""
+    random = np.random.default_rng(0)
+    along, across = 2.0 * random.normal(size=20_000), 0.5 * random.normal(size=20_000)
+    c, s = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
+    north, east = c * along - s * across, s * along + c * across
+    longitude = 180.0 + east / np.cos(np.radians(50.0))
+    found = dispersion_ellipses(50.0 + north, np.where(longitude > 180.0, longitude - 360.0, longitude))
+    assert found.latitude_deg == pytest.approx(50.0, abs=0.1)
+    assert abs(found.longitude_deg) == pytest.approx(180.0, abs=0.1)
+    assert found.heading_deg == pytest.approx(30.0, abs=2.0)
+    # A normal cloud has a share of 1 - exp(-k**2 / 2) within k spreads.
+    for share, axes in found.semi_axes_deg.items():
+        k = math.sqrt(-2.0 * math.log(1.0 - share))
+        assert axes == pytest.approx((2.0 * k, 0.5 * k), rel=0.05)
+
+
+def test_a_heading_wraps_at_half_a_turn() -> None:
+    random = np.random.default_rng(1)
+    found = dispersion_ellipses(random.normal(size=500), 10.0 + 0.1 * random.normal(size=500))
+    assert min(found.heading_deg, 180.0 - found.heading_deg) < 3.0
+
+
+def test_an_ellipse_that_would_reach_round_half_the_body_is_left_out() -> None:
+    random = np.random.default_rng(2)
+    near, far = 5.0 * random.normal(size=(900, 2)), np.column_stack([np.zeros(100), np.linspace(-170.0, 170.0, 100)])
+    found = dispersion_ellipses(*np.concatenate([near, far]).T, (0.5, 0.99))
+    assert list(found.semi_axes_deg) == [0.5]
+
+
+def test_few_places_and_places_all_around_have_no_ellipse() -> None:
+    assert dispersion_ellipses([1.0] * 5, [2.0] * 5) is None
+    around = np.linspace(-180.0, 170.0, 36)
+    assert dispersion_ellipses(np.zeros(36), around) is None
+    assert dispersion_ellipses([10.0] * 20, [20.0] * 20) is None
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        dispersion_ellipses([1.0] * 20, [2.0] * 20, (0.5, 1.0))
+
 
 NORTH = np.array([0.0, 0.0, 1.0])
 
@@ -144,3 +184,42 @@ def test_too_few_places_and_places_on_a_line_say_why() -> None:
 def test_the_page_has_the_table_that_was_made() -> None:
     page = Path(__file__).parents[2] / "docs" / "estimates.md"
     assert page_table() in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("total", [4, 12, 37, 120, 1000])
+def test_cells_have_one_area_and_cover_the_sphere(total: int) -> None:
+    cells = EqualAreaCells.of(total)
+    assert cells.total == total
+    south, north, west, east = np.radians(cells.bounds_deg).T
+    area = (np.sin(north) - np.sin(south)) * (east - west)
+    assert area == pytest.approx(np.full(total, 4.0 * np.pi / total), rel=1e-12)
+
+
+def test_most_cells_are_nearly_square() -> None:
+    south, north, west, east = np.radians(EqualAreaCells.of(200).bounds_deg).T
+    across = (east - west) * np.cos(0.5 * (south + north))
+    ratio = across / (north - south)
+    assert np.quantile(ratio, 0.05) > 0.6
+    assert np.quantile(ratio, 0.95) < 1.6
+
+
+def test_places_lie_in_the_cell_that_they_were_drawn_for() -> None:
+    cells = EqualAreaCells.of(90)
+    places = cells.places_deg(np.random.default_rng(1).random((90, 50, 2)))
+    found = cells.cell_of(places[..., 0].ravel(), places[..., 1].ravel()).reshape(90, 50)
+    assert (found == np.arange(90)[:, None]).all()
+    turned = cells.cell_of(places[:, 0, 0], places[:, 0, 1] + 720.0)
+    assert (turned == np.arange(90)).all()
+    # Evenly over the sphere: the mean of each coordinate of their directions is 0, that of its square a third.
+    latitude, longitude = np.radians(places.reshape(-1, 2)).T
+    x, z = np.cos(latitude) * np.cos(longitude), np.sin(latitude)
+    assert abs(z.mean()) < 0.01
+    assert np.mean(z**2) == pytest.approx(1.0 / 3.0, abs=0.01)
+    assert np.mean(x**2) == pytest.approx(1.0 / 3.0, abs=0.01)
+
+
+def test_the_poles_and_the_date_line_have_cells() -> None:
+    cells = EqualAreaCells.of(30)
+    assert cells.cell_of([-90.0, 90.0], [0.0, 180.0]).tolist() == [int(cells.count[0] // 2), 30 - int(cells.count[-1])]
+    with pytest.raises(ValueError, match="cells"):
+        EqualAreaCells.of(3)

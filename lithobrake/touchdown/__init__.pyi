@@ -1,0 +1,16 @@
+from .bed import Bed as Bed
+from .bed import ContactModel as ContactModel
+from .bed_library import is_stored as is_stored
+from .bed_library import stored_or_poured as stored_or_poured
+from .bed_library import take_stored as take_stored
+from .grains import Boulders as Boulders
+from .grains import GrainSizes as GrainSizes
+from .lander import Lander as Lander
+from .lander import smallest_bed as smallest_bed
+from .lander import wave_speed as wave_speed
+from .landing import OUTPUTS as OUTPUTS
+from .landing import Landing as Landing
+from .landing import Outcome as Outcome
+from .pouring import BedRecipe as BedRecipe
+from .pouring import pour_bed as pour_bed
+from .simulation import land as land
