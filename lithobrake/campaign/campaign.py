@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,53 +81,16 @@ def run(
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
     Raises ValueError for a model that is none, and when the first ten of more than ten new runs all fail.
     """
-    rows, context, options = _inputs_of(x, names), context or {}, options or RunOptions()
-    keys = [run_key(row, options.seed, options.replicate, context) for row in rows]
-    found = ledger.find(keys)
-    known = {key: entry for key, entry in found.items() if is_known(entry, options)}
-    pending = {
-        key: pending_run(model, key, row, found.get(key), options)
-        for key, row in zip(keys, rows, strict=True)
-        if key not in known
-    }
-    queue_runs(ledger, pending, context, options)
-    state, show = _state(keys, known), progress or (lambda state: None)
-    with given_or_own(executor) as workers:
-        Coordinator(ledger, workers, pending, state, limits or Limits(), options.retry_count, show).compute()
-    records = ledger.find(keys)
-    if lost := [key for key in keys if key not in records]:
-        raise ValueError(f"{ledger.path} lost run {lost[0]} while it was open; give the same command again")
-    return Runs([records[key] for key in keys], reused_count=len(known))
+    rows, chains = _inputs_of(x, names), _Chains(model, _ends_at_once, ledger, context or {}, options or RunOptions())
+    keys = [chains.key(row) for row in rows]
+    distinct = dict(zip(keys, rows, strict=True))
+    made = chains.compute(list(distinct.values()), executor, limits, progress)
+    records = {key: record for key, (record,) in zip(distinct, made, strict=True)}
+    return Runs([records[key] for key in keys], reused_count=chains.state.reused)
 
 
-def is_known(entry: Record, options: RunOptions) -> bool:
-    """Whether a run that the ledger has is not made again."""
-    return entry.status == RunStatus.DONE or entry.attempts > options.retry_count
-
-
-def pending_run(
-    model: Model, key: str, row: dict[str, float], found: Record | None, options: RunOptions
-) -> PendingRun:  # fmt: skip
-    """A run that is to be made, of which the ledger has found nothing, or a failed try."""
-    seed = run_seed(row, options.seed, options.replicate)
-    log = options.log_folder and options.log_folder / f"{key}.log"
-    return PendingRun(_callable(model), row, seed, log, 0 if found is None else found.attempts)
-
-
-def queue_runs(
-    ledger: Ledger, pending: Mapping[str, PendingRun], context: Mapping[str, Any], options: RunOptions, *,
-    adds: bool = False,
-) -> None:  # fmt: skip
-    """Enter runs that are to be made into the ledger; adds: beside those that were queued before."""
-    entries = [(key, entry.inputs, entry.seed, options.replicate) for key, entry in pending.items()]
-    ledger.queue(entries, version=str(context.get("version", "")), adds=adds)
-
-
-def _state(keys: Sequence[str], known: Mapping[str, Record]) -> Tally:
-    state = Tally(len(set(keys)), reused=len(known))
-    for entry in known.values():
-        state.add(entry.status, entry.outputs)
-    return state
+def _ends_at_once(chain: int, records: Sequence[Record]) -> None:
+    """A run on its own is a chain of one."""
 
 
 def _callable(model: Model) -> Model:
@@ -153,59 +116,80 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:
     return [dict(zip(names, row.tolist(), strict=True)) for row in table]
 
 
-@contextmanager
-def given_or_own(executor: Executor | None) -> Iterator[Executor]:
-    if executor is not None:
-        yield executor
-        return
-    own = LocalExecutor()
-    try:
-        yield own
-    finally:
-        own.shutdown(cancel_futures=True)
-
-
 @dataclass
-class _Links:
-    """Chains under way: records of each so far, and the number of the chain of each run that is to be made."""
+class _Chains:
+    """Chains of runs under way: records of each so far, and the number of the chain of each run that is to be made."""
 
     model: Model
     then: Next
     ledger: Ledger
     context: Mapping[str, Any]
     options: RunOptions
-    records: list[list[Record]]
-    state: Tally
+    records: list[list[Record]] = field(default_factory=list)
+    state: Tally = field(default_factory=lambda: Tally(0))
     chains: dict[str, int] = field(default_factory=dict)
 
-    def walk(self, rows: Mapping[int, Inputs]) -> dict[str, PendingRun]:
+    def compute(
+        self,
+        first: Sequence[Inputs],
+        executor: Executor | None,
+        limits: Limits | None,
+        progress: Callable[[Tally], None] | None,
+    ) -> list[list[Record]]:
+        """Make the chains that begin with these inputs; give the records of each."""
+        self.records = [[] for _ in first]
+        pending = self._walk(dict(enumerate(first)))
+        self._queue(pending, adds=False)
+        with nullcontext(executor) if executor is not None else _own_executor() as workers:
+            Coordinator(
+                *(self.ledger, workers, pending, self.state, limits or Limits(), self.options.retry_count),
+                *(progress or (lambda state: None), self._follow),
+            ).compute()
+        return self.records
+
+    def key(self, row: Inputs) -> str:
+        """The key of the run of these inputs."""
+        return run_key(row, self.options.seed, self.options.replicate, self.context)
+
+    def _walk(self, rows: Mapping[int, Inputs]) -> dict[str, PendingRun]:
         """Follow chains from their next inputs on through all that the ledger knows; give the runs to make then."""
         pending: dict[str, PendingRun] = {}
         while rows:
-            keys = {self._key(row): (chain, row) for chain, row in rows.items()}
+            keys = {self.key(row): (chain, row) for chain, row in rows.items()}
             if len(keys) < len(rows) or not keys.keys().isdisjoint(self.chains):
                 raise ValueError("two chains have runs with the same inputs; give each an input of its own")
-            # All chains go one link further together, with one query for all of them.
+            # All chains go one link further together.
             found, rows = self.ledger.find(keys), {}
             for key, (chain, row) in keys.items():
                 entry = found.get(key)
-                if entry is not None and is_known(entry, self.options):
+                if entry is not None and (entry.status == RunStatus.DONE or entry.attempts > self.options.retry_count):
                     self.state.reused += 1
-                    self._count(entry)
+                    self.state.total += 1
+                    self.state.add(entry.status, entry.outputs)
                     rows |= self._after(chain, entry)
                 else:
                     self.chains[key] = chain
-                    pending[key] = pending_run(self.model, key, dict(row), entry, self.options)
+                    pending[key] = self._pending(key, dict(row), 0 if entry is None else entry.attempts)
         self.state.total += len(pending)
         return pending
 
-    def follow(self, key: str) -> dict[str, PendingRun]:
+    def _pending(self, key: str, row: dict[str, float], attempts: int) -> PendingRun:
+        options = self.options
+        log = options.log_folder and options.log_folder / f"{key}.log"
+        return PendingRun(_callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts)
+
+    def _queue(self, pending: Mapping[str, PendingRun], *, adds: bool) -> None:
+        """Enter runs that are to be made into the ledger; adds: beside those that were queued before."""
+        entries = [(key, entry.inputs, entry.seed, self.options.replicate) for key, entry in pending.items()]
+        self.ledger.queue(entries, version=str(self.context.get("version", "")), adds=adds)
+
+    def _follow(self, key: str) -> dict[str, PendingRun]:
         record = self.ledger.find([key]).get(key)
         if record is None:
             raise ValueError(f"{self.ledger.path} lost run {key} while it was open; give the same command again")
-        pending = self.walk(self._after(self.chains.pop(key), record))
+        pending = self._walk(self._after(self.chains.pop(key), record))
         if pending:
-            queue_runs(self.ledger, pending, self.context, self.options, adds=True)
+            self._queue(pending, adds=True)
         return pending
 
     def _after(self, chain: int, record: Record) -> dict[int, Inputs]:
@@ -213,12 +197,14 @@ class _Links:
         row = self.then(chain, self.records[chain])
         return {} if row is None else {chain: row}
 
-    def _count(self, record: Record) -> None:
-        self.state.total += 1
-        self.state.add(record.status, record.outputs)
 
-    def _key(self, row: Inputs) -> str:
-        return run_key(row, self.options.seed, self.options.replicate, self.context)
+@contextmanager
+def _own_executor() -> Iterator[Executor]:
+    own = LocalExecutor()
+    try:
+        yield own
+    finally:
+        own.shutdown(cancel_futures=True)
 
 
 def run_chains(
@@ -239,13 +225,6 @@ def run_chains(
     included; it must give the same inputs for the same records. All else is as of `run`.
     Raises ValueError where two chains ask for the same run, and as `run` does.
     """
-    options, state = options or RunOptions(), Tally(0)
-    links = _Links(model, then, ledger, context or {}, options, [[] for _ in first], state)
-    pending = links.walk(dict(enumerate(first)))
-    queue_runs(ledger, pending, links.context, options)
-    show = progress or (lambda state: None)
-    with given_or_own(executor) as workers:
-        Coordinator(
-            ledger, workers, pending, state, limits or Limits(), options.retry_count, show, links.follow
-        ).compute()  # fmt: skip
-    return links.records
+    return _Chains(model, then, ledger, context or {}, options or RunOptions()).compute(
+        first, executor, limits, progress
+    )

@@ -43,7 +43,7 @@ class Coordinator:
     """A campaign under way.
 
     pending: the runs to make, by their keys; retry_count: further tries of a failed one; follow: gives the runs to make
-    because the one with this key has ended, which the ledger has queued by then; none, by default.
+    because the one with this key has ended, which the ledger has queued by then.
     """
 
     ledger: Ledger
@@ -53,7 +53,7 @@ class Coordinator:
     limits: Limits
     retry_count: int
     progress: Callable[[Tally], None]
-    follow: Callable[[str], Mapping[str, PendingRun]] = lambda key: {}
+    follow: Callable[[str], Mapping[str, PendingRun]]
 
     def __post_init__(self) -> None:
         # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.

@@ -19,7 +19,6 @@ from lithobrake.campaign.record import (
     FORMAT_VERSION,
     HASHED,
     LEFT,
-    OF_FIRST,
     UNENDED,
     Record,
     RunStatus,
@@ -52,17 +51,6 @@ CREATE TABLE IF NOT EXISTS runs (
 ) WITHOUT ROWID
 """
 _SIGN = f"UPDATE runs SET {CHECKSUM} = row_hash({', '.join(HASHED)})"
-# What an earlier format lacks; the runs of the first were each tried once, and hashes are of the rows as they stand.
-_HASHES = (f"ALTER TABLE runs ADD COLUMN {CHECKSUM} TEXT", _SIGN)
-_STEPS = {
-    0: (_SCHEMA,),
-    1: (
-        "ALTER TABLE runs ADD COLUMN attempts INTEGER NOT NULL DEFAULT 1",
-        "ALTER TABLE runs ADD COLUMN started TEXT",
-        *_HASHES,
-    ),
-    2: _HASHES,
-}
 
 
 class Ledger:
@@ -85,7 +73,7 @@ class Ledger:
             self._open.callback(self._database.close)
             self._database.create_function("row_hash", len(HASHED), row_hash, deterministic=True)
             # Nothing is written before the file has been found to be a ledger.
-            self._prepare(self._format())
+            self._prepare(is_new=self._is_new())
         except (sqlite3.Error, OSError) as error:
             self._open.close()
             busy = isinstance(error, sqlite3.OperationalError | OSError)
@@ -95,29 +83,26 @@ class Ledger:
             self._open.close()
             raise
 
-    def _format(self) -> int:
-        """The format of the ledger, 0 for a new one. Raises ValueError for a file that is no ledger."""
-        version: int = self._database.execute("PRAGMA user_version").fetchone()[0]
+    def _is_new(self) -> bool:
+        """Whether the file has nothing in it yet. Raises ValueError for a file that is no ledger."""
+        version = self._database.execute("PRAGMA user_version").fetchone()[0]
         refuse_other_formats(self.path, version)
         tables = self._database.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
         columns = {row[1] for row in self._database.execute("PRAGMA table_info(runs)")}
-        absent = {1: {*OF_FIRST, CHECKSUM}, 2: {CHECKSUM}}.get(version, set())
-        lacking = sorted({*COLUMNS, CHECKSUM} - columns - absent)
+        lacking = sorted({*COLUMNS, CHECKSUM} - columns)
         if lacking and (version or tables):
             raise ValueError(f"{self.path} cannot be used as a ledger (it lacks {', '.join(lacking)}); {LEFT}")
-        return version
+        return not tables
 
-    def _prepare(self, version: int) -> None:
+    def _prepare(self, is_new: bool) -> None:
         # A finished run must survive a power cut: the log is synced at each commit.
         self._database.execute("PRAGMA journal_mode = WAL")
         self._database.execute("PRAGMA synchronous = FULL")
-        if version == FORMAT_VERSION:
-            return
-        with self._database:
-            self._database.execute("BEGIN IMMEDIATE")
-            for statement in _STEPS[version]:
-                self._database.execute(statement)
-            self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
+        if is_new:
+            with self._database:
+                self._database.execute("BEGIN IMMEDIATE")
+                self._database.execute(_SCHEMA)
+                self._database.execute(f"PRAGMA user_version = {FORMAT_VERSION}")
 
     def queue(
         self, runs: Iterable[tuple[str, Mapping[str, float], int, int]], version: str, *, adds: bool = False
@@ -178,12 +163,11 @@ class Ledger:
 
     def find(self, keys: Iterable[str]) -> dict[str, Record]:
         """The runs with these keys that have ended, by key; a warning names those whose row was changed since."""
-        wanted, columns = set(keys), ", ".join((*COLUMNS, CHECKSUM))
+        query = f"SELECT {', '.join((*COLUMNS, CHECKSUM))} FROM runs WHERE key = ? AND status IN (?, ?)"
         with reading_ledger(self.path):
-            # SQLite bounds the number of values of a query, and a design may have a million keys, so they are matched
-            # here.
-            rows = self._database.execute(f"SELECT {columns} FROM runs WHERE status IN (?, ?)", ENDED)
-            return {record.key: record for record in intact_records(self.path, (r for r in rows if r[0] in wanted))}
+            # SQLite bounds the number of values of a query, and a design may have a million keys.
+            rows = (row for key in sorted(set(keys)) for row in self._database.execute(query, (key, *ENDED)))
+            return {record.key: record for record in intact_records(self.path, rows)}
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:

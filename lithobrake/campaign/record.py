@@ -22,11 +22,7 @@ from lithobrake.vocabulary.number_words import duration as duration_words
 log = logging.getLogger(__name__)
 # What the hash of a row, in the column CHECKSUM, is of; how often a failed run was tried may be reset.
 CHECKSUM = "sha256"
-# What stands for the columns that a ledger of the first format lacks: its runs were each tried once.
-OF_FIRST = {"attempts": "1", "started": "NULL"}
 FORMAT_VERSION = 3
-# Ledgers of earlier formats have no hashes: their rows are taken as they stand.
-FIRST_HASHED = 3
 # Characters of a key that are shown; two runs of a campaign that share them are not met.
 KEY_LENGTH = 12
 # Runs may have taken days: no damage is a reason to write over them.
@@ -84,10 +80,10 @@ def reading_ledger(path: Path) -> AbstractContextManager[None]:
 
 
 def refuse_other_formats(path: Path, version: int) -> None:
-    """Raise DamagedFileError for a ledger of a format that this version does not know."""
-    if not 0 <= version <= FORMAT_VERSION:
+    """Raise DamagedFileError for a ledger of another format; that of an empty file is 0."""
+    if version not in (0, FORMAT_VERSION):
         raise DamagedFileError(
-            f"{path} has ledger format {version}; this version reads 1 to {FORMAT_VERSION}: "
+            f"{path} has ledger format {version}; this version reads {FORMAT_VERSION}: "
             "move the file away, or use the version of lithobrake that wrote it"
         )
 
@@ -137,7 +133,7 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
     """Read all runs of a ledger in the order in which they ended, unended ones last; a campaign may be writing to it.
 
     Ended runs whose row was changed since are left out, and a warning says so. Raises ValueError when the path holds no
-    ledger, a damaged one, or one of a later format.
+    ledger, a damaged one, or one of another format.
     """
     path = Path(path)
     if not path.is_file():
@@ -149,13 +145,9 @@ def read_records(path: str | PathLike[str]) -> list[Record]:
         reading_ledger(path),
         closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro{whole}", uri=True)) as database,
     ):
-        version = database.execute("PRAGMA user_version").fetchone()[0]
-        refuse_other_formats(path, version)
-        columns = ", ".join(OF_FIRST.get(name, name) if version == 1 else name for name in COLUMNS)
-        if version < FIRST_HASHED:
-            rows = database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)
-            return [record_from_row(row) for row in rows]
-        rows = database.execute(f"SELECT {columns}, {CHECKSUM} FROM runs ORDER BY {order}", UNENDED)
+        refuse_other_formats(path, database.execute("PRAGMA user_version").fetchone()[0])
+        columns = ", ".join((*COLUMNS, CHECKSUM))
+        rows = database.execute(f"SELECT {columns} FROM runs ORDER BY {order}", UNENDED)
         return list(intact_records(path, rows))
 
 

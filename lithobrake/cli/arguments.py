@@ -5,7 +5,7 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TextIO
@@ -39,11 +39,9 @@ StudyPath = Annotated[
 OutPath = Annotated[
     str | None, typer.Option("--out", metavar="DIR", help="Folder of the study; the default is runs/<study name>.")
 ]
-ExecutorName = Annotated[
-    str, typer.Option("--executor", metavar="local|dask", help="Run on this machine or on a Dask cluster.")
-]
 Scheduler = Annotated[
-    str | None, typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Address of the Dask scheduler.")
+    str | None,
+    typer.Option("--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."),
 ]
 Logs = Annotated[bool, typer.Option("--logs", help="Keep a log of each run in DIR/logs.")]
 Workers = Annotated[
@@ -73,6 +71,12 @@ def one_sentence() -> Iterator[None]:
     except KeyboardInterrupt:
         command = command_line(*sys.argv[1:])
         leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
+
+
+def command(panel: str, example: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Add a function to the application as the command of its name, in a group of the help and with an example."""
+    added = app.command(rich_help_panel=panel, epilog=f"Example: lithobrake {example}")
+    return lambda function: added(one_sentence()(function))
 
 
 def _has_current_folder() -> bool:
@@ -158,10 +162,9 @@ def shown_progress(title: str) -> Iterator[Progress]:
 
 
 def study_headline(folder: Path) -> list[str]:
-    with one_sentence():
-        from lithobrake.results import open_study
+    from lithobrake.results import open_study
 
-        headline = open_study(folder).headline
+    headline = open_study(folder).headline
     page = (folder / "report" / "index.html").resolve()
     return [*(f"  {sentence}" for sentence in headline), f"Report: {page}"]
 
@@ -188,17 +191,16 @@ def study_folder(study: Path, out: str | None) -> Path:
     # The nearest path that exists decides: below a file no folder can be made.
     there = next((path for path in (folder, *folder.parents) if path.exists()), None)
     if there is not None and not there.is_dir():
-        leave(f"{folder} cannot be written ({there} is a file); choose another folder with --out", BAD_INPUT)
+        raise ValueError(f"{folder} cannot be written ({there} is a file); choose another folder with --out")
     return folder
 
 
 def given_folder(out: str) -> Path:
     """The folder that --out names; an empty one is refused."""
     if not out.strip():
-        leave(
+        raise ValueError(
             "--out is empty (an unset variable?) and would mean the current folder; "
-            "name a folder, or omit --out to use runs/<study name>",
-            BAD_INPUT,
+            "name a folder, or omit --out to use runs/<study name>"
         )
     return Path(out)
 
@@ -207,15 +209,6 @@ def refuse_written(path: Path, force: bool) -> None:
     from lithobrake.files.atomic import refuse_existing
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
-
-
-def scheduler_of(executor: str, scheduler: str | None) -> str | None:
-    """The address of the Dask scheduler, or None for runs made here."""
-    if executor not in ("local", "dask"):
-        leave(f"--executor is {executor!r}; allowed: local, dask", BAD_INPUT)
-    if (executor == "dask") != (scheduler is not None):
-        leave("--executor dask and --scheduler tcp://HOST:PORT go together; give both or neither", BAD_INPUT)
-    return scheduler
 
 
 def run_of(text: str) -> str | int:

@@ -43,10 +43,7 @@ Again = Annotated[
 ]
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPORT,
-    epilog="Example: lithobrake export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00",
-)
+@arguments.command(arguments.EXPORT, "export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
 def export(
     folder: arguments.StudyDirectory,
     to: Kinds,
@@ -65,26 +62,22 @@ def export(
 ) -> None:
     """Write results of a study in the formats of other programs: flights, attitudes, shape, map, motions."""
     place = folder / "export" if out is None else arguments.given_folder(out)
-    with arguments.one_sentence():
-        from lithobrake.results import open_study
+    from lithobrake.results import open_study
 
-        # A folder that is no study is refused before numbers are loaded.
-        results = open_study(folder)
-        from lithobrake.export import ExportOptions, export_study
+    # A folder that is no study is refused before numbers are loaded.
+    results = open_study(folder)
+    from lithobrake.export import ExportOptions, export_study
 
-        with arguments.shown_progress("export") as progress:
-            again = None if run is None else arguments.run_of(run)
-            choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
-            written = export_study(results, place, to, choices)
+    with arguments.shown_progress("export") as progress:
+        again = None if run is None else arguments.run_of(run)
+        choices = ExportOptions(flight or (), frame, epoch, step, resolution, again, force, progress, body_number)
+        written = export_study(results, place, to, choices)
     arguments.tell_result(
         json, {"files": [str(path.resolve()) for path in written]}, (f"Wrote {path}" for path in written)
     )
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPORT,
-    epilog="Example: lithobrake push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv",
-)
+@arguments.command(arguments.EXPORT, "push runs/quick --speed 0.04 --elevation 45 --heading 90 --out push.csv")
 def push(
     folder: arguments.StudyDirectory,
     speed: Annotated[float, typer.Option(help="Change of velocity, m/s.", show_default=False)],
@@ -100,51 +93,48 @@ def push(
     force: arguments.Force = False,
 ) -> None:
     """Write the states of the landers at rest after a push, as the delivery of the next study."""
-    with arguments.one_sentence():
-        from lithobrake.results import open_study
+    from lithobrake.results import open_study
 
-        results = open_study(folder)
-        arguments.refuse_written(out, force)
-        from lithobrake.export import Push, write_push
+    results = open_study(folder)
+    arguments.refuse_written(out, force)
+    from lithobrake.export import Push, write_push
 
-        count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
+    count = write_push(results, out, Push(speed, elevation, heading, speed_std, direction_std, spin, seed))
     arguments.tell([f"Wrote {count} states to {out}: delivery.states of the next study, with journey.count = {count}."])
 
 
-@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake sites study.toml --cells 200")
+@arguments.command(arguments.LOOK, "sites study.toml --cells 200")
 def sites(
     study: arguments.StudyPath,
     cells: Annotated[int, typer.Option("--cells", metavar="N", help="Number of sites (cells of equal area).")] = 120,
     landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per site.")] = 200,
     out: arguments.OutPath = None,
     workers: arguments.Workers = None,
-    executor: arguments.ExecutorName = "local",
     scheduler: arguments.Scheduler = None,
     force: arguments.Force = False,
     json: arguments.Json = False,
 ) -> None:
     """Map one delivery over a body: fraction at rest, time, distance, slope and light by site. Writes DIR/sites."""
-    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
-    with arguments.one_sentence():
-        from lithobrake.study import StudySource
+    folder = arguments.study_folder(study, out)
+    from lithobrake.study import StudySource
 
-        source = StudySource.read(study)
-        from lithobrake.export.maps import site_cells_file, write_site_cells
-        from lithobrake.files.atomic import refuse_existing
-        from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
-        from lithobrake.progress import study_progress
-        from lithobrake.results.study_files import json_values
+    source = StudySource.read(study)
+    from lithobrake.export.maps import site_cells_file, write_site_cells
+    from lithobrake.files.atomic import refuse_existing
+    from lithobrake.pipeline import map_sites, site_lines, site_map_files, write_site_map
+    from lithobrake.progress import study_progress
+    from lithobrake.results.study_files import json_values
 
-        place = folder / "sites"
-        written = () if force else (*site_map_files(place), site_cells_file(place))
-        # Before the landers are followed, which takes minutes.
-        refuse_existing(written, "move it away, or replace it with --force")
-        with study_progress() as shown:
-            found = map_sites(
-                source, folder, cell_count=cells, lander_count=landers, worker_count=workers, scheduler=address,
-                shown=shown,
-            )  # fmt: skip
-        paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
+    place = folder / "sites"
+    written = () if force else (*site_map_files(place), site_cells_file(place))
+    # Before the landers are followed, which takes minutes.
+    refuse_existing(written, "move it away, or replace it with --force")
+    with study_progress() as shown:
+        found = map_sites(
+            source, folder, cell_count=cells, lander_count=landers, worker_count=workers, scheduler=scheduler,
+            shown=shown,
+        )  # fmt: skip
+    paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
     beside = ", ".join(one.name for one in paths[1:])
     lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"]
     arguments.tell_result(json, json_values(found), lines)

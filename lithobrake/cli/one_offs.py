@@ -12,17 +12,13 @@ from lithobrake.cli.studies import study_command
 from lithobrake.vocabulary.plain_text import plain
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline import OneLanding
     from lithobrake.study import Study
 
 # Exit code of `doctor` where a library is missing without which nothing works.
 INCOMPLETE = 1
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.RUN,
-    epilog="Example: lithobrake land study.toml --set grain.friction=0.4 --out landing.h5",
-)
+@arguments.command(arguments.RUN, "land study.toml --set grain.friction=0.4 --out landing.h5")
 def land(
     study: arguments.StudyPath,
     change: Annotated[
@@ -45,21 +41,18 @@ def land(
 
     The study's folder is neither read nor written.
     """
-    with arguments.one_sentence():
-        from lithobrake.study import read_study
+    from lithobrake.study import read_study
 
-        checked = read_study(study)
-        from lithobrake.pipeline import landing_inputs
+    checked = read_study(study)
+    from lithobrake.pipeline import landing_inputs
 
-        values = landing_inputs(checked, change or (), number)
-        found = _landed if checked.journey.touchdowns == 1 else _followed
-        told, lines = found(checked, values, out, show, force, json)
+    values = landing_inputs(checked, change or (), number)
+    found = _landed if checked.journey.touchdowns == 1 else _followed
+    told, lines = found(checked, values, out, show, force, json)
     arguments.tell_result(json, told, lines)
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPORT, epilog="Example: lithobrake serve study.toml --out results --port 4242"
-)
+@arguments.command(arguments.EXPORT, "serve study.toml --out results --port 4242")
 def serve(
     study: arguments.StudyPath,
     out: arguments.OutPath = None,
@@ -79,20 +72,19 @@ def serve(
 ) -> None:
     """Serve landing, emulator and flight of a study to UM-Bridge clients, until Ctrl-C. Writes nothing."""
     folder = arguments.study_folder(study, out)
-    with arguments.one_sentence():
-        # Refused before the imports below, which take seconds.
-        from lithobrake.serve.server import refuse_empty_host
+    # Refused before the imports below, which take seconds.
+    from lithobrake.serve.server import refuse_empty_host
 
-        refuse_empty_host(host)
-        # What follows brings NumPy and the compiler, and for some studies the shape of the body.
-        if sys.stderr.isatty():
-            print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
-        from lithobrake.pipeline import EvaluationProcess, ServedStudy
-        from lithobrake.serve import model_server
+    refuse_empty_host(host)
+    # What follows brings NumPy and the compiler, and for some studies the shape of the body.
+    if sys.stderr.isatty():
+        print(f"Reading {plain(str(study))} and its files ...", file=sys.stderr, flush=True)
+    from lithobrake.pipeline import EvaluationProcess, ServedStudy
+    from lithobrake.serve import ClientServer
 
-        served = ServedStudy(study, folder)
-        models, evaluations = served.models(), EvaluationProcess(served, time_limit)
-        server = model_server(models, host, port, evaluations)
+    served = ServedStudy(study, folder)
+    models, evaluations = served.models(), EvaluationProcess(served, time_limit)
+    server = ClientServer(models, host, port, evaluations)
     with server, evaluations:
         names = ", ".join(model.name for model in models)
         reach = "" if server.is_local else ", which any machine of the network can reach"
@@ -102,16 +94,15 @@ def serve(
             server.serve_forever()
 
 
-@arguments.app.command(rich_help_panel=arguments.START, epilog="Example: lithobrake doctor --json > doctor.json")
+@arguments.command(arguments.START, "doctor --json > doctor.json")
 def doctor(
     quick: Annotated[bool, typer.Option("--quick", help="Skip the measurement of speed.")] = False,
     json: arguments.Json = False,
 ) -> None:
     """Report what is installed, what is missing and how to get it, and how fast this machine is."""
-    with arguments.one_sentence():
-        from lithobrake.doctor import examine
+    from lithobrake.doctor import examine
 
-        found = examine(quick)
+    found = examine(quick)
     arguments.tell_result(json, found.to_json(), found.lines())
     if found.lacking:
         raise typer.Exit(INCOMPLETE)
@@ -121,7 +112,7 @@ def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     from lithobrake.pipeline import land_one
-    from lithobrake.view import refuse_other_kinds
+    from lithobrake.view import refuse_other_kinds, show, write_motion
 
     if out is not None:
         # Refused before the landing, which may need a bed to be poured first.
@@ -130,7 +121,13 @@ def _landed(
         arguments.refuse_written(out, force)
     with arguments.shown_progress("landing") as progress:
         found = land_one(study, values, progress)
-    _keep_motion(found, out, shown)
+    # The file of a landing needs no library of the extra [view].
+    if out is not None and out.suffix == ".h5":
+        found.save(out)
+    elif out is not None:
+        write_motion(found.bodies(), out)
+    if shown:
+        show(found.bodies())
     return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
 
 
@@ -138,11 +135,24 @@ def _followed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
-    from lithobrake.cli.results import follow, refuse_journey_file, show_touchdowns
+    from lithobrake.cli.results import refuse_journey_file, show_touchdowns
+    from lithobrake.pipeline import follow_one
+    from lithobrake.view.motion_files import touchdown_paths, write_journey
+
+    def tell(line: str) -> None:
+        arguments.tell([] if json else [line])
 
     if out is not None:
         refuse_journey_file(out, force, (".h5",))
-    found, paths = follow(study, values, out, is_told=not json)
+    paths: list[Path] = []
+    with arguments.shown_progress("journey") as progress:
+        found = follow_one(study, values, tell, progress)
+        tell(found.track.end_words)
+        if out is not None and out.suffix == ".h5":
+            paths = touchdown_paths(out, len(found.landings))
+            found.save(paths)
+        elif out is not None:
+            paths = write_journey(found.motion(), out, progress=progress)
     if shown:
         show_touchdowns(found.motion())
     return found.to_json(), _motion_lines(paths)
@@ -152,25 +162,7 @@ def _motion_lines(paths: list[Path]) -> list[str]:
     return [f"Motion: {path.resolve()}" for path in paths]
 
 
-def _keep_motion(landed: "OneLanding", out: Path | None, shown: bool) -> None:
-    # The file of a landing needs no library of the extra [view].
-    if out is not None and out.suffix == ".h5":
-        landed.save(out)
-        out = None
-    if out is None and not shown:
-        return
-    from lithobrake.view import show, write_motion
-
-    bodies = landed.bodies()
-    if out is not None:
-        write_motion(bodies, out)
-    if shown:
-        show(bodies)
-
-
-@arguments.app.command(
-    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake rare study.toml fast --landings 500"
-)
+@arguments.command(arguments.EXPERT, "rare study.toml fast --landings 500")
 def rare(
     study: arguments.StudyPath,
     name: Annotated[
@@ -179,28 +171,24 @@ def rare(
     landings: Annotated[int, typer.Option("--landings", metavar="N", help="Landings per level.")] = 500,
     out: arguments.OutPath = None,
     workers: arguments.Workers = None,
-    executor: arguments.ExecutorName = "local",
     scheduler: arguments.Scheduler = None,
 ) -> None:
     """Estimate the probability of a rare limit state by subset simulation with landings; writes rare_NAME.json."""
-    folder, address = arguments.study_folder(study, out), arguments.scheduler_of(executor, scheduler)
-    with arguments.one_sentence():
-        from lithobrake.study import StudySource
+    folder = arguments.study_folder(study, out)
+    from lithobrake.study import StudySource
 
-        source = StudySource.read(study)
-        from lithobrake.pipeline import rare_failure
-        from lithobrake.progress import study_progress
+    source = StudySource.read(study)
+    from lithobrake.pipeline import rare_failure
+    from lithobrake.progress import study_progress
 
-        with study_progress() as shown:
-            found = rare_failure(
-                source, folder, name, landing_count=landings, worker_count=workers, scheduler=address, shown=shown
-            )
+    with study_progress() as shown:
+        found = rare_failure(
+            source, folder, name, landing_count=landings, worker_count=workers, scheduler=scheduler, shown=shown
+        )
     arguments.tell([found["statement"], f"Written: {folder / f'rare_{name}.json'}"])
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.EXPERT, epilog="Example: lithobrake infer runs/study --bounce bounces.csv"
-)
+@arguments.command(arguments.EXPERT, "infer runs/study --bounce bounces.csv")
 def infer(
     folder: arguments.StudyDirectory,
     bounce: Annotated[
@@ -211,16 +199,15 @@ def infer(
     ] = None,
 ) -> None:
     """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
-    with arguments.one_sentence():
-        from lithobrake.pipeline import InferredStudy, infer_study
+    from lithobrake.pipeline import InferredStudy, infer_study
 
-        study = InferredStudy.open(folder)
-        with arguments.shown_progress("inference") as progress:
-            progress(0.0, "identifiability")
-            plan = study.plan().lines()
-            if bounce is not None:
-                progress(0.5, "posterior")
-            found = None if bounce is None else infer_study(folder, bounce)
+    study = InferredStudy.open(folder)
+    with arguments.shown_progress("inference") as progress:
+        progress(0.0, "identifiability")
+        plan = study.plan().lines()
+        if bounce is not None:
+            progress(0.5, "posterior")
+        found = None if bounce is None else infer_study(folder, bounce)
     arguments.tell(plan)
     if found is not None:
         written = f"Posterior: {folder / 'posterior.json'}, {folder / 'posterior.png'}"

@@ -13,11 +13,9 @@ from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.file_names import STUDY_FILE
 
 if TYPE_CHECKING:
-    from lithobrake.pipeline import OneJourney
     from lithobrake.results import JourneyMotion
     from lithobrake.results.motions import MovingBodies
     from lithobrake.results.study_results import StudyResults
-    from lithobrake.study import Study
 
 JourneyNumber = Annotated[
     int | None, typer.Option("--journey", metavar="N", help="Show all touchdowns of this journey, from 0.")
@@ -44,28 +42,6 @@ def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> N
         arguments.refuse_written(path, force)
 
 
-def follow(
-    study: "Study", values: dict[str, float], out: Path | None, is_told: bool
-) -> "tuple[OneJourney, list[Path]]":
-    """Follow a lander to its end and keep its motion; is_told: whether lines are printed as it goes."""
-    from lithobrake.pipeline import follow_one
-    from lithobrake.view.motion_files import touchdown_paths, write_journey
-
-    with arguments.shown_progress("journey") as progress:
-        found = follow_one(
-            study, values, (lambda line: arguments.tell([line])) if is_told else (lambda line: None), progress
-        )
-        if is_told:
-            arguments.tell([found.track.end_words])
-        if out is None:
-            return found, []
-        if out.suffix == ".h5":
-            paths = touchdown_paths(out, len(found.landings))
-            found.save(paths)
-            return found, paths
-        return found, write_journey(found.motion(), out, progress=progress)
-
-
 def show_touchdowns(motion: "JourneyMotion") -> None:
     from lithobrake.view import show
 
@@ -73,36 +49,34 @@ def show_touchdowns(motion: "JourneyMotion") -> None:
         show(bodies)
 
 
-@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake report runs/study")
+@arguments.command(arguments.LOOK, "report runs/study")
 def report(folder: arguments.StudyDirectory) -> None:
     """Write the report of a study again from its files."""
-    with arguments.one_sentence():
-        from lithobrake.pipeline import write_report_again
+    from lithobrake.pipeline import write_report_again
 
-        write_report_again(folder)
+    write_report_again(folder)
     arguments.tell(arguments.study_headline(folder))
 
 
-@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake runs runs/study --csv > runs.csv")
+@arguments.command(arguments.LOOK, "runs runs/study --csv > runs.csv")
 def runs(
     folder: arguments.StudyDirectory,
     csv: Annotated[bool, typer.Option("--csv", help="Print every column as CSV.")] = False,
     json: arguments.Json = False,
 ) -> None:
     """List the runs of a study: outcome, rebound speed, bed and impact point of each."""
-    with arguments.one_sentence():
-        from lithobrake.campaign import run_lines, write_csv
-        from lithobrake.results import open_study
+    from lithobrake.campaign import run_lines, write_csv
+    from lithobrake.results import open_study
 
-        records = open_study(folder).ledger
-        units: dict[str, str] = {}
-        # The names of a campaign that is no study are its author's, and so are their units.
-        if (folder / STUDY_FILE).is_file():
-            from lithobrake.study.units import run_units
+    records = open_study(folder).ledger
+    units: dict[str, str] = {}
+    # The names of a campaign that is no study are its author's, and so are their units.
+    if (folder / STUDY_FILE).is_file():
+        from lithobrake.study.units import run_units
 
-            units = run_units()
+        units = run_units()
     if csv and json:
-        arguments.leave("--csv and --json are two forms of one list; give one of them", arguments.BAD_INPUT)
+        raise ValueError("--csv and --json are two forms of one list; give one of them")
     if json:
         arguments.tell_json({"units": units, "runs": [asdict(record) for record in records]})
         return
@@ -115,7 +89,7 @@ def runs(
     arguments.tell(run_lines(records, units, width, TOLD))
 
 
-@arguments.app.command(rich_help_panel=arguments.LOOK, epilog="Example: lithobrake view runs/study")
+@arguments.command(arguments.LOOK, "view runs/study")
 def view(
     folder: arguments.StudyDirectory,
     solid: Annotated[bool, typer.Option("--3d", help="Show a landing in a window instead (PyVista).")] = False,
@@ -127,28 +101,23 @@ def view(
         _view_journey(folder, journey, run, solid)
         return
     if run is not None and not solid:
-        arguments.leave(
-            f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run",
-            arguments.BAD_INPUT,
+        raise ValueError(
+            f"--run {run} is given without --3d, and the report shows no single run; add --3d or omit --run"
         )
     if solid:
-        with arguments.one_sentence():
-            from lithobrake.results import open_study
-            from lithobrake.view import show
+        from lithobrake.results import open_study
+        from lithobrake.view import show
 
-            show(_landing(open_study(folder), run))
+        show(_landing(open_study(folder), run))
         return
-    with arguments.one_sentence():
-        from lithobrake.pipeline import report_page
+    from lithobrake.pipeline import report_page
 
-        page, doubt = report_page(folder)
+    page, doubt = report_page(folder)
     arguments.tell([doubt] if doubt else [])
     _open(page)
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.LOOK, epilog="Example: lithobrake film runs/study --run 3 --out landing.mp4"
-)
+@arguments.command(arguments.LOOK, "film runs/study --run 3 --out landing.mp4")
 def film(
     folder: arguments.StudyDirectory,
     run: Annotated[
@@ -171,29 +140,26 @@ def film(
     """Simulate a landing or a journey of a study again, and write it as a film."""
     what = "landing" if journey is None else "journey"
     path = out or folder / ("landing.mp4" if journey is None else f"journey_{journey}.mp4")
-    with arguments.one_sentence():
-        _refuse_both(journey, run)
-        from lithobrake.results import open_study
-        from lithobrake.view import refuse_other_kinds, write_journey, write_motion
+    _refuse_both(journey, run)
+    from lithobrake.results import open_study
+    from lithobrake.view import refuse_other_kinds, write_journey, write_motion
 
+    if journey is None:
+        refuse_other_kinds(path)
+        arguments.refuse_written(path, force)
+    else:
+        refuse_journey_file(path, force)
+    paths = [path]
+    with arguments.shown_progress(what) as progress:
+        results = open_study(folder)
         if journey is None:
-            refuse_other_kinds(path)
-            arguments.refuse_written(path, force)
+            write_motion(_landing(results, run, progress), path, seconds, progress)
         else:
-            refuse_journey_file(path, force)
-        paths = [path]
-        with arguments.shown_progress(what) as progress:
-            results = open_study(folder)
-            if journey is None:
-                write_motion(_landing(results, run, progress), path, seconds, progress)
-            else:
-                paths = write_journey(results.journey(journey).motion(progress=progress), path, seconds, progress)
+            paths = write_journey(results.journey(journey).motion(progress=progress), path, seconds, progress)
     arguments.tell(f"Film: {one.resolve()}" for one in paths)
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.LOOK, epilog="Example: lithobrake compare runs/soft runs/stiff --out runs/soft_stiff"
-)
+@arguments.command(arguments.LOOK, "compare runs/soft runs/stiff --out runs/soft_stiff")
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(metavar="B", help="The folder of the other study.", show_default=False)],
@@ -203,33 +169,31 @@ def compare(
 ) -> None:
     """Compare two studies run by run: the difference of every result with its interval, as a page and as JSON."""
     place = arguments.given_folder(out)
-    with arguments.one_sentence():
-        from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
-        from lithobrake.results.study_files import json_values
+    from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
+    from lithobrake.results.study_files import json_values
 
-        for path in comparison_files(place):
-            arguments.refuse_written(path, force)
-        comparison = compare_studies(first, second)
-        page, numbers = write_compared(comparison, place)
+    for path in comparison_files(place):
+        arguments.refuse_written(path, force)
+    comparison = compare_studies(first, second)
+    page, numbers = write_compared(comparison, place)
     lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]
     arguments.tell_result(json, json_values(comparison), lines)
 
 
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
     page = folder / "report" / f"journey_{number}.html"
-    with arguments.one_sentence():
-        _refuse_both(number, run)
-        from lithobrake.results import open_study
-        from lithobrake.view import write_journey
+    _refuse_both(number, run)
+    from lithobrake.results import open_study
+    from lithobrake.view import write_journey
 
-        with arguments.shown_progress("journey") as progress:
-            motion = open_study(folder).journey(number).motion(progress=progress)
-        if solid:
-            show_touchdowns(motion)
-            return
-        # A study that has not come to its report has no such folder yet.
-        page.parent.mkdir(exist_ok=True)
-        write_journey(motion, page)
+    with arguments.shown_progress("journey") as progress:
+        motion = open_study(folder).journey(number).motion(progress=progress)
+    if solid:
+        show_touchdowns(motion)
+        return
+    # A study that has not come to its report has no such folder yet.
+    page.parent.mkdir(exist_ok=True)
+    write_journey(motion, page)
     _open(page.resolve())
 
 

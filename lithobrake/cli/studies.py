@@ -16,9 +16,7 @@ BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
 NAMES = 26
 
 
-@arguments.app.command(
-    rich_help_panel=arguments.START, epilog="Example: lithobrake new hera --body dimorphos --lander 6u --at 10,120"
-)
+@arguments.command(arguments.START, "new hera --body dimorphos --lander 6u --at 10,120")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
     body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = BODY,
@@ -36,20 +34,19 @@ def new(
     ] = False,
 ) -> None:
     """Write a commented study file, NAME.toml, that follows landers to rest."""
-    with arguments.one_sentence():
-        path = Path(name if name.endswith(".toml") else f"{name}.toml")
-        # The stem also names the folder of the study, and stands in commands that are pasted.
-        odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
-        if odd or not name.isprintable():
-            raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
-        from lithobrake.study.template import template
+    path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    # The stem also names the folder of the study, and stands in commands that are pasted.
+    odd = path.stem in ("", ".toml", ".", "..") or path.stem[0] == "-" or path.stem != path.stem.strip()
+    if odd or not name.isprintable():
+        raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
+    from lithobrake.study.template import template
 
-        given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
-        # The template has no place for these options; ignored silently they would be missed only in its results.
-        if first_bounce and (full or any(given.values())):
-            raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
-        text = template() if first_bounce else _journeys(body, lander, at, shape, full)
-        _write_new(path, text)
+    given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
+    # The template has no place for these options; ignored silently they would be missed only in its results.
+    if first_bounce and (full or any(given.values())):
+        raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
+    text = template() if first_bounce else _journeys(body, lander, at, shape, full)
+    _write_new(path, text)
     arguments.tell([f"Wrote {path}. Edit it, then: {arguments.command_line('run', path)}"])
 
 
@@ -72,21 +69,20 @@ def _write_new(path: Path, text: str) -> None:
         raise ValueError(f"{path} cannot be written ({reason}); choose another name or an existing folder") from error
 
 
-@arguments.app.command(rich_help_panel=arguments.START, epilog="Example: lithobrake examples notebook_one_landing")
+@arguments.command(arguments.START, "examples notebook_one_landing")
 def examples(
     name: Annotated[
         str | None, typer.Argument(metavar="NAME", help="Which one to copy; absent: list them.", show_default=False)
     ] = None,
 ) -> None:
     """List the studies and examples that come with the package, or copy one to the current folder."""
-    with arguments.one_sentence():
-        from lithobrake.study.reader import shipped, shipped_by_name
+    from lithobrake.study.reader import shipped, shipped_by_name
 
-        if name is None:
-            arguments.tell(_listed(shipped().values()))
-            return
-        found = shipped_by_name(name)
-        first, *beside = found.write(Path())
+    if name is None:
+        arguments.tell(_listed(shipped().values()))
+        return
+    found = shipped_by_name(name)
+    first, *beside = found.write(Path())
     others = f", with {' and '.join(map(str, beside))}" if beside else ""
     command = arguments.command_line("run", first) if found.is_study else f"python {first}"
     arguments.tell([f"Wrote {first}{others}. Run it with: {command}"])
@@ -107,20 +103,20 @@ def study_command(name: str, what: str, group: str, until: str | None = None) ->
         study: arguments.StudyPath,
         out: arguments.OutPath = None,
         workers: arguments.Workers = None,
-        executor: arguments.ExecutorName = "local",
         scheduler: arguments.Scheduler = None,
         logs: arguments.Logs = False,
     ) -> None:
         folder = arguments.study_folder(study, out)
-        _make(study, folder, last, workers, arguments.scheduler_of(executor, scheduler), logs)
+        _make(study, folder, last, workers, scheduler, logs)
         arguments.tell(arguments.study_headline(folder) if last == "report" else [f"Done: {folder}"])
 
     epilog = f"Example: lithobrake {name} study.toml --out results --workers 4"
     full = f"{what} Reuses the files in its folder, and first runs all earlier stages whose files are missing."
-    arguments.app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)(command)
+    add = arguments.app.command(name, help=full, short_help=what, rich_help_panel=group, epilog=epilog)
+    add(arguments.one_sentence()(command))
 
 
-@arguments.app.command(rich_help_panel=arguments.RUN, epilog="Example: lithobrake plan study.toml")
+@arguments.command(arguments.RUN, "plan study.toml")
 def plan(
     study: arguments.StudyPath,
     out: arguments.OutPath = None,
@@ -133,35 +129,32 @@ def plan(
 ) -> None:
     """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
     folder = arguments.study_folder(study, out)
-    with arguments.one_sentence():
-        from lithobrake.pipeline import plan_lines, plan_study
+    from lithobrake.pipeline import plan_lines, plan_study
 
-        found = plan_study(study, folder, workers, infers=infer)
+    found = plan_study(study, folder, workers, infers=infer)
     arguments.tell_result(json, found.to_json(), plan_lines(found))
 
 
 study_command("run", "Run a study from its file to its report.", arguments.RUN, until="report")
 
 
-@arguments.app.command(rich_help_panel=arguments.RUN, epilog="Example: lithobrake status runs/study")
+@arguments.command(arguments.RUN, "status runs/study")
 def status(folder: arguments.StudyDirectory, json: arguments.Json = False) -> None:
     """Show the progress of a study, from any terminal, also while the study runs."""
-    with arguments.one_sentence():
-        from lithobrake.pipeline import study_status
+    from lithobrake.pipeline import study_status
 
-        found = study_status(folder)
-        lines, content = found.lines(), found.to_json()
+    found = study_status(folder)
+    lines, content = found.lines(), found.to_json()
     arguments.tell_result(json, content, lines)
 
 
 def _make(study: Path, out: Path, until: str, workers: int | None, scheduler: str | None, logs: bool) -> None:
-    with arguments.one_sentence():
-        from lithobrake.study import StudySource
+    from lithobrake.study import StudySource
 
-        # A study that is refused is refused at once: what follows brings the engine and its compiler.
-        source = StudySource.read(study)
-        from lithobrake.pipeline import run_study
-        from lithobrake.progress import study_progress
+    # A study that is refused is refused at once: what follows brings the engine and its compiler.
+    source = StudySource.read(study)
+    from lithobrake.pipeline import run_study
+    from lithobrake.progress import study_progress
 
-        with study_progress() as shown:
-            run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)
+    with study_progress() as shown:
+        run_study(source, out, until=until, worker_count=workers, scheduler=scheduler, shown=shown, keeps_logs=logs)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.export.flown import Flown, has_journeys
+from lithobrake.export.flown import ExportOptions, Flown, has_journeys
 from lithobrake.export.oem import RESOLUTION, Frame, comment_lines, epoch_texts, header_lines, number_texts
 from lithobrake.files.atomic import write_whole
 from lithobrake.geometry.attitude import arriving, attitude_of, from_frame, quaternion, spin_of
@@ -35,7 +35,10 @@ VERSION = "2.0"
 STEP_ANGLE, BLIND_ANGLE = math.radians(10.0), math.radians(90.0)
 # Of the polynomials between states.
 DEGREE = 7
-QUATERNION = "Each quaternion (Q1, Q2, Q3, QC; QC is its scalar) turns components along REF_FRAME_A into those along "
+QUATERNION = (
+    "Each quaternion (Q1, Q2, Q3, QC; QC is its scalar) turns components along REF_FRAME_A into those along the "
+    "lander's own axes, SC_BODY_1, which are those of its shape in the study."
+)
 
 
 @dataclass(frozen=True)
@@ -169,48 +172,30 @@ def _rows(table: Table) -> list[Row]:
     return [{name: table[name][row] for name in table} for row in range(table.row_count)]
 
 
-QUATERNION += "the lander's own axes, SC_BODY_1, which are those of its shape in the study."
+def attitude_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
+    return [f"attitude_{sample}.aem" for sample in chosen.samples]
 
 
-def write_attitudes(
-    results: StudyResults,
-    folder: Path,
-    samples: Sequence[int],
-    *,
-    frame: str = "inertial",
-    epoch: str | None = None,
-    step: float | None = None,
-) -> list[Path]:
-    """Write a file for each chosen journey, with a segment for each flight and one at rest; give their paths.
+def write_attitudes(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
+    """Write a file for each chosen journey, with a segment for each flight and one at rest.
 
     In flight the lander turns freely, without torque, from its attitude and spin as it left the ground; while it is in
     contact nothing is noted, and the file has a gap. At rest it turns with the body, for one turn of that.
-
-    samples, frame, epoch   as write_ephemerides has them
-    step   between states [s]; absent: as long as the lander takes to turn by 10 degrees at most
     Raises ValueError for a study without journeys of landings, and as write_ephemerides does.
     """
-    if not samples:
+    if not chosen.samples:
         raise ValueError("no sample is chosen whose attitude is passed on; name some with --flight, from 0")
-    axes, chosen = Frame.of(results, frame, epoch), list(dict.fromkeys(samples))
-    flown = axes.timed(results, Flown.of(results).journeys(results, chosen))
+    axes = Frame.of(results, chosen.frame, chosen.epoch)
+    flown = axes.timed(results, Flown.of(results).journeys(results, chosen.samples))
     comments = [
         f"Attitudes of landers of a study of lithobrake on {axes.body}. {axes.sentences.split(' Velocities')[0]}",
         *(axes.clock_sentence, QUATERNION),
     ]
-    written = []
-    for sample in chosen:
+    for path, sample in zip(paths, chosen.samples, strict=True):
         lines = header_lines(f"CCSDS_AEM_VERS = {VERSION}", comments)
         for turn in turns_of(results, flown, sample):
-            lines += _segment(turn, sample, axes, step)
-        written.append(folder / f"{attitude_name(sample)}.aem")
-        write_whole(written[-1], "\n".join(lines), "ascii")
-    return written
-
-
-def attitude_name(sample: int) -> str:
-    """Name of the file of a sample, without its ending."""
-    return f"attitude_{sample}"
+            lines += _segment(turn, sample, axes, chosen.step)
+        write_whole(path, "\n".join(lines), "ascii")
 
 
 def sampled(turn: Turn, axes: Frame, step: float | None) -> tuple[np.ndarray, Rotation]:

@@ -12,12 +12,11 @@ import numpy as np
 
 from lithobrake.export.attitudes import one_sided, sampled, turns_of
 from lithobrake.export.ephemerides import checked_step, flight_segments
-from lithobrake.export.flown import Flown, has_journeys
+from lithobrake.export.flown import ExportOptions, Flown, has_journeys
 from lithobrake.export.oem import RESOLUTION, Frame, Segment, epoch_texts
 from lithobrake.files.atomic import write_json
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 
@@ -31,24 +30,14 @@ NOTE = (
 )
 
 
-def write_czml(
-    results: StudyResults,
-    path: Path,
-    samples: Sequence[int] = (),
-    *,
-    epoch: str | None = None,
-    step: float | None = None,
-    progress: Progress = silent,
-) -> None:
+def write_czml(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write a packet for each chosen lander: body-fixed way and, where that is known, attitude; a colour by its end.
 
-    samples, epoch, step   as write_ephemerides has them; without samples the first 20
-    Raises ValueError as write_ephemerides does.
+    Without chosen samples the first 20 are shown. Raises ValueError as write_ephemerides does.
     """
-    axes, flown = Frame.of(results, "fixed", epoch), Flown.of(results)
-    chosen = list(dict.fromkeys(samples)) or flown.sample[:SHOWN].tolist()
-    flights = axes.timed(results, flown.journeys(results, chosen))
-    parts = flight_segments(flights, axes, checked_step(flown, step), progress)
+    axes, flown = Frame.of(results, "fixed", chosen.epoch), Flown.of(results)
+    flights = axes.timed(results, flown.journeys(results, chosen.samples or flown.sample[:SHOWN].tolist()))
+    parts = flight_segments(flights, axes, checked_step(flown, chosen.step), chosen.progress)
     begin = min(float(one[0].time[0]) for one in parts.values())
     end = max(float(one[-1].time[-1]) for one in parts.values())
     if has_journeys(results):
@@ -57,7 +46,7 @@ def write_czml(
     packets = [_document(axes, begin, end), _body(results, axes)]
     for sample, segments in parts.items():
         packets.append(_lander(results, flights, axes, sample, segments, end))
-    write_json(path, packets, indent=None)
+    write_json(paths[0], packets, indent=None)
 
 
 def _document(axes: Frame, begin: float, end: float) -> dict[str, Any]:

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.export.flown import Flown
+from lithobrake.export.flown import ExportOptions, Flown
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path, write_whole
 from lithobrake.geometry.naif_kernels import NUMBERS, spice
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.callbacks import Progress
 from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
 
@@ -27,7 +27,6 @@ FEWEST = 7
 BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
 # Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
 FIRST, FRAME = -1_000_000, 1_400_000
-FLIGHTS, CONSTANTS = "flights.bsp", "body.tpc"
 # Epoch of J2000 as a Julian date.
 J2000 = 2_451_545.0
 
@@ -92,50 +91,27 @@ def _sentence(sample: int, arc: int, count: int) -> str:
     return f"Flight {arc + 1} of {count} that are known of sample {sample}; its last state is its end{words}."
 
 
-def write_ephemerides(
-    results: StudyResults,
-    folder: Path,
-    samples: Sequence[int] = (),
-    *,
-    frame: str = "inertial",
-    epoch: str | None = None,
-    step: float | None = None,
-    progress: Progress = silent,
-) -> list[Path]:
-    """Write flight_mean.oem, of all first flights, and a file for each chosen sample; give their paths.
+def ephemeris_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
+    return ["flight_mean.oem", *(f"flight_{sample}.oem" for sample in chosen.samples)]
+
+
+def write_ephemerides(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
+    """Write an ephemeris of the mean of all first flights, and a file for each chosen sample.
 
     The standard has one object in a file. That of a sample has a segment for each of its flights over the bounces.
-
-    samples   by their number in flights.csv, or of journeys
-    frame     "inertial": axes that do not turn and are the body's at the epoch; "fixed": body-fixed axes; "icrf":
-              through pole and meridian of the study
-    epoch     at which all first touchdowns are [UTC]; absent: each lander at its own time after delivery.epoch of the
-              study; where that has none, an epoch that stands for no date, and the file says so
-    step      between states [s]; absent: a hundredth of the longest flight
-    progress  told the fraction that is done of what is being done
     A warning says so where the files get larger than 100 MB. Raises ValueError for a frame, an epoch, a step or a
     sample that there is not, for ICRF without a pole, and where too few flights make a cloud.
     """
-    axes, flown = Frame.of(results, frame, epoch), Flown.of(results)
-    chosen = axes.timed(results, flown.journeys(results, list(dict.fromkeys(samples))))
-    step = checked_step(flown, step)
-    comments = [
-        f"Flights of a study of lithobrake on {axes.body}. {axes.sentences}",
-        axes.clock_sentence,
-    ]
-    _warn_of_size(flown, chosen, step)
-    files = {"flight_mean": [_cloud(axes.timed_together(results, flown), axes, step, progress)]}
-    files |= {f"flight_{sample}": found for sample, found in flight_segments(chosen, axes, step, progress).items()}
-    written = {file: folder / f"{file}.oem" for file in flight_names(samples)}
-    for file, path in written.items():
-        progress(1.0, f"writing {path.name}")
-        write_oem(path, files[file], axes.epoch, comments)
-    return list(written.values())
-
-
-def flight_names(samples: Sequence[int]) -> list[str]:
-    """Names of the files for chosen samples, without their ending."""
-    return ["flight_mean", *(f"flight_{sample}" for sample in dict.fromkeys(samples))]
+    axes, flown = Frame.of(results, chosen.frame, chosen.epoch), Flown.of(results)
+    flights = axes.timed(results, flown.journeys(results, chosen.samples))
+    step = checked_step(flown, chosen.step)
+    comments = [f"Flights of a study of lithobrake on {axes.body}. {axes.sentences}", axes.clock_sentence]
+    _warn_of_size(flown, flights, step)
+    cloud = _cloud(axes.timed_together(results, flown), axes, step, chosen.progress)
+    segments = flight_segments(flights, axes, step, chosen.progress)
+    for path, parts in zip(paths, [[cloud], *(segments[sample] for sample in chosen.samples)], strict=True):
+        chosen.progress(1.0, f"writing {path.name}")
+        write_oem(path, parts, axes.epoch, comments)
 
 
 def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
@@ -174,38 +150,27 @@ def _cloud(flown: Flown, axes: Frame, step: float, progress: Progress) -> Segmen
     )
 
 
-def write_spk(
-    results: StudyResults,
-    folder: Path,
-    samples: Sequence[int],
-    *,
-    epoch: str | None = None,
-    step: float | None = None,
-    body_number: int | None = None,
-    progress: Progress = silent,
-) -> list[Path]:
-    """Write flights.bsp, with a segment for each flight of the chosen samples, and body.tpc; give their paths.
+def write_spk(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
+    """Write an SPK, with a segment for each flight of the chosen samples, and constants of the body.
 
     Segments are of type 13 (Hermite) in the axes J2000, those of ICRF within a tenth of an arc second, about the body,
     in the time of SPICE (TDB); they are named "SAMPLE N FLIGHT K". Lander N has the number -1000000 - N. The constants
     have pole, angle of longitude 0 and spin of the body, its name, and its axes as the frame NAME_FIXED.
-
-    samples, epoch, step   as write_ephemerides has them, with frame = "icrf"
-    body_number   of the body in SPICE; absent: that of a built-in body, or of kernel_body in the study
     Raises ValueError for a body without a number, and as write_ephemerides does; ImportError without spiceypy, pyerfa.
     """
-    if not samples:
+    if not chosen.samples:
         raise ValueError("no sample is chosen whose flights are passed on; name some with --flight, from 0")
-    number = _number(results) if body_number is None else body_number
-    axes, flown = Frame.of(results, "icrf", epoch), Flown.of(results)
-    chosen = axes.timed(results, flown.journeys(results, list(dict.fromkeys(samples))))
+    number = _number(results) if chosen.body_number is None else chosen.body_number
+    # SPICE takes its own axes alone, whatever the other files are in.
+    axes, flown = Frame.of(results, "icrf", chosen.epoch), Flown.of(results)
+    flights = axes.timed(results, flown.journeys(results, chosen.samples))
     start = ephemeris_time(axes.epoch)
-    segments = flight_segments(chosen, axes, checked_step(flown, step), progress)
-    with atomic_path(folder / FLIGHTS) as draft:
+    segments = flight_segments(flights, axes, checked_step(flown, chosen.step), chosen.progress)
+    orbits, constants = paths
+    with atomic_path(orbits) as draft:
         _write_segments(draft, segments, number, start)
     period = float(np.median(flown.spin_period))
-    write_whole(folder / CONSTANTS, _constants(results, axes, number, start, period, list(segments)), "ascii")
-    return [folder / FLIGHTS, folder / CONSTANTS]
+    write_whole(constants, _constants(results, axes, number, start, period, list(segments)), "ascii")
 
 
 def ephemeris_time(epoch: datetime) -> float:

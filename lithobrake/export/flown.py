@@ -18,12 +18,47 @@ from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.file_names import ARCS_FILE
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
     "sample", "arc", "begin", "start_time", "position", "velocity", "mass", "spin_period", "end_time", "duration",
 )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What a user may choose of the files.
+
+    samples       whose flights or attitudes are passed on, by their number in flights.csv, or of journeys
+    frame         "inertial": axes that do not turn and are the body's at the epoch; "fixed": body-fixed axes; "icrf":
+                  through pole and meridian of the study
+    epoch         at which all first touchdowns are [UTC]; None: each lander at its own time after delivery.epoch of the
+                  study; where that has none, an epoch that stands for no date, and the file says so
+    step          between states [s]; None: a hundredth of the longest flight, and between attitudes as long as the
+                  lander takes to turn by 10 degrees at most
+    resolution_deg   edge of a cell of the map, at least 0.05 (26 million cells, 104 MB); it has to divide 180
+    run           whose landing is made again, by its row in `runs`, its key, or how that begins; None: the one that the
+                  study keeps
+    replaces      write over files that exist
+    progress      told the fraction that is done of such a landing, or of the flights, and what is being done
+    body_number   of the body in SPICE; None: that of a built-in body, or of kernel_body in the study
+    """
+
+    samples: Sequence[int] = ()
+    frame: str = "inertial"
+    epoch: str | None = None
+    step: float | None = None
+    resolution_deg: float = 1.0
+    run: str | int | None = None
+    replaces: bool = False
+    progress: Progress = silent
+    body_number: int | None = None
+
+    def __post_init__(self) -> None:
+        # Samples that are asked for twice stand once.
+        object.__setattr__(self, "samples", tuple(dict.fromkeys(self.samples)))
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import body_name, has_journeys, plain_name
+from lithobrake.export.flown import ExportOptions, body_name, has_journeys, plain_name
 from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
+from lithobrake.vocabulary.file_names import JOURNEYS_FILE, REST_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 PIXEL_SCALE, TIE_POINT, KEYS, DOUBLES, TEXTS, GDAL_METADATA = 33550, 33922, 34735, 34736, 34737, 42112
 USER_DEFINED, GEOGRAPHIC, PIXEL_IS_AREA, DEGREE = 32767, 2, 1, 9102
 GDAL_NODATA = 42113
-# Finer cells than the second would take gigabytes of memory, and are smaller than what any study knows of a place.
-RESOLUTION_DEG, FINEST_DEG = 1.0, 0.05
+# Finer cells would take gigabytes of memory, and are smaller than what any study knows of a place.
+FINEST_DEG = 0.05
 BAND_UNIT = "1/m2"
 WORDS = "latitude planetocentric, longitude east positive, both of the body-fixed frame"
 NOTE = f"{WORDS}; coordinates in degrees, longitude first"
@@ -68,15 +69,19 @@ class MapFrame:
         )
 
 
-def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = RESOLUTION_DEG) -> None:
+def map_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
+    return ["rest.tif" if has_journeys(results) else "impacts.tif"]
+
+
+def write_geotiff(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write which share of all flights ends in each cell of latitude and longitude, over the cell's area [1/m2]; of
     journeys of landings, which share of the landers rests there.
 
-    resolution_deg   edge of a cell, at least 0.05 (26 million cells, a file of 104 MB); it has to divide 180
     The sum of values times areas of the cells, on the sphere of the file, is the share of flights that end on the body.
     """
     from PIL import Image
 
+    resolution_deg = chosen.resolution_deg
     # What is far too fine has more cells than there are numbers.
     cells = round(180.0 / resolution_deg) if resolution_deg > 0.5 * FINEST_DEG else 0
     if not (1 <= cells <= round(180.0 / FINEST_DEG) and abs(cells * resolution_deg - 180.0) < 1e-9):
@@ -87,12 +92,8 @@ def write_geotiff(results: StudyResults, path: Path, *, resolution_deg: float = 
     band, what = ("rest", "landers that rest") if has_journeys(results) else ("impact", "flights that end")
     quantity = f"share of all {what} in the cell, over its area"
     image = Image.fromarray(impact_density(results, frame.radius, cells).astype(np.float32))
-    with atomic_path(path) as draft:
+    with atomic_path(paths[0]) as draft:
         image.save(draft, format="TIFF", tiffinfo=_tags(frame, 180.0 / cells, f"{band} density", quantity))
-
-
-def map_name(results: StudyResults) -> str:
-    return "rest.tif" if has_journeys(results) else "impacts.tif"
 
 
 def impact_density(results: StudyResults, radius: float, cells: int) -> np.ndarray:
@@ -150,29 +151,23 @@ def _tags(frame: MapFrame, resolution_deg: float, band: str, quantity: str) -> "
     return tags
 
 
-def write_geojson(results: StudyResults, path: Path) -> None:
-    """Write a point for each flight that ends on the body, with its sample, facet, time and velocity of impact.
+def point_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
+    has_rest = any((results.folder / name).is_file() for name in (REST_FILE, JOURNEYS_FILE))
+    return ["impacts.geojson", *(["rest.geojson"] if has_rest else [])]
 
-    Of a study of journeys a point for each of their touchdowns.
-    """
+
+def write_geojson(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
+    """Write a point for each flight that ends on the body, or each touchdown of journeys, and one for each place of
+    rest, with their numbers."""
+    ends, ends_on_ground = _ends_on_ground(results)
     if has_journeys(results):
-        _write_points(results, path, "touchdowns", results.touchdowns, TOUCHDOWN_PROPERTIES)
+        _write_points(results, paths[0], "touchdowns", results.touchdowns, TOUCHDOWN_PROPERTIES)
+        _write_points(results, paths[1], "places of rest", ends.where(ends_on_ground), JOURNEY_PROPERTIES)
         return
-    flights = results.flights
-    down = flights.where(np.flatnonzero(flights["status"] == FlightStatus.IMPACT))
-    _write_points(results, path, "impacts", down, PROPERTIES)
-
-
-def write_rest_geojson(results: StudyResults, path: Path) -> None:
-    """Write a point for each lander that ends at rest, with its numbers."""
-    if has_journeys(results):
-        ended = results.journeys
-        at_rest = ended.where(np.flatnonzero(ended["end"] == JourneyEnd.AT_REST))
-        _write_points(results, path, "places of rest", at_rest, JOURNEY_PROPERTIES)
-        return
-    journeys = results.rest
-    at_rest = journeys.where(np.flatnonzero(journeys["end"] == JourneyEnd.AT_REST))
-    _write_points(results, path, "places of rest", at_rest, REST_PROPERTIES)
+    _write_points(results, paths[0], "impacts", ends.where(ends_on_ground), PROPERTIES)
+    for path in paths[1:]:
+        at_rest = results.rest.where(results.rest["end"] == JourneyEnd.AT_REST)
+        _write_points(results, path, "places of rest", at_rest, REST_PROPERTIES)
 
 
 def _write_points(results: StudyResults, path: Path, what: str, table: Table, names: Sequence[str]) -> None:

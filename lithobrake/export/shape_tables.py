@@ -1,12 +1,12 @@
 """The shape of the body as tables of other programs: plates, and numbers of each facet, as text and FITS."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import Flown
+from lithobrake.export.flown import ExportOptions, Flown
 from lithobrake.files.atomic import write_rows, write_whole
 from lithobrake.results import Column, StudyResults, Table
 
@@ -56,18 +56,14 @@ def _cards(cards: list[tuple[str, Any, str]]) -> Iterator[str]:
         yield f"{key:<8}= {written}{f' / {comment}' if comment else ''}"[:CARD].ljust(CARD)
 
 
-def write_facet_csv(results: StudyResults, path: Path) -> None:
-    """Write a row a facet; a number that a facet does not have is left empty."""
-    table = facet_table(results)
+def write_facets(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
+    """Write a row a facet as CSV and as a FITS table; a number that a facet does not have is left empty, and NaN."""
+    table, (text, fits) = facet_table(results), paths
     titles = [f"{name} [{column.units}]" if column.units else name for name, column in table.columns.items()]
     columns = [column.values.tolist() for column in table.columns.values()]
     rows = zip(*columns, strict=True)
-    write_rows(path, titles, (["" if value != value else value for value in row] for row in rows))
-
-
-def write_facet_fits(results: StudyResults, path: Path) -> None:
-    """Write a FITS binary table, a row a facet; a number that a facet does not have is NaN."""
-    write_fits_table(path, "FACETS", facet_table(results).columns)
+    write_rows(text, titles, (["" if value != value else value for value in row] for row in rows))
+    write_fits_table(fits, "FACETS", table.columns)
 
 
 def facet_table(results: StudyResults) -> Table:
@@ -112,11 +108,11 @@ def _slope(body: "Body", centre: np.ndarray) -> np.ndarray:
     return slope
 
 
-def write_plates(results: StudyResults, path: Path) -> None:
+def write_plates(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write vertices [km] and plates, each with its number from 1, in the order of body.obj."""
     vertices, faces = results.body_shape
     lines = [str(len(vertices))]
     lines += [f"{number} {x!r} {y!r} {z!r}" for number, (x, y, z) in enumerate((vertices * 1e-3).tolist(), 1)]
     lines += [str(len(faces))]
     lines += [f"{number} {a} {b} {c}" for number, (a, b, c) in enumerate((np.asarray(faces) + 1).tolist(), 1)]
-    write_whole(path, "\n".join(lines) + "\n", "ascii")
+    write_whole(paths[0], "\n".join(lines) + "\n", "ascii")

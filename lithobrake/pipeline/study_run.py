@@ -117,7 +117,7 @@ def run_study(
     with (
         one_thread(),
         folder.alone() as note,
-        DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor,
+        DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor,
     ):
         design = grown(drawn, folder)
         folder.begin(source.path, source.content, setting(design.study), shown.say)

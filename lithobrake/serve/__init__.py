@@ -1,5 +1,5 @@
 """Models over HTTP in the protocol of UM-Bridge, which clients in many languages speak. Stands alone."""
 
-from lithobrake.serve.server import PORT, ClientGoneError, ClientServer, ServedModel, model_server
+from lithobrake.serve.server import ClientGoneError, ClientServer, ServedModel
 
-__all__ = ["PORT", "ClientGoneError", "ClientServer", "ServedModel", "model_server"]
+__all__ = ["ClientGoneError", "ClientServer", "ServedModel"]

@@ -7,7 +7,6 @@ import select
 import socket
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from typing import Any
 
 # Requests that are read or wait for their turn; further clients are turned away.
 MOST_CLIENTS = 256
-# A client has so long to send its whole request [s].
+# A client that sends or takes nothing for so long is left alone [s].
 REQUEST_TIME = 10.0
 # Whether a client is still there is looked at so often while it waits for its turn [s].
 LOOK = 0.2
@@ -26,7 +25,6 @@ _TURNED_AWAY = (
     b'{"error": {"type": "InvalidInput", "message": "the server has as many clients as it takes; ask again"}}'
 )
 FEATURES = ("Evaluate", "Gradient", "ApplyJacobian", "ApplyHessian")
-PORT = 4242
 PROTOCOL = 1.0
 # Of a request [bytes]: vectors here have tens of numbers.
 LARGEST = 1 << 20
@@ -36,22 +34,57 @@ class ClientGoneError(ConnectionError):
     """A client that has left before its answer."""
 
 
+@dataclass(frozen=True)
+class ServedModel:
+    """A model by its name, the names of its inputs and outputs in their order, and the function.
+
+    evaluate: called with the inputs and what the client configures; it gives the outputs, all finite, and raises
+    ValueError for inputs or a configuration that it refuses.
+    """
+
+    name: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    evaluate: Callable[[list[float], Mapping[str, Any]], list[float]]
+
+    def __post_init__(self) -> None:
+        if not self.inputs or not self.outputs:
+            raise ValueError(f"model {self.name} has {len(self.inputs)} inputs and {len(self.outputs)} outputs")
+
+
+# Evaluates a model at a point with a configuration; the last argument says whether the client has left meanwhile, and
+# an evaluation that ends for that raises ClientGoneError.
+Evaluate = Callable[[ServedModel, list[float], Mapping[str, Any], Callable[[], bool]], list[float]]
+
+
+def evaluate_here(
+    model: ServedModel, point: list[float], config: Mapping[str, Any], gone: Callable[[], bool]
+) -> list[float]:
+    """Evaluate in this process, for as long as it takes."""
+    return model.evaluate(point, config)
+
+
 class ClientServer(ThreadingHTTPServer):
-    """A server that bounds what its clients may take: their number, the time of a request, one evaluation at a time."""
+    """A server of models that bounds what its clients may take: their number, and one evaluation at a time.
+
+    It is bound and not yet at work: `serve_forever()` answers.
+    host: name or address of this machine, IPv4 or IPv6; port: 0 takes a free one. `address` is then where it listens.
+    evaluate: makes the evaluations; by default in this process, for as long as they take.
+    """
 
     daemon_threads = True
     request_queue_size = MOST_CLIENTS
 
-    def __init__(self, host: str, port: int, handler: type[BaseHTTPRequestHandler]) -> None:
+    def __init__(self, models: Sequence[ServedModel], host: str, port: int, evaluate: Evaluate = evaluate_here) -> None:
         """Bind. Raises ValueError for an empty host or no port, OSError where the address is not to be had."""
-        self.host = host
+        self.models = {model.name: model for model in models}
+        self.evaluate, self.host = evaluate, host
         self.address_family, address = _resolved(host, port)
         # The models share compiled kernels and files that are made once.
         self._alone = threading.Lock()
         self._room = threading.BoundedSemaphore(MOST_CLIENTS)
-        self._asking: dict[socket.socket, float] = {}
         try:
-            super().__init__(address, handler)
+            super().__init__(address, _Handler)
         except OSError as error:
             raise OSError(
                 f"host {host}, port {port} cannot be listened on ({error.strerror}); name an address of this machine, "
@@ -85,18 +118,6 @@ class ClientServer(ThreadingHTTPServer):
         finally:
             self._alone.release()
 
-    def has_asked(self, client: socket.socket) -> None:
-        """Note that a client has sent its whole request, and waits."""
-        self._asking.pop(client, None)
-
-    def service_actions(self) -> None:
-        """Leave those clients alone that have not sent their request in time; asked twice a second."""
-        late = time.monotonic() - REQUEST_TIME
-        for client in [client for client, since in list(self._asking.items()) if since < late]:
-            self._asking.pop(client, None)
-            with suppress(OSError):
-                client.shutdown(socket.SHUT_RDWR)
-
     def process_request(self, request: Any, client_address: Any) -> None:
         """Answer a client in a thread, or turn it away where there are too many."""
         if not self._room.acquire(blocking=False):
@@ -104,7 +125,6 @@ class ClientServer(ThreadingHTTPServer):
                 request.sendall(_TURNED_AWAY)
             self.shutdown_request(request)
             return
-        self._asking[request] = time.monotonic()
         try:
             super().process_request(request, client_address)
         except RuntimeError:
@@ -117,7 +137,6 @@ class ClientServer(ThreadingHTTPServer):
         try:
             super().process_request_thread(request, client_address)
         finally:
-            self._asking.pop(request, None)
             self._room.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -158,42 +177,12 @@ def _resolved(host: str, port: int) -> tuple[socket.AddressFamily, tuple[Any, ..
     return family, address
 
 
-@dataclass(frozen=True)
-class ServedModel:
-    """A model by its name, the names of its inputs and outputs in their order, and the function.
-
-    evaluate: called with the inputs and what the client configures; it gives the outputs, all finite, and raises
-    ValueError for inputs or a configuration that it refuses.
-    """
-
-    name: str
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    evaluate: Callable[[list[float], Mapping[str, Any]], list[float]]
-
-    def __post_init__(self) -> None:
-        if not self.inputs or not self.outputs:
-            raise ValueError(f"model {self.name} has {len(self.inputs)} inputs and {len(self.outputs)} outputs")
-
-
-# Evaluates a model at a point with a configuration; the last argument says whether the client has left meanwhile, and
-# an evaluation that ends for that raises ClientGoneError.
-Evaluate = Callable[[ServedModel, list[float], Mapping[str, Any], Callable[[], bool]], list[float]]
-
-
 class RequestError(Exception):
     """What a client is answered in place of a result: a kind of error, a sentence, a status of HTTP."""
 
     def __init__(self, kind: str, message: str, status: int = 400) -> None:
         super().__init__(message)
         self.kind, self.status = kind, status
-
-
-def evaluate_here(
-    model: ServedModel, point: list[float], config: Mapping[str, Any], gone: Callable[[], bool]
-) -> list[float]:
-    """Evaluate in this process, for as long as it takes."""
-    return model.evaluate(point, config)
 
 
 def answer(
@@ -246,19 +235,12 @@ def _point(model: ServedModel, given: Any) -> list[float]:
     return [float(number) for number in numbers]
 
 
-class _Server(ClientServer):
-    """Listens, and keeps the models by their names."""
-
-    def __init__(self, models: Sequence[ServedModel], host: str, port: int, evaluate: Evaluate) -> None:
-        super().__init__(host, port, _Handler)
-        self.models = {model.name: model for model in models}
-        self.evaluate = evaluate
-
-
 class _Handler(BaseHTTPRequestHandler):
     """Answers the requests of a client."""
 
-    server: _Server
+    server: ClientServer
+    # Of each read and write.
+    timeout = REQUEST_TIME
 
     def do_GET(self) -> None:
         """Say which models there are."""
@@ -270,9 +252,7 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Answer a request for a model."""
         try:
-            request = self._request()
-            self.server.has_asked(self.connection)
-            self._answer(200, answer(self.server.models, self.path, request, self._evaluate))
+            self._answer(200, answer(self.server.models, self.path, self._request(), self._evaluate))
         except RequestError as error:
             self._answer(error.status, _error(error.kind, str(error)))
 
@@ -311,18 +291,6 @@ class _Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: Any) -> None:
         """Say nothing: a campaign asks thousands of times."""
-
-
-def model_server(
-    models: Sequence[ServedModel], host: str, port: int, evaluate: Evaluate = evaluate_here
-) -> ClientServer:
-    """A server that is bound and not yet at work: `serve_forever()` answers, one evaluation at a time.
-
-    host: name or address of this machine, IPv4 or IPv6; port: 0 takes a free one. `address` is then where it listens.
-    evaluate: makes the evaluations; by default in this process, for as long as they take.
-    Raises ValueError for an empty host, OSError where the address is not to be had.
-    """
-    return _Server(models, host, port, evaluate)
 
 
 def _error(kind: str, message: str) -> dict[str, Any]:

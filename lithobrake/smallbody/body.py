@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.smallbody import attraction
 from lithobrake.smallbody.acceleration import Entry, Orbit
-from lithobrake.smallbody.attraction import gradient
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.smallbody.shape import Shape, checked_points, delivered_directions
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
@@ -105,15 +104,6 @@ class Body:
         laplacian: NDArray[np.float64] = -self._field(points)[..., 4]
         return laplacian
 
-    def gradient(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Derivatives of the acceleration by position [1/s2], shape [..., 3, 3], at body-fixed points [m], [..., 3].
-
-        Symmetric; its trace is the Laplacian. On an edge of the shape, where it has no limit, it is large and finite.
-        """
-        p = checked_points(self.name, points)
-        sums = gradient(p.reshape(-1, 3), *self.shape.gravity[:2])
-        return (sums * (GRAVITATIONAL_CONSTANT * self.density)).reshape(*p.shape, 3)
-
     def effective_acceleration(
         self,
         points: ArrayLike,
@@ -151,16 +141,6 @@ class Body:
         along = -(felt * self.shape.normals[facets]).sum(axis=-1) / np.linalg.norm(felt, axis=-1)
         slope: NDArray[np.float64] = np.arccos(np.clip(along, -1.0, 1.0))
         return slope
-
-    def jacobi(self, position: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
-        """Jacobi constant [m2/s2] of body-fixed states: half the squared speeds' difference minus the potential.
-
-        It is `v**2 / 2 - (spin_rate**2 (x**2 + y**2)) / 2 - potential`, kept in a flight.
-        """
-        p, v = checked_points(self.name, position), checked_points(self.name, velocity)
-        turning = self.spin_rate**2 * (p[..., 0] ** 2 + p[..., 1] ** 2)
-        constant: NDArray[np.float64] = 0.5 * ((v * v).sum(axis=-1) - turning) - self.potential(p)
-        return constant
 
     def local_frame(
         self, latitude_deg: ArrayLike, longitude_deg: ArrayLike, heading_deg: ArrayLike = 0.0

@@ -126,7 +126,7 @@ class Flights:
         return self._jacobi(self.position, self.velocity) - self._jacobi(self.start.position, self.start.velocity)
 
     def _jacobi(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As Body.jacobi, with the mass and spin of each flight."""
+        """Half the squared speed, less that of the turning ground, less the potential, of each flight [m2/s2]."""
         spin_rate = 2.0 * np.pi / self.start.spin_period
         turning = spin_rate**2 * (position[:, 0] ** 2 + position[:, 1] ** 2)
         # The shape is one for all flights, so their potentials differ by the mass alone.

@@ -215,16 +215,6 @@ class AttitudeHistory:
         quaternion, spin, change = _curve(states, self.step, interval, part - interval)
         return Attitudes(rotation_matrices(quaternion), spin, change)
 
-    def refuse_beyond(self, begin: Array, end: Array) -> None:
-        """Raise ValueError where times [s] from begin to end, [count], are not all in the history."""
-        first, last = float(begin.min(initial=0.0)), float(end.max(initial=0.0))
-        # An end that is the sum of two numbers may be off by their rounding.
-        if first < 0.0 or last > self.duration * (1.0 + 1e-12):
-            raise ValueError(
-                f"the attitude of the body is known from 0 to {self.duration:.9g} s, and flights or slides may last "
-                f"from {first:.9g} to {last:.9g} s; give a longer history, or shorter durations."
-            )
-
 
 def _curve(states: Array, step: float, interval: NDArray[np.int64], u: Array) -> tuple[Array, Array, Array]:
     """Quaternions [count, 4], not of length 1, spins and their changes [count, 3] at parts u of intervals, [count]."""
@@ -283,7 +273,8 @@ def kept_among_stars(rotation: Rotation, vectors: Array, start: Array, time: Arr
 
 
 def refuse_beyond(rotation: Rotation, own_period: float, spin_period: Array, begin: Array, end: Array) -> None:
-    """Raise ValueError for flights that last longer than the history, or with another spin period than the body's."""
+    """Raise ValueError for flights from begin to end [s], [count], that are not all in the history, or have another
+    spin period than the body's."""
     if rotation is None:
         return
     if (spin_period != own_period).any():
@@ -291,4 +282,10 @@ def refuse_beyond(rotation: Rotation, own_period: float, spin_period: Array, beg
             f"spin_period is not {own_period:g} s in every flight, with which the axes turn that the attitudes of the "
             "body are against; leave it out."
         )
-    rotation.refuse_beyond(begin, end)
+    first, last = float(begin.min(initial=0.0)), float(end.max(initial=0.0))
+    # An end that is the sum of two numbers may be off by their rounding.
+    if first < 0.0 or last > rotation.duration * (1.0 + 1e-12):
+        raise ValueError(
+            f"the attitude of the body is known from 0 to {rotation.duration:.9g} s, and flights or slides may last "
+            f"from {first:.9g} to {last:.9g} s; give a longer history, or shorter durations."
+        )

@@ -36,8 +36,7 @@ def film(bodies: "MovingBodies", path: Path, seconds: float = 8.0, progress: Pro
     """
     _refuse(path, seconds)
     count = len(bodies.time)
-    pictures = (picture for picture, _ in zip(_pictures(bodies, count), _counted(count, progress), strict=False))
-    _write(path, pictures, count / seconds)
+    _write(path, _told(_pictures(bodies, count), count, progress), count / seconds)
 
 
 def journey_film(motion: "JourneyMotion", path: Path, seconds: float = 8.0, progress: Progress = silent) -> None:
@@ -48,8 +47,7 @@ def journey_film(motion: "JourneyMotion", path: Path, seconds: float = 8.0, prog
     _refuse(path, seconds)
     rate, parts = FILM_PICTURES / seconds, len(motion.bodies)
     total = parts * FILM_PICTURES + (parts + 1) * round(MAP_SECONDS * rate)
-    pictures = _journey_pictures(motion, round(MAP_SECONDS * rate))
-    _write(path, (picture for picture, _ in zip(pictures, _counted(total, progress), strict=False)), rate)
+    _write(path, _told(_journey_pictures(motion, round(MAP_SECONDS * rate)), total, progress), rate)
 
 
 def _refuse(path: Path, seconds: float) -> None:
@@ -60,11 +58,11 @@ def _refuse(path: Path, seconds: float) -> None:
         raise ValueError(f"the film lasts {seconds!r} s; allowed: a finite time above 0 s")
 
 
-def _counted(count: int, progress: Progress) -> Iterator[int]:
-    """So many numbers, each told as a part of all."""
-    for number in range(count):
-        progress((number + 1) / count, "drawing")
-        yield number
+def _told(pictures: Iterator[np.ndarray], count: int, progress: Progress) -> Iterator[np.ndarray]:
+    """So many pictures, each told as a part of all."""
+    for number, picture in enumerate(pictures, start=1):
+        progress(number / count, "drawing")
+        yield picture
 
 
 def _pictures(bodies: "MovingBodies", count: int, words: str = "") -> Iterator[np.ndarray]:

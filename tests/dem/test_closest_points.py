@@ -1,6 +1,8 @@
 """Distances of convex cores against brute force; mass properties, rounding and refusals of shapes."""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,10 +12,15 @@ from lithobrake.dem import Box, ConvexHull, Sphere
 from lithobrake.dem.bodies.rigid_body import AT_CENTRE
 from lithobrake.dem.bodies.shape import ROUNDING_FRACTION, equivalent_radius
 from lithobrake.dem.narrow_phase.feature_distance import edge_to_edge, point_to_core
-from lithobrake.dem.narrow_phase.gjk import PENETRATING, triangle_weights, weighted
+from lithobrake.dem.narrow_phase.gjk import ITERATIONS, PENETRATING, triangle_weights, weighted
 from lithobrake.dem.narrow_phase.penetration import find_closest_points
 from lithobrake.dem.narrow_phase.scratch import scratch_for
 from lithobrake.dem.stepping.engine import cores_of, rotation_matrices
+
+# The hard pairs and the check of benchmarks/fuzz_distance.py.
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from distance_pairs import FAMILIES, library
+from fuzz_distance import check, solids
 
 
 def signed_distance(first, second):
@@ -51,6 +58,28 @@ def test_distance_of_random_pairs(stretch):
             assert np.linalg.norm(next(ends) - next(ends)) == pytest.approx(expected, abs=1e-10)
         seen[found] = seen.get(found, 0) + 1
     assert min(seen.values()) > 20
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    return library(np.random.default_rng(7), 10)
+
+
+@pytest.fixture(scope="module")
+def meshes(shapes):
+    return solids(shapes)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_distances_are_those_of_brute_force(shapes, meshes, family):
+    result = check(shapes, meshes, family, 7, 400)
+    assert result.pairs > 0.9 * 400
+    assert result.not_finite == 0
+    assert result.distance < 1e-9
+    assert result.points < 1e-9
+    # Round-off moves the points by the root of what it moves the distance.
+    assert result.normal < 1e-6
+    assert result.steps_most < ITERATIONS
 
 
 def test_point_to_core_is_the_distance_of_a_point():

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,21 +18,21 @@ from ..quick_studies import quick_studies
 from .delivered import delivered_tables
 
 
+def finished(tables: dict[str, Any], out: Path) -> StudyResults:
+    with quick_studies():
+        lithobrake.run(tables, out, workers=1, model=export_models.bounce, report=False)
+    return lithobrake.open_study(out)
+
+
 @pytest.fixture(scope="session")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    out = tmp_path_factory.mktemp("export") / "out"
-    with quick_studies():
-        lithobrake.run(export_models.study_with_flights(), out, workers=1, model=export_models.bounce, report=False)
-    return lithobrake.open_study(out)
+    return finished(export_models.study_with_flights(), tmp_path_factory.mktemp("export") / "out")
 
 
 @pytest.fixture(scope="session")
 def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Those of a study whose first landers are followed over their bounces on the soil."""
-    out = tmp_path_factory.mktemp("bounces") / "out"
-    with quick_studies():
-        lithobrake.run(export_models.study_with_bounces(), out, workers=1, model=export_models.bounce, report=False)
-    return lithobrake.open_study(out)
+    return finished(export_models.study_with_bounces(), tmp_path_factory.mktemp("bounces") / "out")
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from lithobrake.export import ephemerides, write_attitudes, write_czml, write_ephemerides, write_spk
+from lithobrake.export import ExportOptions, ephemerides, export_study
 from lithobrake.export.czml import SHOWN
 from lithobrake.export.flown import Flown
 from lithobrake.results import StudyResults, Table
@@ -29,6 +29,11 @@ def states(segment: object) -> np.ndarray:
     return np.array([[*state.position, *state.velocity] for state in segment.states]) * 1e3  # type: ignore[attr-defined]
 
 
+def written(results: StudyResults, folder: Path, kind: str, samples: Sequence[int] = (), **chosen: Any) -> list[Path]:
+    """The files of one kind, in the place of those that are there."""
+    return export_study(results, folder, [kind], ExportOptions(samples=samples, replaces=True, **chosen))
+
+
 def seconds(segment: object, epoch: str) -> np.ndarray:
     """Times of a segment since an epoch [s]."""
     start = np.datetime64(epoch, "us")
@@ -39,7 +44,7 @@ def seconds(segment: object, epoch: str) -> np.ndarray:
 @pytest.mark.parametrize("frame", ["inertial", "fixed"])
 def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_path: Path, frame: str) -> None:
     sample, epoch = int(results.flights["sample"][3]), "2026-11-22T12:00:00"
-    write_ephemerides(results, tmp_path, samples=[sample], frame=frame, epoch=epoch)
+    written(results, tmp_path, "oem", [sample], frame=frame, epoch=epoch)
     (flight,) = oem.OrbitEphemerisMessage.open(tmp_path / f"flight_{sample}.oem").segments
     assert (flight.metadata["OBJECT_NAME"], flight.metadata["CENTER_NAME"]) == (f"SAMPLE_{sample}", "DIMORPHOS")
     assert flight.metadata["REF_FRAME"] == f"DIMORPHOS_{frame.upper()}"
@@ -56,7 +61,7 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
 def test_a_sample_has_a_segment_for_each_flight_of_it(bouncing: StudyResults, tmp_path: Path, frame: str) -> None:
     """A flight begins where and when the one before it ends, whatever the axes; what changes is its velocity."""
     epoch = "2026-11-22T12:00:00"
-    write_ephemerides(bouncing, tmp_path, samples=[0], frame=frame, epoch=epoch)
+    written(bouncing, tmp_path, "oem", [0], frame=frame, epoch=epoch)
     segments = oem.OrbitEphemerisMessage.open(tmp_path / "flight_0.oem").segments
     of_sample = bouncing.arcs["sample"] == 0
     begin, end = (bouncing.arcs[name][of_sample] for name in ("begin_s", "end_s"))
@@ -79,7 +84,7 @@ def test_a_sample_has_a_segment_for_each_flight_of_it(bouncing: StudyResults, tm
 def test_a_sample_whose_journey_is_not_noted_has_its_first_flight(bouncing: StudyResults, tmp_path: Path) -> None:
     """As has any of a folder that an earlier version made; samples that are asked for twice stand once."""
     assert sorted(set(bouncing.arcs["sample"].tolist())) == [0.0, 1.0, 2.0]
-    write_ephemerides(bouncing, tmp_path, samples=[3, 3, 1])
+    written(bouncing, tmp_path, "oem", [3, 3, 1])
     (segment,) = oem.OrbitEphemerisMessage.open(tmp_path / "flight_3.oem").segments
     row = int(np.flatnonzero(bouncing.flights["sample"] == 3)[0])
     assert seconds(segment, "2000-01-01T12:00:00")[-1] == pytest.approx(bouncing.flights["time_s"][row], abs=1e-6)
@@ -91,14 +96,14 @@ def test_velocities_are_those_of_the_positions(results: StudyResults, tmp_path: 
     """In both frames; a difference over 2 h is wrong by h^2 / 6 times the change of acceleration, some 2e-8 m/s3."""
     sample = int(results.flights["sample"][0])
     for frame in ("inertial", "fixed"):
-        write_ephemerides(results, tmp_path, samples=[sample], frame=frame, step=20.0)
+        written(results, tmp_path, "oem", [sample], frame=frame, step=20.0)
         state = states(oem.OrbitEphemerisMessage.open(tmp_path / f"flight_{sample}.oem").segments[-1])[:-1]
         slope = (state[2:, :3] - state[:-2, :3]) / 40.0
         assert slope == pytest.approx(state[1:-1, 3:], abs=3e-6)
 
 
 def test_mean_and_covariance_are_those_of_the_flights_that_last(results: StudyResults, tmp_path: Path) -> None:
-    write_ephemerides(results, tmp_path, epoch="2026-11-22T12:00:00+00:00", frame="fixed", step=100.0)
+    written(results, tmp_path, "oem", epoch="2026-11-22T12:00:00+00:00", frame="fixed", step=100.0)
     (mean,) = oem.OrbitEphemerisMessage.open(tmp_path / "flight_mean.oem").segments
     covariances = list(mean.covariances)
     assert len(covariances) == len(list(mean.states))
@@ -115,7 +120,7 @@ def test_mean_and_covariance_are_those_of_the_flights_that_last(results: StudyRe
 
 
 def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) -> None:
-    write_ephemerides(results, tmp_path)
+    written(results, tmp_path, "oem")
     lines = (tmp_path / "flight_mean.oem").read_text().splitlines()
     comments = " ".join(line for line in lines if line.startswith("COMMENT"))
     assert "stands for no date" in comments
@@ -132,7 +137,7 @@ def test_a_file_without_an_epoch_says_so(results: StudyResults, tmp_path: Path) 
 ])  # fmt: skip
 def test_what_cannot_be_written_is_refused(results: StudyResults, tmp_path: Path, wrong: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        write_ephemerides(results, tmp_path, **wrong)  # type: ignore[arg-type]
+        written(results, tmp_path, "oem", **wrong)
     assert not list(tmp_path.iterdir())
 
 
@@ -141,13 +146,13 @@ def test_progress_reaches_its_end_and_large_files_are_announced(
 ) -> None:
     sample = int(results.flights["sample"][0])
     told: list[tuple[float, str]] = []
-    write_ephemerides(results, tmp_path, [sample], progress=lambda done, what: told.append((done, what)))
+    written(results, tmp_path, "oem", [sample], progress=lambda done, what: told.append((done, what)))
     assert list(dict.fromkeys(what for _, what in told)) == ["mean of all flights", "flights of the chosen samples",
         "writing flight_mean.oem", f"writing flight_{sample}.oem"]  # fmt: skip
     assert all(0.0 <= done <= 1.0 for done, _ in told)
     assert caplog.messages == []
     monkeypatch.setattr(ephemerides, "LARGE", 1000.0)
-    write_ephemerides(results, tmp_path, [sample])
+    written(results, tmp_path, "oem", [sample])
     (said,) = caplog.messages
     assert said.endswith("a longer --step makes fewer.")
     size, expected = sum(path.stat().st_size for path in tmp_path.iterdir()), float(said.split()[-7])
@@ -160,7 +165,7 @@ DIMORPHOS, LANDER = 120065803, -1_000_003
 
 def test_a_message_gives_back_the_states_that_were_delivered(delivered: StudyResults, tmp_path: Path) -> None:
     oem = pytest.importorskip("oem")
-    write_ephemerides(delivered, tmp_path, [3], frame="icrf")
+    written(delivered, tmp_path, "oem", [3], frame="icrf")
     first = oem.OrbitEphemerisMessage.open(tmp_path / "flight_3.oem").segments[0]
     assert (first.metadata["REF_FRAME"], first.metadata["CENTER_NAME"]) == ("ICRF", "DIMORPHOS")
     state = next(iter(first.states))
@@ -173,7 +178,7 @@ def test_a_message_along_icrf_delivers_the_next_study(delivered: StudyResults, t
     """What is written is what is read: the states of the first flight as those of a delivery."""
     from lithobrake.study.delivered_states import read_states
 
-    write_ephemerides(delivered, tmp_path, [3], frame="icrf")
+    written(delivered, tmp_path, "oem", [3], frame="icrf")
     read = read_states(tmp_path / "flight_3.oem", "icrf", EPOCH, ["DIMORPHOS"])
     assert read.time[0] == 300.0
     assert np.concatenate([read.position[0], read.velocity[0]]) == pytest.approx(delivered_states()[3, 1:7], abs=1e-9)
@@ -184,9 +189,9 @@ def furnished(delivered: StudyResults, tmp_path: Path):  # type: ignore[no-untyp
     """NAIF's routines with what was written, and leap seconds."""
     spice = pytest.importorskip("spiceypy")
     pytest.importorskip("erfa")
-    written = write_spk(delivered, tmp_path, [3], step=20.0)
+    files = written(delivered, tmp_path, "spk", [3], step=20.0)
     (tmp_path / "leap.tls").write_text(LSK)
-    kernels = [str(path) for path in (*written, tmp_path / "leap.tls")]
+    kernels = [str(path) for path in (*files, tmp_path / "leap.tls")]
     for kernel in kernels:
         spice.furnsh(kernel)
     yield spice
@@ -248,7 +253,7 @@ def attitudes(path: Path) -> list[tuple[str, np.ndarray, list[str], np.ndarray]]
 
 def test_the_attitude_that_was_delivered_is_passed_on(delivered: StudyResults, tmp_path: Path) -> None:
     """Carried to the first touchdown by the study, and from there back to its state by the message; and so its rate."""
-    (path,) = write_attitudes(delivered, tmp_path, [3], frame="icrf")
+    (path,) = written(delivered, tmp_path, "aem", [3], frame="icrf")
     frame, quaternions, _, time = attitudes(path)[0]
     assert frame == "ICRF"
     assert time[0] == pytest.approx(300.0, abs=1e-6)
@@ -264,7 +269,7 @@ def test_a_lander_at_rest_turns_with_the_body(delivered: StudyResults, tmp_path:
     names = ("fixed", "icrf")
     known = Rotation.from_quat([delivered.journeys[f"attitude_{part}"][3] for part in "wxyz"], scalar_first=True)
     for name in names:
-        (path,) = write_attitudes(delivered, tmp_path, [3], frame=name)
+        (path,) = written(delivered, tmp_path, "aem", [3], frame=name)
         frame, quaternions, said, time = attitudes(path)[-1]
         assert said == ["Sample 3: rest, over a turn of the body."]
         there = len(time) // 3
@@ -282,7 +287,7 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
     from lithobrake.smallbody import Shape
     from lithobrake.smallbody.bounce import impact_frame
 
-    (path,) = write_attitudes(delivered, tmp_path, [3], frame="fixed")
+    (path,) = written(delivered, tmp_path, "aem", [3], frame="fixed")
     parts, shape = attitudes(path), Shape(*delivered.body_shape)
     table = delivered.touchdowns.where(delivered.touchdowns["journey"] == 3)
     assert len(parts) == table.row_count + 1 > 2
@@ -305,17 +310,17 @@ def test_each_flight_begins_turned_as_the_touchdown_left_the_lander_and_ends_as_
 ])  # fmt: skip
 def test_contradictions_are_refused(delivered: StudyResults, tmp_path: Path, wrong: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        write_ephemerides(delivered, tmp_path, **wrong)  # type: ignore[arg-type]
+        written(delivered, tmp_path, "oem", **wrong)
 
 
 def test_icrf_without_a_pole_and_attitudes_without_journeys_are_refused(results: StudyResults, tmp_path: Path) -> None:
     sample = int(results.flights["sample"][0])
     with pytest.raises(ValueError, match=r"has no site\.pole_right_ascension_deg"):
-        write_ephemerides(results, tmp_path, [sample], frame="icrf", epoch=EPOCH)
+        written(results, tmp_path, "oem", [sample], frame="icrf", epoch=EPOCH)
     with pytest.raises(ValueError, match=r"has no site\.pole_right_ascension_deg"):
-        write_spk(results, tmp_path, [sample], epoch=EPOCH)
+        written(results, tmp_path, "spk", [sample], epoch=EPOCH)
     with pytest.raises(ValueError, match="follows no journeys of landings"):
-        write_attitudes(results, tmp_path, [sample])
+        written(results, tmp_path, "aem", [sample])
     assert not list(tmp_path.iterdir())
 
 
@@ -323,8 +328,7 @@ def test_icrf_without_a_pole_and_attitudes_without_journeys_are_refused(results:
 def packets(delivered: StudyResults, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """All landers of the study, after the library has read the document."""
     czml3 = pytest.importorskip("czml3")
-    path = tmp_path_factory.mktemp("czml") / "landers.czml"
-    write_czml(delivered, path)
+    (path,) = written(delivered, tmp_path_factory.mktemp("czml"), "czml")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         document = czml3.Document.load(path)
@@ -392,8 +396,8 @@ def test_the_body_has_its_extents(packets: list[dict[str, Any]]) -> None:
 
 def test_flights_of_samples_are_shown_without_attitude(results: StudyResults, tmp_path: Path) -> None:
     pytest.importorskip("czml3")
-    write_czml(results, tmp_path / "flights.czml")
-    found = json.loads((tmp_path / "flights.czml").read_text())
+    (path,) = written(results, tmp_path, "czml")
+    found = json.loads(path.read_text())
     assert len(found) == 2 + min(SHOWN, 16)
     assert all("orientation" not in one for one in found[2:])
     assert {one["name"].split(": ")[1] for one in found[2:]} == {"impact"}

@@ -11,16 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
-from lithobrake.export import (
-    KINDS,
-    write_facet_csv,
-    write_facet_fits,
-    write_geojson,
-    write_geotiff,
-    write_plates,
-    write_rest_geojson,
-)
-from lithobrake.export.maps import MapFrame, map_name
+from lithobrake.export import KINDS, ExportOptions, export_study
+from lithobrake.export.maps import MapFrame
 from lithobrake.pipeline import run_study
 from lithobrake.results import MovingBodies, StudyResults, open_study
 from lithobrake.smallbody import Shape, dimorphos
@@ -31,8 +23,8 @@ from ..few_grains import EXPANSION, ONE_IMPACT, few_grains
 
 def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResults, tmp_path: Path) -> None:
     rasterio = pytest.importorskip("rasterio")
-    write_geotiff(results, tmp_path / "map.tif", resolution_deg=2.0)
-    with rasterio.open(tmp_path / "map.tif") as file:
+    (path,) = export_study(results, tmp_path, ["geotiff"], ExportOptions(resolution_deg=2.0))
+    with rasterio.open(path) as file:
         density, crs, tags = file.read(1), file.crs, file.tags()
         assert tuple(file.bounds) == (-180.0, -90.0, 180.0, 90.0)
         assert file.tags()["AREA_OR_POINT"] == "Area"
@@ -55,8 +47,8 @@ def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResu
 def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: StudyResults, tmp_path: Path) -> None:
     geojson = pytest.importorskip("geojson")
     rasterio = pytest.importorskip("rasterio")
-    write_geojson(results, tmp_path / "map.geojson")
-    found = geojson.loads((tmp_path / "map.geojson").read_text())
+    path, _ = export_study(results, tmp_path, ["geojson"])
+    found = geojson.loads(path.read_text())
     assert found.is_valid
     assert len(found["features"]) == 16
     for row, point in enumerate(found["features"]):
@@ -66,15 +58,13 @@ def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: S
             abs=1e-6,
         )
         assert point["properties"]["impact_speed"] == results.flights["impact_speed"][row]
-    crs = rasterio.crs.CRS.from_user_input(
-        json.loads((tmp_path / "map.geojson").read_text())["crs"]["properties"]["name"]
-    )
+    crs = rasterio.crs.CRS.from_user_input(json.loads(path.read_text())["crs"]["properties"]["name"])
     assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
 
 
 def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResults, tmp_path: Path) -> None:
-    write_rest_geojson(results, tmp_path / "rest.geojson")
-    found = json.loads((tmp_path / "rest.geojson").read_text())
+    _, path = export_study(results, tmp_path, ["geojson"])
+    found = json.loads(path.read_text())
     assert found["name"] == "places of rest on DIMORPHOS"
     rows = [row for row, status in enumerate(results.rest["status"]) if status == "settled"]
     assert [point["properties"]["sample"] for point in found["features"]] == results.rest["sample"][rows].tolist()
@@ -88,16 +78,15 @@ def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResu
 def test_places_of_rest_of_journeys_have_frame_nodata_and_units(delivered: StudyResults, tmp_path: Path) -> None:
     """The cell, the point and the table have one place; a swap of latitude and longitude puts them apart."""
     geojson, rasterio = pytest.importorskip("geojson"), pytest.importorskip("rasterio")
-    write_rest_geojson(delivered, tmp_path / "rest.geojson")
-    found = geojson.loads((tmp_path / "rest.geojson").read_text())
+    _, points, cells = export_study(delivered, tmp_path, ["geojson", "geotiff"])
+    found = geojson.loads(points.read_text())
     journeys, radius = delivered.journeys, MapFrame.of(delivered).radius
     assert found.is_valid
     assert found["units"]["path_length"] == "m"
     numbers = [point["properties"]["journey"] for point in found["features"]]
     assert numbers == np.flatnonzero(journeys["end"] == "at_rest").tolist()
-    assert map_name(delivered) == "rest.tif"
-    write_geotiff(delivered, tmp_path / "rest.tif", resolution_deg=1.0)
-    with rasterio.open(tmp_path / "rest.tif") as file:
+    assert cells.name == "rest.tif"
+    with rasterio.open(cells) as file:
         density = file.read(1)
         assert (file.descriptions, file.units) == (("rest density",), ("1/m2",))
         assert np.isnan(file.nodata)
@@ -116,14 +105,14 @@ def test_places_of_rest_of_journeys_have_frame_nodata_and_units(delivered: Study
 @pytest.mark.parametrize("resolution", [0.0, -1.0, 0.7, 1e-320, 0.01, float("nan")])
 def test_cells_that_do_not_fit_the_globe_are_refused(results: StudyResults, tmp_path: Path, resolution: float) -> None:
     with pytest.raises(ValueError, match="a whole part of 180"):
-        write_geotiff(results, tmp_path / "map.tif", resolution_deg=resolution)
+        export_study(results, tmp_path, ["geotiff"], ExportOptions(resolution_deg=resolution))
 
 
 def test_plates_make_a_shape_kernel_with_the_same_shape(results: StudyResults, tmp_path: Path) -> None:
     """What MKDSK does with the table, by the routines that it calls, and back."""
     spice = pytest.importorskip("spiceypy")
-    write_plates(results, tmp_path / "body.txt")
-    words = (tmp_path / "body.txt").read_text().split()
+    (path,) = export_study(results, tmp_path, ["plates"])
+    words = path.read_text().split()
     count = int(words[0])
     numbered = np.array(words[1 : 1 + 4 * count], dtype=float).reshape(-1, 4)
     plates = np.array(words[2 + 4 * count :], dtype=np.int64).reshape(-1, 4)
@@ -149,17 +138,16 @@ def test_plates_make_a_shape_kernel_with_the_same_shape(results: StudyResults, t
 
 
 def test_a_plate_table_is_read_as_a_shape_again(results: StudyResults, tmp_path: Path) -> None:
-    write_plates(results, tmp_path / "body.tab")
-    assert Shape.read(tmp_path / "body.tab", "km").volume == pytest.approx(dimorphos().shape.volume, rel=1e-14)
+    (path,) = export_study(results, tmp_path, ["plates"])
+    assert Shape.read(path, "km").volume == pytest.approx(dimorphos().shape.volume, rel=1e-14)
 
 
 def test_facets_of_both_tables_are_those_of_the_shape_in_its_order(results: StudyResults, tmp_path: Path) -> None:
     fits = pytest.importorskip("astropy.io.fits")
-    write_facet_csv(results, tmp_path / "facets.csv")
-    write_facet_fits(results, tmp_path / "facets.fits")
-    with open(tmp_path / "facets.csv", newline="") as file:
+    text, binary = export_study(results, tmp_path, ["facets"])
+    with text.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    with fits.open(tmp_path / "facets.fits") as file:
+    with fits.open(binary) as file:
         file.verify("exception")
         table, columns = file["FACETS"].data, file["FACETS"].columns
         shape = dimorphos().shape
@@ -181,8 +169,8 @@ def test_facets_of_both_tables_are_those_of_the_shape_in_its_order(results: Stud
 
 def test_impacts_lie_on_the_facets_that_the_flights_name(results: StudyResults, tmp_path: Path) -> None:
     fits = pytest.importorskip("astropy.io.fits")
-    write_facet_fits(results, tmp_path / "facets.fits")
-    table, flights = fits.getdata(tmp_path / "facets.fits"), results.flights
+    _, path = export_study(results, tmp_path, ["facets"])
+    table, flights = fits.getdata(path), results.flights
     facet = int(flights["facet"][0])
     on_it = flights["facet"] == facet
     assert table["impact_count"][facet] == on_it.sum()

@@ -88,42 +88,21 @@ def test_a_sentence_is_said_once(tmp_path: Path) -> None:
     assert said.count("'int' object is not iterable") == 1
 
 
-def as_notes(path: Path, victim: Path) -> None:
-    path.write_text("notes of mine\n")
-
-
-def as_json(path: Path, victim: Path) -> None:
-    path.write_text('{"process": "mine"}')
-
-
-def as_long_file(path: Path, victim: Path) -> None:
-    path.write_bytes(b" " * 10_000 + b"the end")
-
-
-def as_link(path: Path, victim: Path) -> None:
-    path.symlink_to(victim)
-
-
-def as_hard_link(path: Path, victim: Path) -> None:
-    path.hardlink_to(victim)
-
-
-def as_link_to_nothing(path: Path, victim: Path) -> None:
-    path.symlink_to(victim.with_name("not there"))
-
-
-def as_pipe(path: Path, victim: Path) -> None:
-    os.mkfifo(path)
-
-
-def as_folder(path: Path, victim: Path) -> None:
-    path.mkdir()
+# What may stand at the path of a lock, beside a file that is not to be changed.
+NO_LOCKS = {
+    "notes": lambda path, victim: path.write_text("notes of mine\n"),
+    "JSON": lambda path, victim: path.write_text('{"process": "mine"}'),
+    "a long file": lambda path, victim: path.write_bytes(b" " * 10_000 + b"the end"),
+    "a link": lambda path, victim: path.symlink_to(victim),
+    "a hard link": lambda path, victim: path.hardlink_to(victim),
+    "a link to nothing": lambda path, victim: path.symlink_to(victim.with_name("not there")),
+    "a pipe": lambda path, victim: os.mkfifo(path),
+    "a folder": lambda path, victim: path.mkdir(),
+}
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
-@pytest.mark.parametrize(
-    "make", [as_notes, as_json, as_long_file, as_link, as_hard_link, as_link_to_nothing, as_pipe, as_folder]
-)
+@pytest.mark.parametrize("make", NO_LOCKS.values(), ids=NO_LOCKS)
 def test_what_is_no_lock_is_refused_and_left_as_it_is(tmp_path, make):
     victim, path = tmp_path / "victim.txt", tmp_path / ".lock"
     victim.write_text("a file outside the folder")

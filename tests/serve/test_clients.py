@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 from lithobrake.campaign import ModelServer
-from lithobrake.serve import ClientGoneError, ServedModel, model_server
-from lithobrake.serve.server import ClientServer
+from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
 
 SUM = ServedModel("sum", ("x", "y"), ("z",), lambda point, config: [sum(point)])
 ASKED = b'{"name": "sum", "input": [[1.0, 2.0]]}'
@@ -22,7 +21,7 @@ REQUEST = b"POST /Evaluate HTTP/1.0\r\nContent-Length: %d\r\n\r\n%b" % (len(ASKE
 
 @contextmanager
 def running(models: Sequence[ServedModel] = (SUM,), host: str = "127.0.0.1", **more: Any) -> Iterator[ClientServer]:
-    with model_server(models, host, 0, **more) as server:
+    with ClientServer(models, host, 0, **more) as server:
         threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01}, daemon=True).start()
         yield server
         server.shutdown()
@@ -46,25 +45,25 @@ def awaited(condition: Callable[[], bool]) -> None:
 @pytest.mark.parametrize("host", ["", " ", "\n"])
 def test_an_empty_host_is_not_every_network(host: str) -> None:
     with pytest.raises(ValueError, match="an unset variable"):
-        model_server([SUM], host, 0)
+        ClientServer([SUM], host, 0)
 
 
 @pytest.mark.parametrize("port", [-1, 65536, 10**30])
 def test_a_port_that_there_is_not_is_refused(port: int) -> None:
     with pytest.raises(ValueError, match="allowed: 0"):
-        model_server([SUM], "127.0.0.1", port)
+        ClientServer([SUM], "127.0.0.1", port)
 
 
 def test_a_host_without_an_address_is_named() -> None:
     with pytest.raises(OSError, match="host 'no host' is no address of this machine"):
-        model_server([SUM], "no host", 0)
+        ClientServer([SUM], "no host", 0)
 
 
 @pytest.mark.parametrize(
     ("host", "local"), [("127.0.0.1", True), ("localhost", True), ("0.0.0.0", False), ("0", False)]
 )
 def test_a_server_knows_whether_only_this_machine_reaches_it(host: str, local: bool) -> None:
-    with model_server([SUM], host, 0) as server:
+    with ClientServer([SUM], host, 0) as server:
         assert server.is_local is local
         assert server.address == f"http://{host}:{server.server_port}"
 
@@ -133,7 +132,7 @@ def test_an_evaluation_ends_when_its_client_leaves() -> None:
 
 
 def test_a_request_that_is_sent_too_slowly_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lithobrake.serve.server.REQUEST_TIME", 0.05)
+    monkeypatch.setattr("lithobrake.serve.server._Handler.timeout", 0.05)
     with running() as server:
         assert asked(server, b"POST /Evaluate HTTP/1.0\r\nContent-Le") == b""
         assert asked(server, REQUEST[:-1]) == b""

@@ -15,7 +15,7 @@ import lithobrake
 from lithobrake.campaign import ModelServer
 from lithobrake.pipeline.commands.serving import FLIGHT, EvaluationProcess, ServedStudy, served_models
 from lithobrake.pipeline.runs.solver import LANDING
-from lithobrake.serve import ClientGoneError, ServedModel, model_server
+from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
 from lithobrake.vocabulary.quantities import OUTPUTS
 
 umbridge = pytest.importorskip("umbridge")
@@ -33,7 +33,7 @@ def double(point: list[float], config: Mapping[str, Any]) -> list[float]:
 
 @pytest.fixture
 def address() -> Iterator[str]:
-    with model_server([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
+    with ClientServer([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
@@ -89,7 +89,7 @@ def test_an_address_is_taken_apart_or_refused() -> None:
 @pytest.fixture
 def study_address(tmp_path: Path) -> Iterator[str]:
     """A server of the ball on a plate."""
-    with model_server(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
+    with ClientServer(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
@@ -176,7 +176,7 @@ def test_an_evaluation_that_takes_too_long_is_ended_and_the_next_is_made(tmp_pat
         with pytest.raises(ClientGoneError):
             evaluations(landing, point, {}, lambda: True)
         evaluations.time_limit = 1e-9
-        with pytest.raises(TimeoutError, match="took more than 1e-09 s and was ended"):
+        with pytest.raises(RuntimeError, match="it ran longer than its limit of 1e-09 s"):
             evaluations(landing, point, {}, lambda: False)
         evaluations.time_limit = 100.0
         assert evaluations(landing, point, {"seed": 3}, lambda: False) == landing.evaluate(point, {"seed": 3})
@@ -190,7 +190,7 @@ def test_an_evaluation_whose_process_dies_is_told_and_the_next_is_made(tmp_path:
     study = ServedStudy(tmp_path / "ball.toml", tmp_path / "out")
     flight, landing = study.models()
     with EvaluationProcess(study) as evaluations:
-        with pytest.raises(RuntimeError, match=r"the evaluation was lost: its process died \(signal 9\)"):
+        with pytest.raises(RuntimeError, match=r"the evaluation was lost \(its process died \(signal 9\)\)"):
             evaluations(landing, [0.6, 0.2, 35.0, 0.0], {}, lambda: False)
         upward = [0.02, 0.0, 0.02]
         assert evaluations(flight, upward, {}, lambda: False) == flight.evaluate(upward, {})
@@ -249,7 +249,7 @@ def synthetic(point: list[float], config: Mapping[str, Any]) -> list[float]:
 
 def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(tmp_path: Path) -> None:
     names = ("lander.restitution", "lander.friction", "impact.incidence_deg", "solver.inputs.plate_tilt_deg")
-    with model_server([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
+    with ClientServer([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         path = tmp_path / "served.toml"
         text = BALL.read_text().replace(

@@ -2,7 +2,6 @@
 
 import math
 import pickle
-import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, wait
 from functools import cached_property, lru_cache
@@ -12,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.campaign import LocalExecutor, WorkerDiedError
+from lithobrake.campaign import Limits, LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.random_inputs import draw
@@ -237,7 +236,7 @@ def _seed(config: Mapping[str, Any]) -> int:
 
 
 class EvaluationProcess:
-    """Evaluates the models of a study for `model_server`, one at a time, in a process that can be ended.
+    """Evaluates the models of a study for `ClientServer`, one at a time, in a process that can be ended.
 
     time_limit: of one evaluation [s]; the first in a process waits for compiled code to be loaded, too, and on a new
     machine for its compilation.
@@ -257,26 +256,23 @@ class EvaluationProcess:
     ) -> list[float]:
         """Evaluate, as lithobrake.serve.Evaluate does.
 
-        Raises TimeoutError for one that takes too long, ClientGoneError for one that nobody waits for.
+        Raises RuntimeError for one that takes too long or whose process dies, ClientGoneError for one that nobody
+        waits for.
         """
         self._executor = self._executor or LocalExecutor(1)
-        future = self._executor.submit(evaluate_served, self._content, model.name, point, config)
-        since = time.monotonic()
+        limits, call = Limits(wall_s=self.time_limit), (self._content, model.name, point, config)
+        future = self._executor.submit_limited(limits, evaluate_served, *call)
         while not wait([future], _LOOK).done:
             if gone():
                 self.end()
                 raise ClientGoneError
-            if time.monotonic() - since > self.time_limit:
-                self.end()
-                raise TimeoutError(
-                    f"the evaluation took more than {self.time_limit:g} s and was ended; ask for another point, or "
-                    "raise the limit (lithobrake serve --time-limit)"
-                )
         try:
             answer: list[float] = future.result()
         except (WorkerDiedError, BrokenExecutor) as error:
             self.end()
-            raise RuntimeError(f"the evaluation was lost: {error}") from None
+            raise RuntimeError(
+                f"the evaluation was lost ({error}); ask for another point, or raise lithobrake serve --time-limit"
+            ) from None
         return answer
 
     def end(self) -> None:

@@ -60,7 +60,7 @@ def map_sites(
     why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
-    with folder.alone(), DaskExecutor(scheduler) if scheduler else LocalExecutor(worker_count) as executor:
+    with folder.alone(), DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor:
         design = grown(DrawnDesign(study), folder)
         job = Job(design, source.tables, folder, executor, shown, model)
         shown.begin("map of sites", 1, 1)
