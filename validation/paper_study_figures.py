@@ -237,9 +237,7 @@ def time_table() -> str:
 
 
 # Pictures of the kept study that the page shows: a page can show none from outside docs/.
-SHOWN = {
-    "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
-}  # fmt: skip
+SHOWN = {"landing": "landing/landing.png", "outputs": "figures/*_outputs.png", "map": "figures/*_map.png"}
 
 
 def head() -> dict[str, object]:
@@ -256,8 +254,8 @@ def head() -> dict[str, object]:
 
 def main() -> None:
     draw_answers()
-    for source, name in SHOWN.items():
-        shutil.copy(SHOWCASE / "paper" / source, PAGES / f"paper_study_{name}.png")
+    for name, source in SHOWN.items():
+        shutil.copy(next((SHOWCASE / "paper").glob(source)), PAGES / f"paper_study_{name}.png")
     write_page(
         "paper_study", **head(), answers=answer_table(), drivers=driver_table(), errors=error_table(),
         fits=fit_table(), numerics=numerics_table(), outcomes=outcome_table(), grains=grain_size_table(),
