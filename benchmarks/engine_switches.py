@@ -33,12 +33,12 @@ SWITCHES = {
     "limits by squares": ("law/tangential_spring.py", "    return vector if square <= limit * limit else",
                           "    return vector if square**0.5 <= limit else"),
     "neighbours by their gap": ("stepping/neighbours.py", "    return found != APART", "    return True"),
-    "edges by their part in the band": ("narrow_phase/feature_culling.py", "    return low[0] - high[0] >= farthest or",
+    "edges by their part in the band": ("narrow_phase/feature_list.py", "    return low[0] - high[0] >= farthest or",
                                         "    if farthest > 0.0:\n        return False\n    return"),
     "skin of the list": ("stepping/engine.py", "SKIN = 0.25", "SKIN = 0.025"),
-    "one moment of inertia": ("stepping/assembly.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
+    "one moment of inertia": ("stepping/engine.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
                               "np.zeros(len(inertia), dtype=bool)"),
-    "look every 16 steps": ("stepping/stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
+    "look every 16 steps": ("stepping/time_step_stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compilation/compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
 CASES = ("hull1000", "sph4000", "touchdown")
