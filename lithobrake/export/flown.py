@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
-from lithobrake.results.journey_results import JourneyRest
 from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
@@ -203,8 +202,8 @@ class Flown:
 
 
 def has_journeys(results: StudyResults) -> bool:
-    """Whether a study follows journeys of landings."""
-    return isinstance(results.results.rest, JourneyRest)
+    """Whether landers were followed beyond the first touchdown, so that their flights are passed on."""
+    return results.results.journeys > 0 and results.study["journey"]["touchdowns"] != 1
 
 
 def _noted(arcs: Table, duration: float) -> dict[str, Any]:

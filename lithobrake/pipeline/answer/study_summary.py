@@ -25,7 +25,7 @@ from lithobrake.pipeline.answer.journey_ends import (
     with_journeys,
 )
 from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
-from lithobrake.pipeline.answer.run_answers import described, scope, why_no_interval
+from lithobrake.pipeline.answer.run_answers import described, output_ranges, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, SPLIT, no_return_fraction, parts_of_journeys
 from lithobrake.pipeline.answer.sample_results import (
     return_fraction_of_known,
@@ -38,7 +38,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import FlightResults
 from lithobrake.results.model_results import EmulatorResults, EmulatorScores, JointScore, OutputScore
-from lithobrake.results.run_results import MissingLandings, OutputRange, RunResults, RunShares
+from lithobrake.results.run_results import MissingLandings, RunResults, RunShares
 from lithobrake.results.site_results import BedNumbers
 from lithobrake.results.study_files import SUMMARY_FORMAT, results_in
 from lithobrake.results.summary import Estimates, Provenance, Results, RunTimes, Summary
@@ -100,20 +100,6 @@ def bed_results(job: Job, name: str) -> BedNumbers:
         smallest_depth_m=depth,
         large_enough=bool(min(bed.width) >= width and bed.surface_height >= depth),
     )
-
-
-def outputs_of_runs(runs: DesignRuns) -> dict[str, OutputRange]:
-    """What else the touchdowns gave, over distinct runs: median, smallest and largest."""
-    table = {}
-    for name in ("contact_duration", "penetration", "peak_acceleration", "energy_lost"):
-        known = np.isfinite(runs.output(name))
-        values = runs.output(name)[~np.isnan(runs.output(name))]
-        if len(values):
-            table[name] = OutputRange(
-                float(np.median(values)), float(values.min()), float(values.max()), TOUCHDOWN[name].units,
-                described(known, runs.outcomes),
-            )  # fmt: skip
-    return table
 
 
 def write_summary_file(job: Job, results: Results, asked: int, runs: DesignRuns) -> None:
@@ -234,7 +220,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         end_variance_shares=parts_of_journeys(job, runs, landed),
         outputs=estimates.outputs,
         runs=estimates.runs,
-        outputs_of_runs=outputs_of_runs(distinct),
+        outputs_of_runs=output_ranges(distinct),
         sides=with_journeys(study, dict(estimates.sides), runs, touchdowns, landed),
         soils=soil_shares(job, table),
         sky=sky_results(study, folder, table),

@@ -188,7 +188,7 @@ def test_no_share_has_an_interval_that_would_hold_for_these_runs_only(out: Path)
     assert results["returns"]["missing"] == table["missing"]["share"]
     assert (results["samples"]["model"], table["level"]) == ("expansion", 0.95)
     # What bounces on hard ground has met neither the bed nor the expansion: its shares have the sampling error alone.
-    at_rest = results["hard_ground"]["hard"]["at_rest"]
+    at_rest = results["hard_ground"]["hard"]["ends"]["at_rest"]
     assert at_rest["lower"] <= at_rest["share"] <= at_rest["upper"]
     assert all(share["lower"] is share["upper"] is None for share in shares)
     assert table["why"] == results["returns"]["why"]

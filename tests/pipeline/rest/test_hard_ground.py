@@ -1,4 +1,4 @@
-"""Drawn studies whose landers go on from bounce to bounce, lie on one bed, or leave it laterally."""
+"""First touchdowns whose landers go on on hard ground, lie on one bed, or leave it laterally."""
 
 import dataclasses
 from pathlib import Path
@@ -13,7 +13,6 @@ from lithobrake.pipeline.job import Silent
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import RestitutionTable
-from lithobrake.vocabulary.outcomes import JourneyStatus
 
 from ...synthetic_landings import WEAK
 from ..synthetic_lander import SyntheticLander, synthetic_tables
@@ -22,6 +21,8 @@ ARRIVAL = {
     "speed": {"distribution": "uniform", "lower": 0.005, "upper": 0.4},
     "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 88.0},
 }
+# All first touchdowns on level ground, where no lander gains speed.
+FLAT = {"gravity": 5e-5}
 FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 200}}
 
 
@@ -33,25 +34,31 @@ def made(folder: Path, model: SyntheticLander, **changes: dict[str, Any]) -> Stu
 def journeys(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Landers at 70 degrees north of Didymos, where the ground holds them, that arrive at any speed and angle."""
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
-    site, rest = {"latitude_deg": 70.0}, {"count": 100}
-    return made(tmp_path_factory.mktemp("journeys") / "out", model, impact=ARRIVAL, site=site, rest=rest)
+    site, hard = {"latitude_deg": 70.0}, {"count": 100}
+    return made(tmp_path_factory.mktemp("journeys") / "out", model, impact=ARRIVAL, site=site, surface=FLAT, hard_ground=hard)
 
 
-def test_landers_rest_on_the_soil_and_their_shares_have_intervals(journeys: StudyResults) -> None:
-    found = journeys.summary["results"]["rest"]
-    assert found["why_no_soil"] is None
-    soil = found["soil"]
-    settled = soil[JourneyStatus.SETTLED]
-    assert 0.0 < settled["lower"] < settled["share"] < settled["upper"] < 1.0
-    assert soil["level"] == 0.9
-    # Most of the others have become slower than any run.
-    assert soil[JourneyStatus.OUTSIDE]["count"] + soil[JourneyStatus.SETTLED]["count"] > 0.5 * soil["sample_count"]
-    # Hard ground takes neither soil nor beds nor emulator: its shares have the sampling error of so many samples.
-    hard = found["hard"]
-    assert hard["settled"]["lower"] <= hard["settled"]["share"] <= hard["settled"]["upper"]
-    assert (hard["level"], hard["why"]) == (0.9, None)
-    assert "without soil, bed or emulator" in hard["of"]
-    assert journeys.rest.where(journeys.rest["ground"] == "soil")["rebounds"].max() > 2
+def test_landers_rest_on_hard_ground_and_their_shares_have_the_error_of_their_number(journeys: StudyResults) -> None:
+    """Hard ground takes neither soil nor beds nor emulator."""
+    hard = journeys.results.hard_ground["hard"]
+    at_rest = hard.ends["at_rest"].share
+    assert (hard.count, hard.level, hard.why, hard.unknown) == (100, 0.9, None, 0.0)
+    assert at_rest.lower < at_rest.value <= at_rest.upper
+    assert sum(one.count for one in hard.ends.values()) == 100
+    assert "without soil or bed" in hard.of
+    table = journeys.rest.where(journeys.rest["ground"] == "hard")
+    assert table["journey"].tolist() == list(range(48, 148))
+    assert table["touchdowns"].max() > 3
+    rests = table.where(table["end"] == "at_rest")
+    assert hard.slid.count == (table["slid_length"] > 0.0).sum() > 50
+    assert hard.time_s["quantile_0.5"] == pytest.approx(np.quantile(rests["time_s"], 0.5))
+    assert (rests["slid_length"] <= rests["path_length"]).all()
+    assert (rests["slid_time_s"] <= rests["time_s"]).all()
+    lines = (journeys.folder / "rest.csv").read_text().splitlines()
+    assert lines[0] == (
+        "ground,journey,end,time_s,latitude_deg,longitude_deg,distance [m],touchdowns,path_length [m],slid_length [m],"
+        "slid_time_s"
+    )
 
 
 def test_the_speed_of_samples_follows_that_of_the_arrival_and_never_passes_it(journeys: StudyResults) -> None:
@@ -80,13 +87,19 @@ def test_the_table_of_restitution_has_what_runs_and_samples_say(journeys: StudyR
     assert (lowest.min(), highest.max()) == pytest.approx((normal.min(), normal.max()))
 
 
-def test_journeys_on_equivalent_ground_stand_beside_soil_and_hard_ground(journeys: StudyResults) -> None:
-    rest = journeys.summary["results"]["rest"]
-    assert rest["equivalent"]["sample_count"] == rest["soil"]["sample_count"] == 100
-    assert rest["equivalent"]["outside"]["count"] == 0
-    # A fifth returns at the first impact.
-    assert rest["equivalent"]["settled"]["share"] > 0.2
+def test_landers_on_equivalent_ground_stand_beside_hard_ground(journeys: StudyResults) -> None:
+    equivalent = journeys.results.hard_ground["equivalent"]
+    assert (equivalent.count, equivalent.unknown, equivalent.level) == (100, 0.0, None)
+    assert equivalent.why is not None
+    # A fifth stays at the first impact.
+    assert equivalent.ends["at_rest"].share.value > 0.2
     assert json_values(journeys.results) == journeys.summary["results"]
+
+
+def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
+    results = made(tmp_path / "out", SyntheticLander(), hard_ground={"count": 20})
+    assert not (results.folder / "restitution.csv").exists()
+    assert set(results.results.hard_ground) == {"hard"}
 
 
 @pytest.mark.parametrize(("changes", "words"), [
@@ -104,19 +117,6 @@ def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any
     tables = found["shares"], found["shares"]["emulator"]
     assert {a["lower"] for table in tables for a in table.values() if isinstance(a, dict) and "lower" in a} == {None}
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
-
-
-def test_a_journey_has_a_flight_for_each_rebound(journeys: StudyResults) -> None:
-    """Whatever leaves an impact flies; who never slides has no other flight, and ends when the last of them does."""
-    soil = journeys.rest.where(journeys.rest["ground"] == "soil")
-    sample = journeys.arcs["sample"].astype(int)
-    assert sample.max() < 100
-    flown = np.bincount(sample, minlength=100)
-    bounced = (soil["slid_length"][:100] == 0.0) & (soil["rebounds"][:100] > 0)
-    assert bounced.sum() > 20
-    assert flown[bounced].tolist() == soil["rebounds"][:100][bounced].tolist()
-    last = np.searchsorted(sample, np.flatnonzero(bounced), side="right") - 1
-    assert np.array_equal(journeys.arcs["end_s"][last], soil["time_s"][:100][bounced])
 
 
 def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: Path) -> None:
