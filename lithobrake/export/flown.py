@@ -18,7 +18,6 @@ from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
-from lithobrake.vocabulary.file_names import ARCS_FILE
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
@@ -124,22 +123,14 @@ class Flown:
         )
 
     def journeys(self, results: StudyResults, samples: Sequence[int]) -> "Flown":
-        """All flights of these samples over their bounces; of one whose journey is not noted, the first alone.
+        """All flights of these landers, or of these samples the flight to the next impact.
 
-        Raises ValueError for a sample that did not fly.
+        Raises ValueError for one that did not fly.
         """
-        if has_journeys(results):
-            chosen = self.of_samples(samples)
-            if not samples:
-                return chosen
-            return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
-        # The folder of an earlier version notes no journeys.
-        if not (results.folder / ARCS_FILE).is_file():
-            return self.of_samples(samples)
-        noted = _noted(results.arcs.where(np.isin(results.arcs["sample"], samples)), results.study["rest"]["duration"])
-        alone = self.of_samples([sample for sample in samples if sample not in noted["sample"]])
-        joined: dict[str, Any] = {name: np.concatenate([getattr(alone, name), noted[name]]) for name in _EACH}
-        return replace(self, **joined)
+        chosen = self.of_samples(samples)
+        if not samples or not has_journeys(results):
+            return chosen
+        return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
 
     @classmethod
     def _of_arcs(cls, results: StudyResults, arcs: Table) -> "Flown":
