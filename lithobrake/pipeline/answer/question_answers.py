@@ -159,7 +159,7 @@ def _drawn(state: LimitState, values: dict[str, np.ndarray]) -> tuple[np.ndarray
 
 @dataclass(frozen=True)
 class OptionLanders:
-    """OptionLanders on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
+    """Landers on one ground, [aim_count, lander_count]: how each ended, time [s] and way [m] to rest, its refit."""
 
     status: np.ndarray
     time: np.ndarray
