@@ -86,7 +86,7 @@ class TouchdownEmulator:
         refits = model.refits(REFIT_COUNT, hashed_seed(study.seed, "refits"))
         height = height_of_beds(study, folder)
         terms = attitude_terms(study)
-        return cls(design, refits, terms, bed, trained_ranges(runs), rest, _across(runs), height)
+        return cls(design, refits, terms, bed, trained_ranges(study, runs), rest, _across(runs), height)
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -175,10 +175,14 @@ def fit_touchdowns(job: Job) -> str | None:
     return None
 
 
-def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
+def trained_ranges(study: Study, runs: DesignRuns) -> dict[str, tuple[float, float]]:
     """The ranges of OF_TOUCHDOWN, in the file's units, in which the emulator of touchdowns has an answer."""
     found = {}
     for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items():
+        reach = DEGREES if name in LARGEST else (FACTOR - 1.0) * max(abs(lower), abs(upper))
+        # First touchdowns at one place have one ground: nothing is known of others, where landers are followed anyway.
+        if study.journey.touchdowns is not None and name in GROUND and upper - lower < reach:
+            continue
         if name in LARGEST:
             found[name] = max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
         else:
@@ -195,7 +199,7 @@ def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
     kept = {name: law for name, law in inputs_met(job.design, runs).items() if not name.startswith(ARRIVAL_TABLES)}
     # What is the same in all touchdowns says nothing of others; beyond it the emulator has no answer.
     varies = [name for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items() if lower < upper]
-    ranges = {name: ends for name, ends in trained_ranges(runs).items() if name in varies}
+    ranges = {name: ends for name, ends in trained_ranges(job.study, runs).items() if name in varies}
     found = kept | {name: (LogUniform if name == IMPACT_SPEED else Uniform)(*ends) for name, ends in ranges.items()}
     terms = attitude_terms(job.study)
     of_attitude = {} if terms is None else terms.ranges
