@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 # Another file than that of single landings, whose inputs are those of the study alone.
 GRAVITY, SLOPE, _ = GROUND
-ALONG, ASIDE, DURATION, _ = TO_REST
+ALONG, ASIDE, DURATION, _, RISE = TO_REST
 # What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
 OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
@@ -151,6 +151,8 @@ class TouchdownEmulator:
         found.velocity[which[left]], found.spin[which[left]] = drawn.velocity[left], drawn.spin[left]
         if DURATION in drawn.outputs:
             found.duration[which[left]] = drawn.outputs[DURATION][left]
+        if RISE in drawn.outputs:
+            found.rise[which[left]] = drawn.outputs[RISE][left]
         rests = which[found.outcome[which] == TouchdownOutcome.CAPTURED]
         # Nothing is fitted to touchdowns that end at rest: how long and far they go is that of one of them.
         if not len(rests):
@@ -169,7 +171,7 @@ def fit_touchdowns(job: Job) -> str | None:
         return why
     values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
     bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count, _across(runs))
-    outputs = outputs_of_runs(runs, (*RIDERS, DURATION))
+    outputs = outputs_of_runs(runs, (*RIDERS, DURATION, RISE))
     met = [outcome for outcome in TouchdownOutcome if outcome in runs.outcomes]
     fitted(job, _inputs(job, runs), runs, outputs, bound, met).save(job.folder / TOUCHDOWN_EMULATOR_FILE)
     return None
