@@ -43,7 +43,7 @@ ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
         *("site", "study_folder", "folder_state", "design", "job", "runs", "samples", "flights", "run_flights"),
-        *("first_bounces", "journeys", "expansion", "sky_at_rest", "answer", "site_grid", "stages", "outdated_files"),
+        *("first_bounces", "expansion", "journeys", "sky_at_rest", "answer", "site_grid", "stages", "outdated_files"),
         *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "statements": (
