@@ -74,8 +74,7 @@ class Posterior:
     def sample(self, count: int, seed: int = 0) -> Array:
         """Draw points with replacement, [count, input_count]."""
         size = sample_count("count", count, len(self.inputs), at_least=0)
-        drawn: Array = self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
-        return drawn
+        return self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
 
     def learnt(self) -> dict[str, LearntInput]:
         """What was learnt of each input."""
@@ -244,8 +243,7 @@ def _likelihood(
                 found, effect = observed_density(refit, one.outputs, terms, one.errors, one.outcome, ends, effect)
                 total[place] += found
     # Each refit is one emulator of all bounces, so the mean is over products, not of means.
-    averaged: Array = logsumexp(total, axis=0) - np.log(len(models))
-    return averaged
+    return logsumexp(total, axis=0) - np.log(len(models))
 
 
 def _checked(model: Emulator, observations: Sequence[posterior.Observation], own: Collection[str]) -> list[str]:

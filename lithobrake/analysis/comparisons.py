@@ -161,8 +161,7 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
     deviations = means - means.mean()
     total = float(means.var(ddof=1))
     scale = math.sqrt(_error_variance(draws, bed_count) / total) if total > 0.0 else 0.0
-    scaled: NDArray[np.float64] = means.mean() + scale * deviations
-    return scaled
+    return means.mean() + scale * deviations
 
 
 @dataclass(frozen=True)

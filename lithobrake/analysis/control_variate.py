@@ -137,5 +137,4 @@ def _squares(differences: ArrayLike) -> Array:
     known = known[np.isfinite(known)]
     if len(known) == 0:
         raise ValueError("no difference is known; give those of at least one pair in which both runs have the output")
-    squares: Array = known**2
-    return squares
+    return known**2

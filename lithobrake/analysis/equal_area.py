@@ -61,13 +61,11 @@ class EqualAreaMap:
         inside = np.minimum(square, 4.0)
         flat = flat * np.sqrt(np.divide(inside, square, out=np.ones_like(square), where=square > 0.0))
         level = flat * np.sqrt(1.0 - 0.25 * inside)
-        found: Array = np.concatenate([level, 1.0 - 0.5 * inside], axis=-1) @ self.axes
-        return found
+        return np.concatenate([level, 1.0 - 0.5 * inside], axis=-1) @ self.axes
 
     def holds(self, places: Array) -> np.ndarray:
         """Whether places [m], [..., 2], lie within the edge of the map, [...]."""
-        held: np.ndarray = np.sum(places**2, axis=-1) <= (2.0 * self.radius) ** 2
-        return held
+        return np.sum(places**2, axis=-1) <= (2.0 * self.radius) ** 2
 
 
 def latitude_longitude(directions: Array) -> Array:
@@ -128,8 +126,7 @@ class EqualAreaCells:
         """Latitude and longitude of the middle of each cell [deg], [cell_count, 2]: half of its area on either side."""
         half = np.full((self.total, 1, 2), 0.5)
         # Without the rounding that leaves the equator and longitude 0 beside themselves.
-        middles: Array = np.round(self.places_deg(half)[:, 0], 12) + 0.0
-        return middles
+        return np.round(self.places_deg(half)[:, 0], 12) + 0.0
 
     def places_deg(self, uniforms: ArrayLike) -> Array:
         """Latitude and longitude [deg], [cell_count, place_count, 2], of places spread evenly over each cell.
@@ -149,5 +146,4 @@ class EqualAreaCells:
         turn = (np.asarray(longitude_deg, dtype=float) + 180.0) / 360.0 % 1.0
         column = np.minimum((turn * self.count[band]).astype(np.int64), self.count[band] - 1)
         first = np.concatenate([[0], np.cumsum(self.count)])
-        found: Labels = first[band] + column
-        return found
+        return first[band] + column

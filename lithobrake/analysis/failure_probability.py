@@ -103,8 +103,7 @@ class OrderedInput:
         steps = np.cumsum(weights[:, self.order], axis=1)
         steps /= steps[:, -1:]
         before = np.column_stack([np.zeros(len(steps)), steps[:, :-1]])
-        furthest: Array = np.maximum(np.abs(steps - self.law), np.abs(before - self.law)).max(axis=1)
-        return furthest
+        return np.maximum(np.abs(steps - self.law), np.abs(before - self.law)).max(axis=1)
 
     def median(self, weights: Array) -> float:
         """Weighted median of the values."""

@@ -1,6 +1,7 @@
 """How wide the interval of a study will be, how many runs a width asks for, and when to stop."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -31,6 +32,8 @@ MOST_RUNS, FEWEST_STUDIES = 1_000_000, 100
 # Each look at the runs is a chance to stop by luck, so looks are a tenth of the runs apart; and what the first runs say
 # of their scatter is rough, so no look asks for more than twice the runs.
 SMALLEST_STEP, LARGEST_STEP = 1.1, 2.0
+# More beds than any half width asks for.
+MOST_BEDS = 2**60
 # Counts of runs are multiples of this.
 RUNS_A_STEP = 10
 
@@ -87,19 +90,12 @@ def runs_for_half_width(
     finite_number("half_width", half_width, above=0.0, at_least=NARROWEST * spread)
     whole_number("runs_per_bed", runs_per_bed, 1)
 
-    def width(bed_count: int) -> float:
+    def narrow_enough(bed_count: int) -> bool:
         found = expected_half_width(bed_count * runs_per_bed, bed_count, spread=spread, correlation=correlation)
-        return math.inf if found is None else found
+        return found is not None and found <= half_width
 
-    # The width falls with every bed, so doubling and halving the step finds the fewest.
-    upper = 2
-    while width(upper) > half_width:
-        upper *= 2
-    lower = upper // 2
-    while upper - lower > 1:
-        middle = (lower + upper) // 2
-        lower, upper = (middle, upper) if width(middle) > half_width else (lower, middle)
-    return upper * runs_per_bed
+    # The width falls with every bed.
+    return runs_per_bed * bisect_left(range(MOST_BEDS), True, lo=2, key=narrow_enough)
 
 
 def _check_scatter(spread: float, correlation: float) -> None:
@@ -246,8 +242,7 @@ def _likelihood(known: Array, beds: Labels) -> Array:
     # Mean squares with these components are to each other as F times this.
     scale = 1.0 + float(found.counts.mean()) * CORRELATIONS / (1.0 - CORRELATIONS)
     density = stats.f.pdf(float(found.squares.mean()) / found.within / scale, len(found.squares), found.within_freedom)
-    likelihood: Array = density / scale
-    return likelihood
+    return density / scale
 
 
 def half_width_of(values: ArrayLike, bed: ArrayLike) -> float | None:

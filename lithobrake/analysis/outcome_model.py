@@ -83,8 +83,7 @@ class OutcomeModel:
         """An outcome for each point x [point_count, input_count], as its place among the names, shape [point_count]."""
         # The last one takes what rounding leaves of the whole.
         ends = np.cumsum(self.probability(x), axis=1)[:, :-1]
-        drawn: np.ndarray = (random.random(len(x))[:, None] >= ends).sum(axis=1)
-        return drawn
+        return (random.random(len(x))[:, None] >= ends).sum(axis=1)
 
     def _points(self, x: np.ndarray) -> np.ndarray:
         return checked_points(self._inputs, x)

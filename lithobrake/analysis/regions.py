@@ -183,8 +183,7 @@ class _Density:
 
     def places(self, own: Array) -> Array:
         """Places on the map [m] of coordinates [..., 2] in bandwidths."""
-        found: Array = self.middle + (own * self.bandwidth) @ self.axes
-        return found
+        return self.middle + (own * self.bandwidth) @ self.axes
 
 
 def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) -> HighestDensity:

@@ -7,6 +7,7 @@ from .bootstrap import score_intervals as score_intervals
 from .bootstrap import sobol_estimates as sobol_estimates
 from .bootstrap import sobol_intervals as sobol_intervals
 from .counts import smolyak_count as smolyak_count
+from .counts import tensor_count as tensor_count
 from .counts import term_count as term_count
 from .design import GaussianCopula as GaussianCopula
 from .design import christoffel as christoffel
@@ -15,7 +16,6 @@ from .design import d_optimal as d_optimal
 from .design import fekete as fekete
 from .design import latin_hypercube as latin_hypercube
 from .design import sobol_sequence as sobol_sequence
-from .design import tensor_count as tensor_count
 from .design import tensor_grid as tensor_grid
 from .distributions import Beta as Beta
 from .distributions import Distribution as Distribution

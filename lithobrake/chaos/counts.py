@@ -1,4 +1,4 @@
-"""How many nodes a sparse grid and how many terms an expansion has, counted without making them."""
+"""How many nodes a grid and how many terms an expansion has, counted without making them."""
 
 from math import comb
 
@@ -9,6 +9,11 @@ def term_count(input_count: int, degree: int) -> int:
     """Number of terms of total degree up to `degree`, C(n + d, d). Source: [Landings-PCE], below Eq 14."""
     whole_number("degree", degree, 0)
     return comb(whole_number("input_count", input_count, 1) + int(degree), int(degree))
+
+
+def tensor_count(input_count: int, level: int) -> int:
+    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
+    return (whole_number("level", level, 0) + 1) ** whole_number("input_count", input_count, 1)
 
 
 def smolyak_count(input_count: int, level: int) -> int:

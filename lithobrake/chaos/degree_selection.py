@@ -192,11 +192,7 @@ def ols_by_degree(
 
 
 def best_terms(
-    training: Training,
-    q_norm: float = 1.0,
-    max_degrees: Sequence[int] | None = None,
-    *,
-    term_limit: float = np.inf,
+    training: Training, q_norm: float = 1.0, max_degrees: Sequence[int] | None = None, *, term_limit: float = np.inf
 ) -> Indices:
     """Terms of the degree with the smallest leave-one-out error relative to the spread, averaged over outputs.
 

@@ -24,11 +24,6 @@ RULE_NODES = 200
 CANDIDATES_PER_TERM = 15
 
 
-def tensor_count(input_count: int, level: int) -> int:
-    """Number of nodes of the full tensor grid, (level + 1)**input_count. Source: [Landings-PCE], Fig 3."""
-    return (whole_number("level", level, 0) + 1) ** whole_number("input_count", input_count, 1)
-
-
 def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
     """Full tensor of the Gauss nodes of each input, level + 1 in each, physical units, [node_count, input_count].
 

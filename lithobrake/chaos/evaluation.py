@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache
 from importlib.util import find_spec
 
 import numpy as np
@@ -136,20 +136,18 @@ def evaluate(inputs: Mapping[str, Distribution], plan: EvaluationPlan, points: A
     """
     result = np.empty((len(points), plan.coefficients.shape[1]))
     loop = compiled_loop() if len(points) >= COMPILED_FROM else None
-    fill = partial(_fill_compiled, loop) if loop is not None else _fill
     for start in range(0, len(points), BLOCK):
         germs = germs_of(inputs, points[start : start + BLOCK])
-        fill(plan, germs, result[start : start + BLOCK])
+        _fill(plan, germs, result[start : start + BLOCK], loop)
     return result
 
 
-def _fill(plan: EvaluationPlan, germs: Array, result: Array) -> None:
+def _fill(plan: EvaluationPlan, germs: Array, result: Array, loop: Loop | None) -> None:
+    if loop is not None:
+        loop(germs, plan.offset, plan.center, plan.spread, plan.parent, plan.factor, plan.coefficients, result)
+        return
     table = np.concatenate([one.values(germ) for one, germ in zip(plan.recurrences, germs, strict=True)])
     rows = np.ones((len(plan.parent), germs.shape[1]))
     for row in range(1, len(plan.parent)):
         np.multiply(rows[plan.parent[row]], table[plan.factor[row]], out=rows[row])
     np.matmul(rows.T, plan.coefficients, out=result)
-
-
-def _fill_compiled(loop: Loop, plan: EvaluationPlan, germs: Array, result: Array) -> None:
-    loop(germs, plan.offset, plan.center, plan.spread, plan.parent, plan.factor, plan.coefficients, result)

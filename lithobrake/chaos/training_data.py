@@ -79,11 +79,12 @@ def checked_training(
     check_magnitude("y", kept)
     if not len(kept):
         raise ValueError(f"none of the {len(points)} rows of y holds outputs: at least one run is needed")
+    counted = None if weights is None else checked_weights(weights, len(points))[~missing]
     return Training(
         distributions,
         checked_points(distributions, rows),
         kept,
-        _checked_weights(weights, missing),
+        None if counted is None else counted / counted.mean(),
         _names(output_names, kept.shape[1], one_dimensional),
         one_dimensional,
         int(missing.sum()),
@@ -101,13 +102,6 @@ def check_magnitude(name: str, values: Array) -> None:
             f"{name} varies by {spread[spread > 0.0].min():g}, but must vary by at least {1.0 / LARGEST:g}, or not at "
             "all: give it in a smaller unit"
         )
-
-
-def _checked_weights(weights: ArrayLike | None, missing: NDArray[np.bool_]) -> Array | None:
-    if weights is None:
-        return None
-    values = checked_weights(weights, len(missing))
-    return values[~missing] / values[~missing].mean()
 
 
 def _names(output_names: Sequence[str] | None, count: int, one_dimensional: bool) -> list[str]:

@@ -45,8 +45,7 @@ class Kernels:
     @property
     def whitened(self) -> Array:
         """The residual rows themselves in coordinates of covariance 1 [row_count, output_count]."""
-        whole: Array = self.rows / np.sqrt(1.0 - self.size**2)
-        return whole
+        return self.rows / np.sqrt(1.0 - self.size**2)
 
     def log_density(
         self, columns: Sequence[int], standard: Array, blur: Array, log_chances: Array, spread: Array
@@ -69,9 +68,9 @@ class Kernels:
         determinant = np.log(np.diagonal(factor, axis1=1, axis2=2)).sum(axis=1)
         step = max(1, _BLOCK // len(self.rows))
         blocks = [slice(start, start + step) for start in range(0, len(standard), step)]
-        found = [_log_sum(squares[block] @ self._features.T, _rows_of(log_chances, block)) for block in blocks]
-        density: Array = np.concatenate(found) + determinant - 0.5 * len(columns) * np.log(2.0 * np.pi)
-        return density
+        chances = np.broadcast_to(log_chances, (len(standard), len(self.rows)))
+        found = [_log_sum(squares[block] @ self._features.T, chances[block]) for block in blocks]
+        return np.concatenate(found) + determinant - 0.5 * len(columns) * np.log(2.0 * np.pi)
 
     @property
     def _features(self) -> Array:
@@ -87,18 +86,13 @@ class Kernels:
         return np.column_stack([-0.5 * (whitened**2).sum(axis=1), linear, -0.5 * quadratic])
 
 
-def _rows_of(table: Array, block: slice) -> Array:
-    return table if len(table) == 1 else table[block]
-
-
 def _log_sum(logarithms: Array, log_chances: Array) -> Array:
     """Logarithm of the sum of exponentials over rows [point_count]; the nearest row keeps it finite."""
     logarithms += log_chances
     nearest = logarithms.max(axis=1)
     logarithms -= nearest[:, None]
     np.exp(logarithms, out=logarithms)
-    total: Array = np.log(logarithms.sum(axis=1)) + nearest
-    return total
+    return np.log(logarithms.sum(axis=1)) + nearest
 
 
 @dataclass(frozen=True)

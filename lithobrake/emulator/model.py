@@ -98,13 +98,7 @@ class Emulator(Parts):
         return self.classes.chances(self._matrix(x))
 
     def sample(
-        self,
-        x: ArrayLike,
-        count: int,
-        seed: int = 0,
-        *,
-        lower: ArrayLike | None = None,
-        upper: ArrayLike | None = None,
+        self, x: ArrayLike, count: int, seed: int = 0, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
     ) -> Array:
         """Draw `count` runs at each x [point_count, input_count], shape [point_count, count, output_count].
 
@@ -115,13 +109,7 @@ class Emulator(Parts):
 
     @one_thread()
     def draw(
-        self,
-        x: ArrayLike,
-        count: int,
-        seed: int = 0,
-        *,
-        lower: ArrayLike | None = None,
-        upper: ArrayLike | None = None,
+        self, x: ArrayLike, count: int, seed: int = 0, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
     ) -> Draws:
         """Draw as `sample` does, and say with which outcome and from which run."""
         points = checked_points(self.runs.inputs, x)
