@@ -64,9 +64,7 @@ def sobol_estimates(
     Source: [Davison-1997], sections 5.2 and 6.2; [Dubreuil-2014] (indices from expansions).
     """
     _check_resampling(count, level)
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
     own, found = _indices_of(surrogate.multi_indices, surrogate.coefficient_table), []
     for output in range(len(surrogate.output_names)):
         if np.ptp(training.y[:, output]) == 0.0:
@@ -90,9 +88,7 @@ def coefficient_changes(
     Result: multi_indices [term_count, input_count], and changes [count, term_count, output_count] as `sobol_estimates`
     fits its draws; 0 for an output that does not vary.
     """
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
     varying = np.flatnonzero(np.ptp(training.y, axis=0) > 0.0).tolist()
     refits = {output: _refit_of(surrogate, training, output) for output in varying}
     indices = np.unique(np.concatenate([surrogate.multi_indices, *(one.indices for one in refits.values())]), axis=0)
@@ -175,6 +171,15 @@ def _check_resampling(count: int, level: float) -> None:
     finite_number("level", level, above=0.0, below=1.0)
 
 
+def _drawn_runs(
+    surrogate: Surrogate, x: ArrayLike, y: ArrayLike, count: int, seed: int
+) -> tuple[Training, NDArray[np.int64]]:
+    """The runs x, y, and as many of them drawn with replacement, [count, run_count]."""
+    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
+    sample_count("count", count, training.count)
+    return training, random_numbers(seed).integers(training.count, size=(count, training.count))
+
+
 def _refit_of(surrogate: Surrogate, training: Training, output: int) -> Refit:
     """How one output was fitted, as the report says; the least squares of the best degree where it does not say."""
     entry = surrogate.report.get("outputs", {}).get(surrogate.output_names[output], {})
@@ -252,10 +257,8 @@ def score_intervals(
     Source: [Davison-1997], section 5.2 (studentised bootstrap).
     """
     _check_resampling(count, level)
-    training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    sample_count("count", count, training.count)
+    training, rows = _drawn_runs(surrogate, x, y, count, seed)
     predicted = np.asarray(surrogate(training.x)).reshape(training.y.shape)
-    rows = random_numbers(seed).integers(training.count, size=(count, training.count))
     result: dict[str, dict[str, tuple[float, float]]] = {}
     for k, name in enumerate(surrogate.output_names):
         low, high = _studentised(predicted[:, k], training.y[:, k], rows, level)

@@ -124,6 +124,13 @@ class Distribution(ABC):
 class Limited(Distribution):
     """An input between two finite limits, which are -1 and 1 of the germ."""
 
+    lower: float
+    upper: float
+
+    @property
+    def support(self) -> Support:
+        return self.lower, self.upper
+
     @property
     def _limits(self) -> tuple[float, float]:
         """The limits, or their logarithms."""
@@ -156,10 +163,6 @@ class Uniform(Limited):
     def __post_init__(self) -> None:
         above = 0.0 if self.logarithmic else None
         self._ordered(self._number("lower", above), self._number("upper", above))
-
-    @property
-    def support(self) -> Support:
-        return self.lower, self.upper
 
     def ppf(self, u: ArrayLike) -> Array:
         # Through the germ, so that the median is the middle node of a grid to the last bit.
@@ -194,10 +197,6 @@ class Beta(Limited):
         self._number("alpha", above=0.0)
         self._number("beta", above=0.0)
         self._ordered(self._number("lower"), self._number("upper"))
-
-    @property
-    def support(self) -> Support:
-        return self.lower, self.upper
 
     def ppf(self, u: ArrayLike) -> Array:
         fraction = special.betaincinv(self.alpha, self.beta, np.asarray(u, dtype=float))

@@ -48,17 +48,18 @@ def score_of(predicted: Array, y: Array) -> Score:
 class Replicates:
     """Pooled scatter of runs with equal inputs: std [output_count], from `freedom` degrees of freedom.
 
-    means and variances [group_count, output_count] of the groups with at least two runs; points [group_count,
-    input_count]; sizes [group_count]; correlation of the scatter between outputs [output_count, output_count].
+    variances [group_count, output_count] of the groups with at least two runs; points [group_count, input_count];
+    sizes [group_count]; correlation of the scatter between outputs [output_count, output_count]; deviations
+    [run_count, output_count] of their runs from their means, widened to the spread of single runs.
     """
 
     std: Array
     freedom: int
     points: Array
-    means: Array
     variances: Array
     sizes: NDArray[np.int64]
     correlation: Array
+    deviations: Array
 
 
 def equal_rows(x: Array) -> NDArray[np.int64]:
@@ -84,6 +85,7 @@ def replicates(x: Array, y: Array) -> Replicates | None:
     deviation = y - means[group]
     squares = np.stack([np.bincount(group, weights=column**2) for column in deviation.T], axis=1)
     several = sizes > 1
+    widened = deviation * np.sqrt(sizes / np.maximum(sizes - 1, 1))[group][:, None]
     points = np.empty((len(sizes), x.shape[1]))
     points[group] = x
     pooled = np.sqrt(squares.sum(axis=0) / freedom)
@@ -91,7 +93,7 @@ def replicates(x: Array, y: Array) -> Replicates | None:
     scale = np.where(pooled > 0.0, pooled, 1.0)
     correlation = np.where(np.eye(len(scale)) > 0.0, 1.0, cross / np.outer(scale, scale))
     variances = squares[several] / (sizes[several] - 1)[:, None]
-    return Replicates(pooled, freedom, points[several], means[several], variances, sizes[several], correlation)
+    return Replicates(pooled, freedom, points[several], variances, sizes[several], correlation, widened[several[group]])
 
 
 def with_noise(report: dict[str, Any], pooled: Replicates | None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from scipy import special
 
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.fitting import PROCESS_FROM, PROCESS_LIMIT, fit
-from lithobrake.chaos.scores import equal_rows, replicates
+from lithobrake.chaos.scores import replicates
 from lithobrake.chaos.storage import numbers_from_json, read, write
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training_data import checked_training
@@ -103,13 +103,9 @@ def joint_scatter(surrogate: Surrogate, x: ArrayLike, y: ArrayLike) -> Array:
     are left out.
     """
     training = checked_training(surrogate.inputs, x, y, output_names=surrogate.output_names)
-    group = equal_rows(training.x)
-    sizes = np.bincount(group).astype(float)
-    several = sizes[group] > 1.0
-    if several.any():
-        means = np.stack([np.bincount(group, weights=column) / sizes for column in training.y.T], axis=1)
-        widened = np.sqrt(sizes / np.maximum(sizes - 1.0, 1.0))
-        return ((training.y - means[group]) * widened[group][:, None])[several]
+    pooled = replicates(training.x, training.y)
+    if pooled is not None:
+        return pooled.deviations
     residuals = training.y - surrogate.evaluated(training.x)
     residuals -= residuals.mean(axis=0)
     own = residuals.std(axis=0)
