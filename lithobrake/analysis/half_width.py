@@ -4,7 +4,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -104,11 +104,9 @@ def _check_scatter(spread: float, correlation: float) -> None:
     finite_number("correlation", correlation, at_least=0.0, at_most=1.0)
 
 
-class RunLaw(Protocol):
-    """What is known of the outcome of a run, 0 to 1, and what is not."""
-
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """Outcomes of so many independent runs of one study, whose own numbers are drawn first; [count]."""
+# What is known of the outcome of a run, 0 to 1, and what is not: gives those of so many independent runs of one study
+# [count], whose own numbers are drawn first.
+RunLaw = Callable[[np.random.Generator, int], Array]
 
 
 @dataclass(frozen=True)
@@ -121,8 +119,7 @@ class AllOrNothing:
     likeliest: float
     farthest: float
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         share = self.likeliest + (self.farthest - self.likeliest) * random.random() ** 2
         return (random.random(count) < share).astype(float)
 
@@ -135,8 +132,7 @@ class Shares:
     smallest_spread: float
     largest_spread: float
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         spread = self.smallest_spread + (self.largest_spread - self.smallest_spread) * random.random()
         size = self.mean * (1.0 - self.mean) / spread**2 - 1.0
         return random.beta(self.mean * size, (1.0 - self.mean) * size, count)
@@ -154,8 +150,7 @@ class LikeRuns:
     values: Array
     bed: Labels
 
-    def study(self, random: np.random.Generator, count: int) -> Array:
-        """As RunLaw has it."""
+    def __call__(self, random: np.random.Generator, count: int) -> Array:
         weights = random.standard_exponential(int(self.bed.max()) + 1)[self.bed]
         values = self.values
         if np.isin(values, (0.0, 1.0)).all():
@@ -214,7 +209,7 @@ def _one(
 ) -> float | None:
     """Half width of a study that is made up; None where it has no interval."""
     new, bed_count = beds[len(known) :], int(beds.max()) + 1
-    drawn = law.study(random, len(new) + bed_count)
+    drawn = law(random, len(new) + bed_count)
     own, common = drawn[: len(new)], drawn[len(new) :]
     share = math.sqrt(correlation)
     # What runs on a bed have in common is what some run on it has shown, if that one took it.

@@ -137,7 +137,7 @@ def test_the_plan_says_how_landers_reach_the_ground(tmp_path: Path) -> None:
 def test_a_plan_counts_none_at_rest_that_misses_the_ground() -> None:
     law, words = law_before(study_of(tables(delivery={"release": RELEASE})), reach=0.25)
     assert "50-100 % of those that reach the ground come to rest" in words
-    at_rest = np.mean([law.study(np.random.default_rng(seed), 100).mean() for seed in range(200)])
+    at_rest = np.mean([law(np.random.default_rng(seed), 100).mean() for seed in range(200)])
     # A quarter to an eighth, a third of the way on average.
     assert at_rest == pytest.approx(0.25 - 0.125 / 3.0, abs=0.01)
 
