@@ -1,8 +1,9 @@
-"""The terms of a stochastic expansion in its latent variable, and their coefficients of most likelihood."""
+"""Terms of a stochastic expansion in its latent variable, their coefficients of most likelihood, and their choice."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,9 @@ from scipy import optimize
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
 from lithobrake.chaos.distributions import Distribution, Normal, Uniform
 from lithobrake.emulator.training_runs import TrainingRuns
+from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.given_numbers import whole_number
 
 # Distributions that the latent variable may have, and nodes of the Gauss rule that integrates over it: as fine as the
 # noise asks for, which else would show single nodes as peaks of the density.
@@ -23,6 +26,12 @@ LATENT_DEGREE = 3
 # Relative change of the mean logarithm of the density at which a climb ends.
 TOLERANCE = 1e-7
 MOST_STEPS = 300
+HIGHEST_DEGREE = 5
+# With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
+RUNS_PER_TERM = 5
+# Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
+NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
+FOLDS = 5
 
 
 @dataclass(frozen=True)
@@ -160,3 +169,64 @@ def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> Latent
 def branches(terms: LatentTerms, factors: Array, coefficients: Array) -> Array:
     """Coefficients of the powers of the latent variable at points, [point_count, power_count]."""
     return (factors * coefficients) @ terms.of_power
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Terms, how many shares of the noise are gone down for the best, and logarithm of the density of each run where
+    its group is left out [run_count].
+    """
+
+    terms: LatentTerms
+    share_count: int
+    logarithms: Array
+
+    @property
+    def logarithm(self) -> float:
+        return float(self.logarithms.mean())
+
+
+def simplest(tried: list[HeldOut], group: NDArray[np.int64]) -> HeldOut:
+    """Of those that the best does not beat by more than a standard error, the one of the fewest terms.
+
+    Of many that are tried, the best is so by luck too.
+    """
+    best = max(tried, key=lambda one: one.logarithm)
+    close = []
+    for one in tried:
+        gain, error = mean_by_groups(best.logarithms - one.logarithms, group)
+        if gain <= error:
+            close.append(one)
+    fewest = min(len(one.terms.indices) for one in close)
+    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithm)
+
+
+def candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
+    """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
+    degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
+    latents = LATENTS if latent is None else (latent,)
+    found = [latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
+    # No inputs are always a candidate: that is the law to fall back on.
+    kept = [one for one in found if one.degree == 0 or RUNS_PER_TERM * len(one.indices) <= len(runs.y)]
+    if not kept:
+        raise ValueError(
+            f"degree is {degree}, which has {len(found[0].indices)} terms and needs {RUNS_PER_TERM} runs for each, but "
+            f"{len(runs.y)} runs have an output: lower it, or make more runs"
+        )
+    return kept
+
+
+def held_out(problem: LatentProblem, group: NDArray[np.int64]) -> HeldOut:
+    """Follow the noise down until runs in groups left out are foretold worse than before."""
+    fold = folds_of(group, FOLDS)
+    tests = [fold == number for number in range(int(fold.max()) + 1)]
+    best = HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
+    # All folds go down together, so that what single runs make of a little noise need not be found.
+    for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
+        logarithms = np.empty(len(group))
+        for test, (noise, coefficients) in zip(tests, steps, strict=True):
+            logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
+        if logarithms.mean() <= best.logarithm:
+            break
+        best = HeldOut(problem.terms, count, logarithms)
+    return best

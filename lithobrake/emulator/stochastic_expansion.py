@@ -4,11 +4,10 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.chaos.basis import checked_points
@@ -16,26 +15,30 @@ from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.training_data import one_thread
-from lithobrake.emulator import latent_variable
 from lithobrake.emulator.fitting import with_distant_bounds
+from lithobrake.emulator.latent_variable import (
+    LATENT_DEGREE,
+    LATENTS,
+    NOISE_SHARES,
+    LatentProblem,
+    LatentTerms,
+    branches,
+    candidates,
+    held_out,
+    problem_of,
+    simplest,
+)  # fmt: skip
 from lithobrake.emulator.mean_law import candidate_terms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training_runs import TrainingRuns, checked_runs, with_slope
-from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count
 
 FORMAT = "lithobrake stochastic expansion"
 # Halvings after which an interval of quantiles is no wider than rounding.
 HALVINGS = 60
 # Nodes of the noise in a mean of bounded outputs.
 NOISE_NODES = 16
-HIGHEST_DEGREE = 5
-# With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
-RUNS_PER_TERM = 5
-# Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
-NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
-FOLDS = 5
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class StochasticExpansion:
     """
 
     runs: TrainingRuns
-    terms: latent_variable.LatentTerms
+    terms: LatentTerms
     coefficients: Array
     noise: float
     held_out: float
@@ -142,7 +145,7 @@ class StochasticExpansion:
         counted = self.runs.checked_weights(weights)
         # From where the fit stands, at its noise: going down from a large noise again would repeat the whole path in
         # every refit.
-        coefficients = latent_variable.problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
+        coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
         return replace(self, coefficients=coefficients, weights=counted)
 
     def refits(self, count: int = 200, seed: int = 0) -> list["StochasticExpansion"]:
@@ -162,14 +165,12 @@ class StochasticExpansion:
         write(FORMAT, {**content, **runs_to_json(self.runs)}, path)
 
     @cached_property
-    def _problem(self) -> latent_variable.LatentProblem:
-        return latent_variable.problem_of(self.runs, self.terms, self.weights)
+    def _problem(self) -> LatentProblem:
+        return problem_of(self.runs, self.terms, self.weights)
 
     def _branches(self, x: ArrayLike) -> Array:
         """Coefficients of the powers of the latent variable at x, [point_count, power_count]."""
-        return latent_variable.branches(
-            self.terms, self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients
-        )
+        return branches(self.terms, self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients)
 
     def _means(self, x: ArrayLike) -> Array:
         """The expansion at x and at the nodes of the latent variable, [point_count, node_count]."""
@@ -211,19 +212,13 @@ def load_stochastic_expansion(path: str | os.PathLike[str]) -> StochasticExpansi
         runs = runs_from_json(content)
         indices = indices_from_json(content["multi_indices"], len(runs.inputs) + 1)
         latent, noise = content["latent"], float(content["noise"])
-        if (
-            latent not in latent_variable.LATENTS
-            or indices[:, -1].max() > latent_variable.LATENT_DEGREE
-            or not 0.0 < noise < np.inf
-        ):
-            raise ValueError(
-                f"latent must be one of {', '.join(latent_variable.LATENTS)}, its powers up to 3, noise above 0"
-            )
+        if latent not in LATENTS or indices[:, -1].max() > LATENT_DEGREE or not 0.0 < noise < np.inf:
+            raise ValueError(f"latent must be one of {', '.join(LATENTS)}, its powers up to 3, noise above 0")
         if len(runs.modelled) != 1 or runs.y.shape[1] != 1:
             raise ValueError("output_names must hold one output, which is no rider")
         coefficients = column_from_json("coefficients", content["coefficients"], len(indices))
         weights = column_from_json("weights", content["weights"], len(runs.x))
-        terms = latent_variable.LatentTerms(runs.inputs, latent, indices)
+        terms = LatentTerms(runs.inputs, latent, indices)
         return StochasticExpansion(runs, terms, coefficients, noise, float(content["held_out"]), weights)
 
     return read(FORMAT, build, path)
@@ -253,80 +248,14 @@ def fit_stochastic_expansion(
     """
     if np.ndim(y) != 1 and np.shape(y)[1:] != (1,):
         raise ValueError(f"y has shape {np.shape(y)}, but must be [run_count]: fit one expansion for each output")
-    if latent is not None and latent not in latent_variable.LATENTS:
-        raise ValueError(
-            f"latent is {latent!r}, but must be one of {', '.join(latent_variable.LATENTS)}, or None to choose"
-        )
+    if latent is not None and latent not in LATENTS:
+        raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
     runs = checked_runs(inputs, x, y, groups, None, None, lower, upper, (), (output_name,))
     candidate = candidate_terms(runs.inputs)
     runs = with_distant_bounds(runs, candidate.indices, candidate.matrix(runs.x[runs.has_outputs]))
     weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
-    tried = [
-        _held_out(latent_variable.problem_of(runs, terms, weights), group)
-        for terms in _candidates(runs, degree, latent)
-    ]
-    chosen = _simplest(tried, group)
+    tried = [held_out(problem_of(runs, terms, weights), group) for terms in candidates(runs, degree, latent)]
+    chosen = simplest(tried, group)
     shares = NOISE_SHARES[: chosen.share_count]
-    noise, coefficients = list(latent_variable.problem_of(runs, chosen.terms, weights).path(shares))[-1]
+    noise, coefficients = list(problem_of(runs, chosen.terms, weights).path(shares))[-1]
     return StochasticExpansion(runs, chosen.terms, coefficients, noise, chosen.logarithm, weights)
-
-
-@dataclass(frozen=True)
-class _HeldOut:
-    """Terms, how many shares of the noise are gone down for the best, and logarithm of the density of each run where
-    its group is left out [run_count].
-    """
-
-    terms: latent_variable.LatentTerms
-    share_count: int
-    logarithms: Array
-
-    @property
-    def logarithm(self) -> float:
-        return float(self.logarithms.mean())
-
-
-def _simplest(tried: list[_HeldOut], group: NDArray[np.int64]) -> _HeldOut:
-    """Of those that the best does not beat by more than a standard error, the one of the fewest terms.
-
-    Of many that are tried, the best is so by luck too.
-    """
-    best = max(tried, key=lambda one: one.logarithm)
-    close = []
-    for one in tried:
-        gain, error = mean_by_groups(best.logarithms - one.logarithms, group)
-        if gain <= error:
-            close.append(one)
-    fewest = min(len(one.terms.indices) for one in close)
-    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithm)
-
-
-def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[latent_variable.LatentTerms]:
-    """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
-    degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
-    latents = latent_variable.LATENTS if latent is None else (latent,)
-    found = [latent_variable.latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
-    # No inputs are always a candidate: that is the law to fall back on.
-    kept = [one for one in found if one.degree == 0 or RUNS_PER_TERM * len(one.indices) <= len(runs.y)]
-    if not kept:
-        raise ValueError(
-            f"degree is {degree}, which has {len(found[0].indices)} terms and needs {RUNS_PER_TERM} runs for each, but "
-            f"{len(runs.y)} runs have an output: lower it, or make more runs"
-        )
-    return kept
-
-
-def _held_out(problem: latent_variable.LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
-    """Follow the noise down until runs in groups left out are foretold worse than before."""
-    fold = folds_of(group, FOLDS)
-    tests = [fold == number for number in range(int(fold.max()) + 1)]
-    best = _HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
-    # All folds go down together, so that what single runs make of a little noise need not be found.
-    for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
-        logarithms = np.empty(len(group))
-        for test, (noise, coefficients) in zip(tests, steps, strict=True):
-            logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
-        if logarithms.mean() <= best.logarithm:
-            break
-        best = _HeldOut(problem.terms, count, logarithms)
-    return best
