@@ -67,6 +67,10 @@ class LatentTerms:
         """Polynomials of the latent variable at its values [value_count], shape [power_count, value_count]."""
         return LATENTS[self.latent][0].recurrence(LATENT_DEGREE).values(germs)
 
+    def branches(self, factors: Array, coefficients: Array) -> Array:
+        """Coefficients of the powers of the latent variable at points of these factors, [point_count, power_count]."""
+        return (factors * coefficients) @ self.of_power
+
     def drawn(self, count: int, random: np.random.Generator) -> Array:
         """Polynomials at so many values of the latent variable that are drawn, [power_count, count]."""
         distribution = LATENTS[self.latent][0]
@@ -99,6 +103,12 @@ class LatentProblem:
     target: Array
     weights: Array
 
+    @classmethod
+    def of_runs(cls, runs: TrainingRuns, terms: LatentTerms, weights: Array) -> "LatentProblem":
+        """That of the runs with outputs; weights: how often each of all runs counts [run_count]."""
+        there = runs.has_outputs
+        return cls(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
+
     def of(self, chosen: NDArray[np.bool_]) -> "LatentProblem":
         """The problem of some of the runs alone, chosen [run_count]."""
         return LatentProblem(self.terms, self.factors[chosen], self.target[chosen], self.weights[chosen])
@@ -108,7 +118,7 @@ class LatentProblem:
         node [run_count, node_count]. noise: standard deviation beside the expansion.
         """
         polynomials, node_weights = self.terms.rule
-        away = (self.target[:, None] - branches(self.terms, self.factors, coefficients) @ polynomials) / noise
+        away = (self.target[:, None] - self.terms.branches(self.factors, coefficients) @ polynomials) / noise
         exponents = np.log(node_weights) - 0.5 * away**2
         # The largest exponent is taken out, or with little noise all of them would underflow.
         most = exponents.max(axis=1, keepdims=True)
@@ -160,19 +170,20 @@ class LatentProblem:
         return coefficients, scatter
 
 
-def problem_of(runs: TrainingRuns, terms: LatentTerms, weights: Array) -> LatentProblem:
-    """The runs with outputs as a problem of likelihood; weights: how often each run counts [run_count]."""
-    there = runs.has_outputs
-    return LatentProblem(terms, terms.factors(runs.x[there]), runs.coordinates[:, 0], weights[there])
-
-
-def branches(terms: LatentTerms, factors: Array, coefficients: Array) -> Array:
-    """Coefficients of the powers of the latent variable at points, [point_count, power_count]."""
-    return (factors * coefficients) @ terms.of_power
+def most_likely(runs: TrainingRuns, degree: int | None, latent: str | None) -> tuple[LatentTerms, float, Array, float]:
+    """Terms that groups left out choose, noise and coefficients of most likelihood, and what they are worth: mean
+    logarithm of the density of a run left out. degree, latent: None chooses these too.
+    """
+    weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
+    problems = [LatentProblem.of_runs(runs, terms, weights) for terms in _candidates(runs, degree, latent)]
+    chosen = _simplest([_held_out(problem, group) for problem in problems], group)
+    shares = NOISE_SHARES[: chosen.share_count]
+    noise, coefficients = list(LatentProblem.of_runs(runs, chosen.terms, weights).path(shares))[-1]
+    return chosen.terms, noise, coefficients, float(chosen.logarithms.mean())
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class _HeldOut:
     """Terms, how many shares of the noise are gone down for the best, and logarithm of the density of each run where
     its group is left out [run_count].
     """
@@ -181,29 +192,27 @@ class HeldOut:
     share_count: int
     logarithms: Array
 
-    @property
-    def logarithm(self) -> float:
-        return float(self.logarithms.mean())
 
-
-def simplest(tried: list[HeldOut], group: NDArray[np.int64]) -> HeldOut:
+def _simplest(tried: list[_HeldOut], group: NDArray[np.int64]) -> _HeldOut:
     """Of those that the best does not beat by more than a standard error, the one of the fewest terms.
 
     Of many that are tried, the best is so by luck too.
     """
-    best = max(tried, key=lambda one: one.logarithm)
+    best = max(tried, key=lambda one: one.logarithms.mean())
     close = []
     for one in tried:
         gain, error = mean_by_groups(best.logarithms - one.logarithms, group)
         if gain <= error:
             close.append(one)
     fewest = min(len(one.terms.indices) for one in close)
-    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithm)
+    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithms.mean())
 
 
-def candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
+def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
     """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
     degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
+    if latent is not None and latent not in LATENTS:
+        raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
     latents = LATENTS if latent is None else (latent,)
     found = [latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
     # No inputs are always a candidate: that is the law to fall back on.
@@ -216,17 +225,17 @@ def candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> li
     return kept
 
 
-def held_out(problem: LatentProblem, group: NDArray[np.int64]) -> HeldOut:
+def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
     """Follow the noise down until runs in groups left out are foretold worse than before."""
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]
-    best = HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
+    best = _HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
     # All folds go down together, so that what single runs make of a little noise need not be found.
     for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
         logarithms = np.empty(len(group))
         for test, (noise, coefficients) in zip(tests, steps, strict=True):
             logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
-        if logarithms.mean() <= best.logarithm:
+        if logarithms.mean() <= best.logarithms.mean():
             break
-        best = HeldOut(problem.terms, count, logarithms)
+        best = _HeldOut(problem.terms, count, logarithms)
     return best

@@ -16,18 +16,7 @@ from lithobrake.chaos.polynomials import hermite
 from lithobrake.chaos.storage import indices_from_json, read, write
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.fitting import with_distant_bounds
-from lithobrake.emulator.latent_variable import (
-    LATENT_DEGREE,
-    LATENTS,
-    NOISE_SHARES,
-    LatentProblem,
-    LatentTerms,
-    branches,
-    candidates,
-    held_out,
-    problem_of,
-    simplest,
-)  # fmt: skip
+from lithobrake.emulator.latent_variable import LATENT_DEGREE, LATENTS, LatentProblem, LatentTerms, most_likely
 from lithobrake.emulator.mean_law import candidate_terms
 from lithobrake.emulator.storage import column_from_json, runs_from_json, runs_to_json
 from lithobrake.emulator.training_runs import TrainingRuns, checked_runs, with_slope
@@ -145,7 +134,7 @@ class StochasticExpansion:
         counted = self.runs.checked_weights(weights)
         # From where the fit stands, at its noise: going down from a large noise again would repeat the whole path in
         # every refit.
-        coefficients = problem_of(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
+        coefficients = LatentProblem.of_runs(self.runs, self.terms, counted).climbed(self.coefficients, self.noise)
         return replace(self, coefficients=coefficients, weights=counted)
 
     def refits(self, count: int = 200, seed: int = 0) -> list["StochasticExpansion"]:
@@ -166,11 +155,11 @@ class StochasticExpansion:
 
     @cached_property
     def _problem(self) -> LatentProblem:
-        return problem_of(self.runs, self.terms, self.weights)
+        return LatentProblem.of_runs(self.runs, self.terms, self.weights)
 
     def _branches(self, x: ArrayLike) -> Array:
         """Coefficients of the powers of the latent variable at x, [point_count, power_count]."""
-        return branches(self.terms, self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients)
+        return self.terms.branches(self.terms.factors(checked_points(self.runs.inputs, x)), self.coefficients)
 
     def _means(self, x: ArrayLike) -> Array:
         """The expansion at x and at the nodes of the latent variable, [point_count, node_count]."""
@@ -248,14 +237,8 @@ def fit_stochastic_expansion(
     """
     if np.ndim(y) != 1 and np.shape(y)[1:] != (1,):
         raise ValueError(f"y has shape {np.shape(y)}, but must be [run_count]: fit one expansion for each output")
-    if latent is not None and latent not in LATENTS:
-        raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
     runs = checked_runs(inputs, x, y, groups, None, None, lower, upper, (), (output_name,))
     candidate = candidate_terms(runs.inputs)
     runs = with_distant_bounds(runs, candidate.indices, candidate.matrix(runs.x[runs.has_outputs]))
-    weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
-    tried = [held_out(problem_of(runs, terms, weights), group) for terms in candidates(runs, degree, latent)]
-    chosen = simplest(tried, group)
-    shares = NOISE_SHARES[: chosen.share_count]
-    noise, coefficients = list(problem_of(runs, chosen.terms, weights).path(shares))[-1]
-    return StochasticExpansion(runs, chosen.terms, coefficients, noise, chosen.logarithm, weights)
+    terms, noise, coefficients, logarithm = most_likely(runs, degree, latent)
+    return StochasticExpansion(runs, terms, coefficients, noise, logarithm, np.ones(len(runs.x)))

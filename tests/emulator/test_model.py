@@ -11,7 +11,7 @@ from scipy import integrate, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
-from lithobrake.emulator.latent_variable import latent_terms, problem_of
+from lithobrake.emulator.latent_variable import LatentProblem, latent_terms
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
 COUNT = 120
@@ -414,7 +414,7 @@ def test_bounds_that_follow_the_inputs_are_asked_for() -> None:
 
 @pytest.mark.parametrize("latent", ["normal", "uniform"])
 def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
-    problem = problem_of(
+    problem = LatentProblem.of_runs(
         expand("positive").runs, latent_terms(MARKET, 2, latent), np.random.default_rng(1).random(RUNS)
     )
     at, step = 0.3 * np.random.default_rng(0).standard_normal(problem.factors.shape[1]), 1e-5
