@@ -30,6 +30,13 @@ from lithobrake.chaos.training_data import one_thread
 INPUTS = {"speed": Uniform(0.1, 0.9), "modulus": LogUniform(1e6, 1e8)}
 
 
+def written(folder, content):
+    """A file model.json of this content."""
+    path = folder / "model.json"
+    path.write_text(json.dumps(content))
+    return path
+
+
 @pytest.fixture(scope="module")
 def surrogate():
     x = sobol_sequence(INPUTS, 60)
@@ -110,9 +117,8 @@ def test_wrong_files_are_refused(surrogate, tmp_path):
     surrogate.save(path)
     content = json.loads(path.read_text())
     for key in ("inputs", "coefficients", "multi_indices"):
-        path.write_text(json.dumps({k: v for k, v in content.items() if k != key}))
         with pytest.raises(ValueError, match="damaged"):
-            load(path)
+            load(written(tmp_path, {k: v for k, v in content.items() if k != key}))
 
 
 def test_constant_output_has_no_variance_and_zero_indices():
@@ -231,12 +237,8 @@ def test_a_file_of_format_version_1_is_read():
 
 
 def test_what_version_1_lacks_is_no_reason_to_refuse_it(tmp_path):
-    content = json.loads(VERSION_1.read_text())
-    content["a_key_of_a_later_version"] = {"x": 1}
-    content["report"] = {}
-    path = tmp_path / "model.json"
-    path.write_text(json.dumps(content))
-    assert np.isfinite(load(path).mean).all()
+    content = {**json.loads(VERSION_1.read_text()), "a_key_of_a_later_version": {"x": 1}, "report": {}}
+    assert np.isfinite(load(written(tmp_path, content)).mean).all()
 
 
 @pytest.mark.parametrize("version", [FORMAT_VERSION + 1, 99, 0, -1, "1", True, None, 1.5])
@@ -247,11 +249,9 @@ def test_another_format_version_is_refused_in_one_sentence(version, tmp_path):
     path = tmp_path / "model.json"
     for read, surrogate in makers.items():
         surrogate.save(path)
-        content = json.loads(path.read_text())
-        content["format_version"] = version
-        path.write_text(json.dumps(content))
+        content = {**json.loads(path.read_text()), "format_version": version}
         with pytest.raises(ValueError, match=r"model\.json has format_version [^\n]*: install [^\n]*$"):
-            read(path)
+            read(written(tmp_path, content))
 
 
 def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
@@ -264,9 +264,8 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
     content = json.loads(Path("model.json").read_text())
     for kind in (code, "__class__", "Distribution", "lithobrake.chaos.distributions.Uniform"):
         content["inputs"][0]["kind"] = kind
-        Path("model.json").write_text(json.dumps(content))
         with pytest.raises(ValueError, match="damaged"):
-            load("model.json")
+            load(written(tmp_path, content))
 
     class Hit:
         def __reduce__(self):
@@ -301,29 +300,23 @@ def test_code_in_a_file_stays_text(tmp_path, monkeypatch):
     ("one_dimensional", True),
 ])  # fmt: skip
 def test_damaged_content_is_refused_with_the_name_of_the_file(key, value, tmp_path):
-    content = {**json.loads(VERSION_1.read_text()), key: value}
-    path = tmp_path / "model.json"
-    path.write_text(json.dumps(content))
     with pytest.raises(ValueError, match=r"model\.json is damaged"):
-        load(path)
+        load(written(tmp_path, {**json.loads(VERSION_1.read_text()), key: value}))
 
 
 def test_numbers_of_a_file_that_are_none_are_refused(tmp_path):
-    path = tmp_path / "model.json"
     for broken in (float("nan"), float("inf"), None):
         content = json.loads(VERSION_1.read_text())
         content["coefficients"][1][0] = broken
-        path.write_text(json.dumps(content))
         with pytest.raises(ValueError, match="coefficients must be rows of 2 finite numbers"):
-            load(path)
+            load(written(tmp_path, content))
     content = json.loads(VERSION_1.read_text())
     content["inputs"][1]["name"] = content["inputs"][0]["name"]
-    path.write_text(json.dumps(content))
     with pytest.raises(ValueError, match="name of its own"):
-        load(path)
-    path.write_text("[" * 100_000)
+        load(written(tmp_path, content))
+    (tmp_path / "model.json").write_text("[" * 100_000)
     with pytest.raises(ValueError, match="not JSON"):
-        load(path)
+        load(tmp_path / "model.json")
 
 
 def test_parts_of_a_file_that_do_not_belong_together_are_refused(tmp_path):
@@ -335,9 +328,8 @@ def test_parts_of_a_file_that_do_not_belong_together_are_refused(tmp_path):
     whole = json.loads(path.read_text())
     other = {**whole["log_variance"], "output_names": ["z"]}
     for change in ({"correlation": [[float("nan")]]}, {"correlation": [[1.0], [1.0]]}, {"log_variance": other}):
-        path.write_text(json.dumps({**whole, **change}))
         with pytest.raises(ValueError, match="damaged"):
-            load_stochastic(path)
+            load_stochastic(written(tmp_path, {**whole, **change}))
 
 
 def test_a_folder_is_refused_in_one_sentence(tmp_path):

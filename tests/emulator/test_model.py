@@ -1,7 +1,7 @@
 """The face of an emulator: what it is given, what it draws, what it refuses, its file; and stochastic expansions."""
 
 import json
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -268,18 +268,6 @@ def test_the_file_is_plain_json_that_says_what_it_is(tmp_path: Path) -> None:
     assert (content["output_names"], content["upper"]) == (["speed", "spin", "label"], [[2.0, None, None]])
 
 
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [("location", [[0.0]]), ("rows", []), ("outcome", [7] * 90), ("riders", ["mass"]), ("multi_indices", [[0, 1]])],
-)
-def test_a_damaged_file_is_refused(tmp_path: Path, key: str, value: object) -> None:
-    path = tmp_path / "model.json"
-    stored_emulator().save(path)
-    path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
-    with pytest.raises(ValueError, match=r"model\.json"):
-        emulator.load(path)
-
-
 RUNS = 300
 ONE_INPUT = {"x": Uniform(-1.0, 1.0)}
 # Volatilities above those of the published example, where a normal is hardly wrong.
@@ -471,16 +459,20 @@ def test_a_saved_expansion_comes_back_bit_for_bit(tmp_path: Path, name: str) -> 
     assert (again.log_likelihood, again.held_out) == (model.log_likelihood, model.held_out)
 
 
-@pytest.mark.parametrize(
-    ("key", "value"),
-    [("latent", "gamma"), ("noise", 0.0), ("coefficients", [1.0]), ("multi_indices", [[0, 9]]), ("riders", ["y"])],
-)
-def test_a_damaged_file_of_an_expansion_is_refused(tmp_path: Path, key: str, value: object) -> None:
-    path = tmp_path / "law.json"
-    expand("line").save(path)
+@pytest.mark.parametrize(("make", "load", "key", "value"), [
+    *((stored_emulator, emulator.load, *damage) for damage in (
+        ("location", [[0.0]]), ("rows", []), ("outcome", [7] * 90), ("riders", ["mass"]), ("multi_indices", [[0, 1]]),
+    )),
+    *((partial(expand, "line"), emulator.load_stochastic_expansion, *damage) for damage in (
+        ("latent", "gamma"), ("noise", 0.0), ("coefficients", [1.0]), ("multi_indices", [[0, 9]]), ("riders", ["y"]),
+    )),
+])  # fmt: skip
+def test_a_damaged_file_is_refused(tmp_path: Path, make: Any, load: Any, key: str, value: object) -> None:
+    path = tmp_path / "model.json"
+    make().save(path)
     path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
-    with pytest.raises(ValueError, match=r"law\.json"):
-        emulator.load_stochastic_expansion(path)
+    with pytest.raises(ValueError, match=r"model\.json"):
+        load(path)
 
 
 @pytest.mark.parametrize(("change", "words"), [
