@@ -6,12 +6,11 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.campaign import RunStatus
 from lithobrake.vocabulary.array_types import Array, Integers
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
-FAILED = RunStatus.FAILED.value
+FAILED = JourneyEnd.FAILED.value
 # As wide as the longest word of an outcome: NumPy cuts longer ones without notice.
 WORD = f"<U{max(map(len, (*TouchdownOutcome, FAILED, UNKNOWN_END)))}"
 
@@ -82,7 +81,8 @@ class Answers:
 
     outcome     a word of TouchdownOutcome, "failed", or UNKNOWN_END
     velocity    [m/s], and spin against the ground [rad/s], of those that leave; with which captured ones slide on
-    way         from the impact to where the touchdown ended [m]; length: of the path between the two [m]
+    way         along the ground from the impact to where the touchdown ended [m]; length: of the path between them [m]
+    rise        of the lander from the impact to where it leaves, along the normal [m]; below 0 where it has sunk
     duration    [s]; contacts: with the ground
     attitude    of the lander in the frame at the end, None where the model has none; reason: why a touchdown failed
     """
@@ -92,6 +92,7 @@ class Answers:
     spin: Array
     way: Array
     length: Array
+    rise: Array
     duration: Array
     contacts: Integers
     attitude: "list[Rotation | None]" = field(default_factory=list)
@@ -100,9 +101,9 @@ class Answers:
     @classmethod
     def unknown(cls, count: int) -> "Answers":
         velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
-        length, duration = np.zeros(count), np.zeros(count)
+        length, rise, duration = (np.zeros(count) for _ in range(3))
         contacts = np.zeros(count, dtype=np.int64)
-        states = (velocity, spin, way, length, duration, contacts)
+        states = (velocity, spin, way, length, rise, duration, contacts)
         return cls(np.full(count, UNKNOWN_END, dtype=WORD), *states, [None] * count, [""] * count)
 
     @property
@@ -120,6 +121,13 @@ class Answers:
                     mine[place] = value
             else:
                 mine[which] = theirs
+
+
+def horizontal_velocity(impacts: ImpactStates) -> Array:
+    """Incoming velocities along the ground [m/s], [count, 3], in the frames of the touchdowns."""
+    velocity = np.zeros((len(impacts), 3))
+    velocity[:, 0] = impacts.speed * np.sin(np.radians(impacts.incidence_deg))
+    return velocity
 
 
 class Touchdown(Protocol):
