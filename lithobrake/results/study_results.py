@@ -218,8 +218,9 @@ class StudyResults(StudyTables):
         """The same of the emulator of all touchdowns; None where there is none (results.emulated.why)."""
         from lithobrake.results.table import ExplorerTables
 
-        emulated = self.results.emulated
-        if emulated is None or emulated.why is not None:
+        name = file_names.TOUCHDOWN_EMULATOR_FILE
+        # Not from the summary: a study that runs has an emulator before it has that.
+        if not (self.folder / name).is_file() or "why" in read_json(self._file(name), dict, self.remedy):
             return None
         return ExplorerTables.read(self._file(file_names.TOUCHDOWN_EXPLORER_FILE), self.remedy)
 

@@ -15,7 +15,7 @@ from ..ledger_rows import edit_rows
 
 STUDY = (
     few_grains(30, width=0.45, lander_diameter=0.12, friction="0.7", sides="walls")
-    + f"""place = {{ x = 0.0, y = 0.0 }}
+    + f"""place = {{ x = 0.08, y = 0.0 }}
 {EXPANSION}screening_level = 1
 screening_degree = 1
 kept_outputs = ["speed_out"]

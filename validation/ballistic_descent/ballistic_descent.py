@@ -15,12 +15,10 @@ from descents import Descents, Floats, back_in_time, balls, radius
 from soil import RecordedSoil
 
 import lithobrake
-from lithobrake.smallbody import Body, Bounce, HardSurface
+from lithobrake.smallbody import Body, Bounce, HardSurface, Launch, hop
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "pipeline" / "journeys"))
 from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, timed, write_document
-from plain_landers import hop
 
 HERE = Path(__file__).parent
 TABLE = "ballistic_descent.csv"
@@ -58,9 +56,9 @@ def shares(body: Body, descents: Descents, bounce: Bounce) -> tuple[Floats, Floa
     """
     states, is_outside = launches(body, descents)
     place, velocity = states[is_outside, :3], states[is_outside, 3:]
-    landers, _ = hop(body, place, velocity, bounce, duration=DURATION, friction=FRICTION, gravity="table")
+    landers = hop(body, Launch(place, velocity), bounce, DURATION, friction=FRICTION, seed=SEED)
     both = np.zeros((2, len(states)))
-    # The release counts as the first touchdown of each.
+    # The launch counts as the first touchdown of each.
     both[:, is_outside] = landers.touchdowns > 1, landers.end == "at_rest"
     touched, rested = both.reshape(2, -1, LANDERS).mean(axis=2)
     return touched, rested
