@@ -38,7 +38,8 @@ SWITCHES = {
     "skin of the list": ("stepping/engine.py", "SKIN = 0.25", "SKIN = 0.025"),
     "one moment of inertia": ("stepping/engine.py", "(inertia == inertia[:, :1, :1] * np.eye(3)).all(axis=(1, 2))",
                               "np.zeros(len(inertia), dtype=bool)"),
-    "look every 16 steps": ("stepping/time_step_stability.py", "LOOK_STEPS, LOOK_PHASE = 16", "LOOK_STEPS, LOOK_PHASE = 1"),
+    "look every 16 steps": ("stepping/time_step_stability.py", "LOOK_STEPS, LOOK_PHASE = 16",
+                            "LOOK_STEPS, LOOK_PHASE = 1"),
     "kernels in their callers": ("../compilation/compiled.py", '"forceinline": True', '"forceinline": False'),
 }  # fmt: skip
 CASES = ("hull1000", "sph4000", "touchdown")

@@ -36,14 +36,16 @@ def timed(work: Callable[[], Any], repeats: int = 1) -> tuple[float, float, Any]
     return min(cpu), min(wall), result
 
 
-def cone(body: Body, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Start states at latitude and longitude 0: 0.01 to 0.4 m/s, even within 60 deg of the outward normal."""
-    random = np.random.default_rng(1)
+def cone(
+    body: Body, count: int, seed: np.random.Generator | int = 1, speeds: tuple[float, float] = (0.01, 0.4)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Start states at latitude and longitude 0: even in speed [m/s] and in solid angle within 60 deg of the normal."""
+    random = np.random.default_rng(seed)
     place, axes = body.local_frame(0.0, 0.0, 0.0)
     turn = random.uniform(0.0, 2.0 * np.pi, count)
     up = random.uniform(0.5, 1.0, count)
     across = np.sqrt(1.0 - up**2)
-    local = random.uniform(0.01, 0.4, count)[:, None] * np.stack([across * np.cos(turn), across * np.sin(turn), up], 1)
+    local = random.uniform(*speeds, count)[:, None] * np.stack([across * np.cos(turn), across * np.sin(turn), up], 1)
     return np.tile(place, (count, 1)), local @ axes
 
 

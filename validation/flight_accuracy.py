@@ -21,21 +21,12 @@ from scipy.integrate import solve_ivp
 from lithobrake.smallbody import Body, didymos, fly
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from flight_speed import cone
 from harness import Row, command_line, origin, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
 DURATION = 12 * 3600.0
 TIGHT = 1e-11
-
-
-def cone(body: Body, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Start states on the ground, even in solid angle and in speed."""
-    random = np.random.default_rng(seed)
-    place, axes = body.local_frame(0.0, 0.0, 0.0)
-    turn, up = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.5, 1.0, count)
-    across = np.sqrt(1.0 - up**2)
-    local = random.uniform(0.01, 0.4, count)[:, None] * np.stack([across * np.cos(turn), across * np.sin(turn), up], 1)
-    return np.tile(place, (count, 1)), local @ axes
 
 
 def gravity(body: Body) -> tuple[str, Callable[[np.ndarray], np.ndarray]]:

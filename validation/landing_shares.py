@@ -19,6 +19,7 @@ from lithobrake.analysis import wilson_interval
 from lithobrake.smallbody import Body, Shape, didymos, fly
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from flight_speed import cone
 from harness import command_line, origin, write_document
 
 RESULTS = Path(__file__).with_suffix(".json")
@@ -31,14 +32,9 @@ BEFORE = ("95-97 %", "86 %", "73 %", "63 %", "54 %", "41 %")
 
 def shares(body: Body, count: int) -> list[dict[str, Any]]:
     random = np.random.default_rng(5)
-    place, axes = body.local_frame(0.0, 0.0, 0.0)
     rows = []
     for low, high in pairwise(BANDS):
-        turn, up = random.uniform(0.0, 2.0 * np.pi, count), random.uniform(0.5, 1.0, count)
-        across = np.sqrt(1.0 - up**2)
-        local = np.stack([across * np.cos(turn), across * np.sin(turn), up], axis=1)
-        velocity = random.uniform(low, high, count)[:, None] * local @ axes
-        flights = fly(body, np.tile(place, (count, 1)), velocity, DURATION, gravity="table")
+        flights = fly(body, *cone(body, count, random, (low, high)), DURATION, gravity="table")
         row: dict[str, Any] = {"speed_m_s": [low, high]}
         for status in ("impact", "flying", "escaped", "partner"):
             found = int((flights.status == status).sum())

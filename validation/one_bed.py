@@ -10,10 +10,11 @@ run again: delete it to start anew. validation/one_bed_figures.py draws them.
 
 import sys
 import tempfile
-import time
 import tomllib
 from pathlib import Path
 from typing import Any
+
+from paper_study import run_and_time
 
 import lithobrake
 from lithobrake.files.reading import hashed_seed
@@ -88,14 +89,11 @@ def main() -> None:
         key = (kind, diameter, tables["seed"])
         if key in done:
             continue
-        start = time.perf_counter()
         folder = given.work / f"{kind} {diameter:g} {tables['seed']}".replace(" ", "_")
-        results = lithobrake.run(tables, folder, workers=given.workers, report=False)
-        wall = time.perf_counter() - start
+        results, wall = run_and_time(tables, folder, given.workers)
         entries.append(dict(zip(("kind", "diameter_m", "seed"), key, strict=True)) | {"wall_s": wall} | told(results))
         command = f"validation/one_bed.py --seeds {given.seeds}"
         write_document(path, {**origin(command), "studies": entries})
-        print(*key, f"{wall:.0f} s", results.results.headline[0], flush=True)
 
 
 if __name__ == "__main__":

@@ -122,6 +122,15 @@ def told(found: Tables) -> Tables:
     return entry | {name: analysis[name] for name in ("screening", "refined", "scores")} | {"outcomes": designs}
 
 
+def run_and_time(tables: Tables, folder: Path, workers: int | None) -> tuple[lithobrake.StudyResults, float]:
+    """The results of a study, and the time that it took [s]; says both."""
+    start = time.perf_counter()
+    results = lithobrake.run(tables, folder, workers=workers, report=False)
+    wall = time.perf_counter() - start
+    print(folder.name, f"{wall:.0f} s", results.results.headline[0], flush=True)
+    return results, wall
+
+
 KINDS = {"twin": twin, "other beds": other_beds, "numerics": numerics, "grain sizes": grain_sizes}
 
 
@@ -138,18 +147,13 @@ def main() -> None:
         for name, tables in KINDS[kind]():
             if (kind, name) in done:
                 continue
-            start = time.perf_counter()
-            folder = given.work / f"{kind} {name}".replace(" ", "_")
-            results = lithobrake.run(tables, folder, workers=given.workers, report=False)
-            wall = time.perf_counter() - start
+            results, wall = run_and_time(tables, given.work / f"{kind} {name}".replace(" ", "_"), given.workers)
             entry = {"kind": kind, "name": name, "wall_s": wall} | told(json_values(results.results))
             if kind == "twin":
-                runs = dict(results.runs)
-                first = [row for row, design in enumerate(runs["design"]) if design == "screening"]
-                entry["screening_runs"] = {output: [float(runs[output][row]) for row in first] for output in PAIRED}
+                first = results.runs.where(results.runs["design"] == "screening")
+                entry["screening_runs"] = {output: first[output].tolist() for output in PAIRED}
             entries.append(entry)
             write_document(path, {**origin("validation/paper_study.py"), "studies": entries})
-            print(kind, name, f"{wall:.0f} s", results.results.headline[0], flush=True)
 
 
 if __name__ == "__main__":

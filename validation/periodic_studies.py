@@ -7,11 +7,11 @@ studies/drawn_170.toml), as it is or with the keys of [bed] that periodic_studie
 periodic_studies.json.
 """
 
-import math
 import sys
 from pathlib import Path
 
 import numpy as np
+from periodic_ground import over_beds
 
 from lithobrake.results import StudyResults, open_study
 from lithobrake.vocabulary.estimate import Estimate
@@ -22,15 +22,6 @@ from harness import Row, command_line, origin, write_document
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "penetration")
 
 
-def over_beds(value: np.ndarray, bed: np.ndarray) -> Row:
-    """Mean and its standard error by the ratio estimator over beds. Source: [Cochran-1977], section 2.12."""
-    mean = float(value.mean())
-    residuals = np.array([(value[bed == number] - mean).sum() for number in np.unique(bed)])
-    count = len(residuals)
-    error = math.sqrt(count / (count - 1) * float((residuals**2).sum())) / len(value)
-    return {"mean": mean, "standard_error": error}
-
-
 def bounded(one: Estimate) -> Row:
     """A share with its bounds."""
     return {"share": one.value, "lower": one.lower, "upper": one.upper}
@@ -39,7 +30,8 @@ def bounded(one: Estimate) -> Row:
 def numbers(study: StudyResults) -> Row:
     """Beds, outcomes, what comes down again, and how landers leave."""
     results, bed, runs = study.results, study.study["bed"], study.runs
-    drawn = (runs["design"] == "drawn") & (runs["outcome"] == "clear")
+    drawn = runs.where((runs["design"] == "drawn") & (runs["outcome"] == "clear"))
+    rows = [{key: float(drawn[key][row]) for key in ("bed", *OUTPUTS)} for row in range(drawn.row_count)]
     shares = {name: results.shares.outcomes[name].share for name in ("escaped", "flying")}
     return {
         "title": study.study["title"],
@@ -51,7 +43,7 @@ def numbers(study: StudyResults) -> Row:
         "farther_than_period": results.runs.farther_than_period,
         "returns": bounded(results.returns.share),
         "shares": {name: bounded(one) for name, one in shares.items()},
-        **{key: over_beds(runs[key][drawn], runs["bed"][drawn]) for key in OUTPUTS},
+        **{key: over_beds(rows, key) for key in OUTPUTS},
     }
 
 
