@@ -49,9 +49,7 @@ def numbers(name: str, study: StudyResults) -> dict[str, Any]:
         "time_s": json_values(rest.time_s),
         "contacts": json_values(rest.contacts),
         "distance_m": json_values(rest.distance_m),
-        "regions": [
-            {key: getattr(one, key) for key in ("share", "area_m2", "largest_extent_m")} for one in rest.regions
-        ],
+        "regions": [{key: getattr(one, key) for key in REGION} for one in rest.regions],
     }
 
 
