@@ -18,7 +18,6 @@ from lithobrake.smallbody import Body, Shape, fly
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
-from lithobrake.vocabulary.file_names import ARCS_FILE
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
@@ -124,7 +123,7 @@ class Flown:
         )
 
     def journeys(self, results: StudyResults, samples: Sequence[int]) -> "Flown":
-        """All flights of these samples over their bounces; of one whose journey is not noted, the first alone.
+        """All flights of landers that were followed beyond the first touchdown; of samples the one that each has.
 
         Raises ValueError for a sample that did not fly.
         """
@@ -133,13 +132,7 @@ class Flown:
             if not samples:
                 return chosen
             return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
-        # The folder of an earlier version notes no journeys.
-        if not (results.folder / ARCS_FILE).is_file():
-            return self.of_samples(samples)
-        noted = _noted(results.arcs.where(np.isin(results.arcs["sample"], samples)), results.study["rest"]["duration"])
-        alone = self.of_samples([sample for sample in samples if sample not in noted["sample"]])
-        joined: dict[str, Any] = {name: np.concatenate([getattr(alone, name), noted[name]]) for name in _EACH}
-        return replace(self, **joined)
+        return self.of_samples(samples)
 
     @classmethod
     def _of_arcs(cls, results: StudyResults, arcs: Table) -> "Flown":

@@ -13,7 +13,7 @@ from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
-from lithobrake.vocabulary.file_names import JOURNEYS_FILE, REST_FILE
+from lithobrake.vocabulary.file_names import REST_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
@@ -152,7 +152,7 @@ def _tags(frame: MapFrame, resolution_deg: float, band: str, quantity: str) -> "
 
 
 def point_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
-    has_rest = any((results.folder / name).is_file() for name in (REST_FILE, JOURNEYS_FILE))
+    has_rest = has_journeys(results) or (results.folder / REST_FILE).is_file()
     return ["impacts.geojson", *(["rest.geojson"] if has_rest else [])]
 
 
