@@ -123,16 +123,14 @@ class Flown:
         )
 
     def journeys(self, results: StudyResults, samples: Sequence[int]) -> "Flown":
-        """All flights of landers that were followed beyond the first touchdown; of samples the one that each has.
+        """All flights of these landers, or of these samples the flight to the next impact.
 
-        Raises ValueError for a sample that did not fly.
+        Raises ValueError for one that did not fly.
         """
-        if has_journeys(results):
-            chosen = self.of_samples(samples)
-            if not samples:
-                return chosen
-            return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
-        return self.of_samples(samples)
+        chosen = self.of_samples(samples)
+        if not samples or not has_journeys(results):
+            return chosen
+        return self._of_arcs(results, results.arcs.where(np.isin(results.arcs["sample"], samples)))
 
     @classmethod
     def _of_arcs(cls, results: StudyResults, arcs: Table) -> "Flown":

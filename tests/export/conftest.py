@@ -30,12 +30,6 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 
 
 @pytest.fixture(scope="session")
-def bouncing(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    """Those of a study whose first landers are followed over their bounces on the soil."""
-    return finished(export_models.study_with_bounces(), tmp_path_factory.mktemp("bounces") / "out")
-
-
-@pytest.fixture(scope="session")
 def delivered(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Those of a study of journeys from states along ICRF."""
     home = tmp_path_factory.mktemp("delivered")

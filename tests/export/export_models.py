@@ -33,14 +33,3 @@ def study_with_flights() -> dict[str, Any]:
     }  # fmt: skip
     tables["impact"] |= {"speed": 0.06}
     return tables
-
-
-def study_with_bounces() -> dict[str, Any]:
-    """The same where the soil answers nearly every later impact; the journeys of three samples are noted."""
-    tables = study_with_flights()
-    tables["impact"] |= {
-        "speed": {"distribution": "uniform", "lower": 0.001, "upper": 0.12},
-        "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 85.0},
-    }
-    tables["rest"] = {"count": 4, "arc_count": 3, "duration": 9000.0}
-    return tables

@@ -57,41 +57,6 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
     assert longitude == pytest.approx(results.flights["longitude_deg"][3], abs=1e-6)
 
 
-@pytest.mark.parametrize("frame", ["inertial", "fixed"])
-def test_a_sample_has_a_segment_for_each_flight_of_it(bouncing: StudyResults, tmp_path: Path, frame: str) -> None:
-    """A flight begins where and when the one before it ends, whatever the axes; what changes is its velocity."""
-    epoch = "2026-11-22T12:00:00"
-    written(bouncing, tmp_path, "oem", [0], frame=frame, epoch=epoch)
-    segments = oem.OrbitEphemerisMessage.open(tmp_path / "flight_0.oem").segments
-    of_sample = bouncing.arcs["sample"] == 0
-    begin, end = (bouncing.arcs[name][of_sample] for name in ("begin_s", "end_s"))
-    assert len(segments) == len(begin) > 3
-    for segment, first, last in zip(segments, begin, end, strict=True):
-        assert seconds(segment, epoch)[[0, -1]] == pytest.approx([first, last], abs=1e-6)
-        assert segment.metadata["OBJECT_NAME"] == "SAMPLE_0"
-    assert bouncing.rest["time_s"][0] == pytest.approx(end[-1], abs=1e-6)
-    for before, after in pairwise(segments):
-        left, right = states(before)[-1], states(after)[0]
-        # Flights are made again in pieces of another body's median mass, and times have whole microseconds.
-        assert right[:3] == pytest.approx(left[:3], abs=1e-6)
-        assert np.linalg.norm(right[3:] - left[3:]) > 1e-4
-    first = states(segments[0])
-    assert np.linalg.norm(first[0, :3]) == pytest.approx(
-        np.linalg.norm(Flown.of(bouncing).of_samples([0]).position), abs=1e-9
-    )
-
-
-def test_a_sample_whose_journey_is_not_noted_has_its_first_flight(bouncing: StudyResults, tmp_path: Path) -> None:
-    """As has any of a folder that an earlier version made; samples that are asked for twice stand once."""
-    assert sorted(set(bouncing.arcs["sample"].tolist())) == [0.0, 1.0, 2.0]
-    written(bouncing, tmp_path, "oem", [3, 3, 1])
-    (segment,) = oem.OrbitEphemerisMessage.open(tmp_path / "flight_3.oem").segments
-    row = int(np.flatnonzero(bouncing.flights["sample"] == 3)[0])
-    assert seconds(segment, "2000-01-01T12:00:00")[-1] == pytest.approx(bouncing.flights["time_s"][row], abs=1e-6)
-    assert "Flight 1 of 1 that are known of sample 3" in (tmp_path / "flight_3.oem").read_text()
-    assert len(oem.OrbitEphemerisMessage.open(tmp_path / "flight_1.oem").segments) > 1
-
-
 def test_velocities_are_those_of_the_positions(results: StudyResults, tmp_path: Path) -> None:
     """In both frames; a difference over 2 h is wrong by h^2 / 6 times the change of acceleration, some 2e-8 m/s3."""
     sample = int(results.flights["sample"][0])

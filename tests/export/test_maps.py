@@ -62,17 +62,19 @@ def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: S
     assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
 
 
-def test_places_of_rest_are_those_of_the_journeys_that_settle(results: StudyResults, tmp_path: Path) -> None:
+def test_places_of_rest_are_those_of_the_landers_that_rest(results: StudyResults, tmp_path: Path) -> None:
     _, path = export_study(results, tmp_path, ["geojson"])
     found = json.loads(path.read_text())
     assert found["name"] == "places of rest on DIMORPHOS"
-    rows = [row for row, status in enumerate(results.rest["status"]) if status == "settled"]
-    assert [point["properties"]["sample"] for point in found["features"]] == results.rest["sample"][rows].tolist()
+    rows = [row for row, end in enumerate(results.rest["end"]) if end == "at_rest"]
+    assert [point["properties"]["journey"] for point in found["features"]] == results.rest["journey"][rows].tolist()
     for row, point in zip(rows, found["features"], strict=True):
         place = [results.rest["longitude_deg"][row], results.rest["latitude_deg"][row]]
         assert point["geometry"]["coordinates"] == place
-        assert set(point["properties"]) == {"sample", "ground", "time_s", "rebounds", "path_length"}
-    assert found["units"] == {"sample": "", "ground": "", "time_s": "s", "rebounds": "", "path_length": "m"}
+        assert set(point["properties"]) == {"journey", "ground", "time_s", "distance", "touchdowns", "path_length"}
+    assert found["units"] == {
+        "journey": "", "ground": "", "time_s": "s", "distance": "m", "touchdowns": "", "path_length": "m",
+    }  # fmt: skip
 
 
 def test_places_of_rest_of_journeys_have_frame_nodata_and_units(delivered: StudyResults, tmp_path: Path) -> None:
