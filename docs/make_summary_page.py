@@ -180,7 +180,7 @@ def page() -> str:
     for kind, place in ((Results, "results"), (Provenance, "provenance")):
         describe(kind, place, found)
     lines = [HEAD.rstrip(), *key_table(field_words(Summary))]
-    for kind, table in found.items():
+    for table in found.values():
         first, *others = (f"`{place}`" for place in table.places)
         also = f" Also {', '.join(others)}." if others else ""
         lines += ["", f"### {first}", "", *wrap(f"{table.words}{also}", LINE, break_on_hyphens=False)]

@@ -167,7 +167,9 @@ def write_geojson(results: StudyResults, paths: Sequence[Path], chosen: ExportOp
     _write_points(results, paths[0], "impacts", ends.where(ends_on_ground), PROPERTIES)
     for path in paths[1:]:
         at_rest = results.rest.where(results.rest["end"] == JourneyEnd.AT_REST)
-        _write_points(results, path, "places of rest", at_rest, REST_PROPERTIES)
+        # A table without rows lacks some of its columns.
+        known = [name for name in REST_PROPERTIES if name in at_rest.columns]
+        _write_points(results, path, "places of rest", at_rest, known)
 
 
 def _write_points(results: StudyResults, path: Path, what: str, table: Table, names: Sequence[str]) -> None:

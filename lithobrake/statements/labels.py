@@ -71,7 +71,7 @@ WHOLE_WORDS = {"impact.speed": "impact speed"}
 RUN_WORDS = {outcome.value: outcome.label for outcome in TouchdownOutcome} | {FAILED: FAILED}
 # How a journey ended, as short as it has to be in a legend.
 END_WORDS: dict[str, str] = {end.value: end.label for end in JourneyEnd}
-# What became of a landing after its first bounce, in a table.
+# What became of a landing after the first touchdown, in a table.
 OUTCOME_WORDS: dict[str, str] = {
     FlightStatus.IMPACT: "impact the surface again within {limit}",
     FlightStatus.FLYING: "still flying after {limit}",

@@ -43,7 +43,7 @@ def test_a_function_makes_the_touchdowns_and_no_bed_is_poured(folder: Path, resu
     # An output that is NaN has no value.
     assert "azimuth_out" not in runs
     assert results.beds.row_count == 0
-    assert results.summary["results"]["designs"]["screening"]["run_count"] == 7
+    assert results.summary["results"]["expansion"]["designs"]["screening"]["run_count"] == 7
 
 
 def test_columns_say_what_they_are(results: StudyResults) -> None:
@@ -98,7 +98,7 @@ def test_the_expansion_is_called_by_the_names_of_its_inputs(results: StudyResult
 def test_opening_writes_nothing_and_a_folder_of_something_else_is_refused(folder: Path, tmp_path: Path) -> None:
     before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
     opened = lithobrake.open_study(folder)
-    assert (opened.runs.row_count, opened.samples.row_count, opened.rest.row_count) == (opened.runs.row_count, 400, 0)
+    assert (opened.samples.row_count, opened.flights.row_count) == (400, 6)
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
     with pytest.raises(ValueError, match="holds no results of a study"):
         lithobrake.open_study(tmp_path)

@@ -61,36 +61,17 @@ def designs_table(data: PageExpansion) -> PageTable:
 
 
 def _fits(data: PageExpansion) -> PageTable:
-    columns = [
-        "expansion",
-        "output",
-        "unit",
-        "method",
-        "terms",
-        "condition number",
-        "expected error",
-        "scatter between repeated runs",
-    ]
+    columns = ["expansion", "output", "unit", "method", "terms", "condition number", "expected error"]
+    columns.append("scatter between repeated runs")
     expansions = {"screening": data.results.screening, "refined": data.results.refined}
     scale = _output_scales((name, fit.rmse_estimate) for one in expansions.values() for name, fit in one.fits.items())
     rows = []
     for stage, expansion in expansions.items():
         for row, (name, fit) in enumerate(expansion.fits.items()):
-            shown = output(name)
-            rows.append(
-                [
-                    stage if row == 0 else "",
-                    shown.words,
-                    shown.unit,
-                    fit.method.replace("_", " "),
-                    str(fit.term_count),
-                    "-" if fit.condition_number is None else f"{fit.condition_number:.3g}",
-                    table_cell(fit.rmse_estimate * shown.factor, scale[shown.unit]),
-                    "not known"
-                    if fit.noise_std is None
-                    else table_cell(fit.noise_std * shown.factor, scale[shown.unit]),
-                ]
-            )
+            condition = "-" if fit.condition_number is None else f"{fit.condition_number:.3g}"
+            scatter = "not known" if fit.noise_std is None else _in_unit(fit.noise_std, name, scale)
+            of_fit = [fit.method.replace("_", " "), str(fit.term_count), condition]
+            rows.append([*_first_cells(stage, row, name), *of_fit, _in_unit(fit.rmse_estimate, name, scale), scatter])
     note = (
         "Expected error: of a new run, by cross-validation, including scatter, below which no expansion can come. "
         "Scatter: from points that were run several times, or the nugget of a Gaussian process; where the expected "
@@ -105,20 +86,24 @@ def _scores(data: PageExpansion) -> PageTable:
     rows = []
     for stage, table in data.results.scores.items():
         for row, (name, score) in enumerate(table.items()):
-            shown = output(name)
-            rows.append(
-                [
-                    STAGE_WORDS.get(stage, stage) if row == 0 else "",
-                    shown.words,
-                    shown.unit,
-                    _with_interval(_or_none(score.mape), score.mape_interval),
-                    _with_interval("undefined" if score.q2 is None else fixed(score.q2, 3), score.q2_interval),
-                    table_cell(score.rmse * shown.factor, scale[shown.unit]),
-                    table_cell(score.std * shown.factor, scale[shown.unit]),
-                    _or_none(score.rrmse),
-                ]
-            )
+            q2 = "undefined" if score.q2 is None else fixed(score.q2, 3)
+            rows.append([
+                *_first_cells(STAGE_WORDS.get(stage, stage), row, name),
+                _with_interval(_or_none(score.mape), score.mape_interval), _with_interval(q2, score.q2_interval),
+                _in_unit(score.rmse, name, scale), _in_unit(score.std, name, scale), _or_none(score.rrmse),
+            ])  # fmt: skip
     return PageTable("Errors of the expansions", columns, rows, notes.scores(), frozenset(columns[3:]))
+
+
+def _first_cells(words: str, row: int, name: str) -> list[str]:
+    """What the rows of a set of runs begin with: its words in the first one, the output and its unit."""
+    return [words if row == 0 else "", output(name).words, output(name).unit]
+
+
+def _in_unit(value: float, name: str, scale: Mapping[str, float]) -> str:
+    """A number of an output [SI] in its unit."""
+    shown = output(name)
+    return table_cell(value * shown.factor, scale[shown.unit])
 
 
 def sobol_table(data: PageExpansion) -> PageTable:
@@ -145,11 +130,10 @@ def samples_table(samples: SampleResults) -> PageTable:
         for name, one in (samples.outputs if samples.model == MODEL else {}).items()
     }
     scale = _output_scales((name, value) for name, values in numbers.items() for value in values)
-    rows = []
-    for name, values in numbers.items():
-        shown = output(name)
-        cells = (table_cell(value * shown.factor, scale[shown.unit]) for value in values)
-        rows.append([shown.words, shown.unit, *cells])
+    rows = [
+        [output(name).words, output(name).unit, *(_in_unit(value, name, scale) for value in values)]
+        for name, values in numbers.items()
+    ]
     return PageTable("Outputs of the samples that leave", columns, rows, numbers=frozenset(columns[2:]))
 
 

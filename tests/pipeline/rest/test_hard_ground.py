@@ -35,7 +35,8 @@ def journeys(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Landers at 70 degrees north of Didymos, where the ground holds them, that arrive at any speed and angle."""
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
     site, hard = {"latitude_deg": 70.0}, {"count": 100}
-    return made(tmp_path_factory.mktemp("journeys") / "out", model, impact=ARRIVAL, site=site, surface=FLAT, hard_ground=hard)
+    folder = tmp_path_factory.mktemp("journeys") / "out"
+    return made(folder, model, impact=ARRIVAL, site=site, surface=FLAT, hard_ground=hard)
 
 
 def test_landers_rest_on_hard_ground_and_their_shares_have_the_error_of_their_number(journeys: StudyResults) -> None:
