@@ -216,9 +216,7 @@ def infer(
 
 study_command("bed", "Pour and settle the beds, and simulate a preview landing.", arguments.EXPERT, until="landing")
 study_command("screen", "Expansion: run the screening design and fit an expansion in all inputs.", arguments.EXPERT)
-study_command(
-    "refine", "Expansion: run the refined design and fit an expansion in the kept inputs.", arguments.EXPERT
-)
+study_command("refine", "Expansion: run the refined design and fit an expansion in the kept inputs.", arguments.EXPERT)
 study_command("test", "Expansion: run the test points and score the expansions on them.", arguments.EXPERT)
 study_command(
     "sample", "Sample the first touchdown by the refined expansion, or else by the emulator.", arguments.EXPERT
