@@ -210,6 +210,9 @@ def announce(part: str) -> None:
     """Say, once, that the kernels of a part are compiled now."""
     what, time = _WHAT[part]
     log.warning("Compiling %s for this processor%s: about %s.", what, ", once" if disk_cache(part).keeps else "", time)
+    if not lighter_compilation.is_known():
+        given, known = lighter_compilation.releases(), " or ".join(sorted(lighter_compilation.KNOWN))
+        log.warning("%s compiles in its own way, which takes twice as long; to be faster, install %s.", given, known)
 
 
 def _part_of(function: Callable[..., Any]) -> str:

@@ -1,7 +1,6 @@
 """Compilation of a kernel with all that it calls at once, and lowering that takes apart no tuple it has just made."""
 
 import gc
-import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -26,9 +25,8 @@ from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import NativeLowering, NopythonRewrites
 from numba.core.untyped_passes import InlineClosureLikes
 
-log = logging.getLogger(__name__)
-# Versions of Numba and llvmlite, up to their patch releases, that tests/compilation ran with.
-KNOWN = {("0.68", "0.50")}
+# Releases that tests/compilation ran with.
+KNOWN = {"Numba 0.68 with llvmlite 0.50"}
 
 
 class FoldingBuilder(ir.IRBuilder):
@@ -140,15 +138,15 @@ class KernelPipeline(Compiler):
 @cache
 def is_known() -> bool:
     """Whether the lighter compilation is known to work with this Numba; another one compiles as it always does."""
-    found = (_release(numba.__version__), _release(llvmlite.__version__))
-    if found not in KNOWN:
-        log.info("Numba %s with llvmlite %s compiles kernels in its own way, which takes longer", *found)
-    return found in KNOWN
+    return releases() in KNOWN
 
 
-def _release(version: str) -> str:
-    """The release of a version without its patch: "0.68" of "0.68.1"."""
-    return ".".join(version.split(".")[:2])
+def releases() -> str:
+    """The releases of Numba and llvmlite in words, without their patches: "0.68" of "0.68.1"."""
+    numba_release, llvmlite_release = (
+        ".".join(version.split(".")[:2]) for version in (numba.__version__, llvmlite.__version__)
+    )
+    return f"Numba {numba_release} with llvmlite {llvmlite_release}"
 
 
 class KernelFlags(compiler.Flags):

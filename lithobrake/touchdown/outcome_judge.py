@@ -225,7 +225,7 @@ class OutcomeJudge:
 
     def outputs_to_rest(self) -> dict[str, float]:
         """Return what else there is to tell of a touchdown that goes on to rest, in the local frame of `outgoing`."""
-        x, y, _ = turned(self.motion.position - self.start, -self.landing.azimuth)
+        x, y, z = turned(self.motion.position - self.start, -self.landing.azimuth)
         attitude = turned_attitude(self.motion.orientation, -self.landing.azimuth)
-        values = x, y, self.world.time - self.start_time, float(self.contacts)
+        values = x, y, self.world.time - self.start_time, float(self.contacts), z
         return dict(zip((*TO_REST, *ORIENTATION_OUT), (*values, *attitude), strict=True))

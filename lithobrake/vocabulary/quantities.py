@@ -60,7 +60,7 @@ TIME_LEFT = "journey.time_left"
 # The acceleration of a touchdown, by the keys of the study file.
 GROUND = ("surface.gravity", "surface.slope_deg", "surface.slope_azimuth_deg")
 # Of touchdowns that are followed to rest: see Landing.hop_height.
-TO_REST = ("displacement_x", "displacement_y", "duration", "contacts")
+TO_REST = ("displacement_x", "displacement_y", "duration", "contacts", "displacement_z")
 # Only on beds that repeat.
 PERIODS_TRAVELLED = "periods_travelled"
 
@@ -82,6 +82,7 @@ TOUCHDOWN = {
     OVER_RIM: Quantity("", "whether the lander left over the rim of the bed, touching nothing and going up (1 or 0)"),
     "displacement_x": Quantity("m", "horizontal displacement during the touchdown, along x", LOCAL),
     "displacement_y": Quantity("m", "horizontal displacement during the touchdown, along y", LOCAL),
+    "displacement_z": Quantity("m", "displacement of the centre of mass during the touchdown, upward", LOCAL),
     "duration": Quantity("s", "simulated time of the touchdown"),
     "contacts": Quantity("", "contacts of lander and soil with a hop before each"),
     "contact_duration": Quantity("s", "time from the first to the last touch of lander and soil"),

@@ -57,6 +57,7 @@ def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
     turned = complex(*way[:2]) * complex(math.cos(0.3), -math.sin(0.3))
     assert outputs["displacement_x"] == pytest.approx(turned.real, abs=2e-3)
     assert outputs["displacement_y"] == pytest.approx(turned.imag, abs=2e-3)
+    assert outputs["displacement_z"] == pytest.approx(way[2], abs=2e-3)
     # Nothing is left that could lift it by a thousandth of its size.
     assert outputs["energy_lost"] == pytest.approx(0.5 * 0.6 * 0.02**2, rel=0.05)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies
 from lithobrake.dem.bodies.vectors import minus, plus, row
 from lithobrake.vocabulary.array_types import Floats, Integers, Vector
@@ -42,7 +42,7 @@ class Cells(NamedTuple):
 
 
 def cells_of(bodies: Bodies, skin: float) -> Cells:
-    """Return all bodies in their cells; skin [m]."""
+    """Return the cells for bodies, none of which stands in its cell yet; skin [m]."""
     radius, n = bodies.bounding_radius, len(bodies.mass)
     period = np.array([bodies.period.x, bodies.period.y, 0.0])
     repeats = period > 0.0
@@ -56,22 +56,12 @@ def cells_of(bodies: Bodies, skin: float) -> Cells:
     while np.prod(np.floor(extent / size) + 1.0) > MOST_CELLS * n:
         size *= 2.0
     count = np.where(repeats, np.maximum(np.floor(extent / size), 1.0), np.floor(extent / size) + 1.0).astype(np.int64)
-    cells = Cells(
+    return Cells(
         corner, np.where(repeats, period / count, size), count, np.where(repeats, -np.inf, 0.0),
         np.where(repeats, np.inf, count - 1.0), np.full(int(np.prod(count)), -1), np.full(n, -1), np.full(n, -1),
         np.where(is_large, -1, 0), np.flatnonzero(is_large), np.full(n, -1),
         np.array([reach]),
     )  # fmt: skip
-    fill(bodies, cells)
-    return cells
-
-
-@large_kernel
-def fill(bodies: Bodies, cells: Cells) -> None:
-    """Put all bodies that are not large in the cells of where they are. Writes to cells."""
-    for body in range(len(cells.cell)):
-        if cells.cell[body] >= 0:
-            put_in_cell(bodies, cells, body)
 
 
 @kernel

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compilation.compiled import kernel, large_kernel
+from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.motion import turn_by
 from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times, way_between
@@ -116,7 +116,7 @@ def turn_freely(bodies: Bodies, body: int, time: float) -> None:
     turn_by(bodies, body, spin, time)
 
 
-@large_kernel
+@kernel
 def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None:
     """Move all bodies to an instant [s] before which no contact is due. Writes to bodies and flight."""
     for body in range(len(bodies.mass)):

@@ -4,19 +4,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Pairs, Step
+from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
-from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_all_to
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
-from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally, sum_forces
-from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT, enter_all, plan_all_searches
+from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally
+from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT
 from lithobrake.dem.stepping.engine import Engine
 from lithobrake.dem.stepping.neighbours import free_slots, new_pairs, with_overflow_for_all, with_overflow_where_used
 from lithobrake.dem.stepping.time_loop import new_reactions, new_record
 from lithobrake.vocabulary.array_types import Floats
 
+# Nothing to enter.
+NOTHING: Floats = np.zeros(0)
 # Slots for pairs at the start, for each body.
 # A poured bed has some 5 pairs of neighbours a grain.
 SLOTS = 8
@@ -56,6 +58,18 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
     )  # fmt: skip
 
 
+def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
+    """Sum up what the contacts did to every body when they were last looked at. Writes to bodies."""
+    touching = np.flatnonzero(pairs.overlap > 0.0)
+    members = np.column_stack([pairs.first, pairs.second])[touching]
+    # Sums run in the order of the pairs, of each the first body before the second; a plane takes none.
+    moved, force = members >= 0, reactions.force[touching]
+    torque, other_torque = reactions.first_torque[touching], reactions.second_torque[touching]
+    bodies.force[:], bodies.torque[:] = 0.0, 0.0
+    np.add.at(bodies.force, members[moved], np.stack([-force, force], axis=1)[moved])
+    np.add.at(bodies.torque, members[moved], np.stack([-torque, other_torque], axis=1)[moved])
+
+
 class LocalEngine:
     """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
@@ -72,8 +86,7 @@ class LocalEngine:
         engine.list_neighbours()
         count = len(engine.pairs.first)
         self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
-        self._enter(np.full(len(bodies) + count, time))
-        plan_all_searches(engine.bodies, self.flight, self.agenda, time, self.rules)
+        self._enter(np.concatenate([np.full(len(bodies), -np.inf), np.full(count, time)]))
 
     @property
     def pairs(self) -> Pairs:
@@ -90,10 +103,15 @@ class LocalEngine:
         self.plans, self.agenda = plans_of(capacity, len(used), self.time), new_agenda(len(self.flight.time) + capacity)
 
     def _enter(self, due: Floats) -> None:
-        """Enter bodies and pairs in their lists, due at instants [body_count + pair_count]."""
+        """Enter bodies and pairs in their lists, see enter_all."""
         self.flight.head[:], self.flight.stamp[:] = -1, -1
-        engine = self.engine
-        enter_all(engine.bodies, engine.planes, self.pairs, engine.laws, self.flight, self.plans, self.agenda, due)
+        self._advance(due, -np.inf)
+
+    def _advance(self, due: Floats, end: float) -> int:
+        schedule = Schedule(self.flight, self.plans, self.agenda, self.cells)
+        return advance_locally(
+            self.engine.system(self.reactions), schedule, due, end, self.rules, self.setting.watched, self.record
+        )
 
     def _widen(self) -> None:
         pairs, plans, agenda, reactions = self.pairs, self.plans, self.agenda, self.reactions
@@ -110,10 +128,7 @@ class LocalEngine:
         """Move on by a duration [s]; tell whether all is still finite."""
         engine, end = self.engine, self.time + duration
         while True:
-            schedule = Schedule(self.flight, self.plans, self.agenda, self.cells)
-            reason = advance_locally(
-                engine.system(self.reactions), schedule, end, self.rules, self.setting.watched, self.record
-            )
+            reason = self._advance(NOTHING, end)
             if reason == NO_SLOT:
                 self._widen()
             elif reason == NO_ROOM:
@@ -122,7 +137,6 @@ class LocalEngine:
             else:
                 break
         self.time = end
-        fly_all_to(engine.bodies, self.flight, end, self.rules)
         self.summed = False
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 

@@ -30,14 +30,15 @@ from lithobrake.dem.local_stepping.free_motion import (
     Rules,
     approach_of,
     closing_speed,
+    fly_all_to,
     fly_to,
     spin_of,
 )
 from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
-from lithobrake.dem.local_stepping.neighbour_search import LISTED, search_neighbours
+from lithobrake.dem.local_stepping.neighbour_search import LISTED, enter_all, search_neighbours
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
-from lithobrake.dem.stepping.time_loop import add_wrench, contact_force, record_touch
+from lithobrake.dem.stepping.time_loop import contact_force, record_touch
 from lithobrake.dem.stepping.time_step_stability import pair_step
 from lithobrake.vocabulary.array_types import Floats, Vector
 
@@ -249,11 +250,15 @@ def record_contacts(
 
 
 @large_kernel
-def advance_locally(system: System, schedule: Schedule, end: float, rules: Rules, watched: int, record: Floats) -> int:
-    """Do all that is due up to an instant [s]; return LISTED, or what is lacking.
+def advance_locally(
+    system: System, schedule: Schedule, due: Floats, end: float, rules: Rules, watched: int, record: Floats
+) -> int:
+    """Do all that is due up to an instant [s] and move all bodies there; return LISTED, or what is lacking.
 
-    Writes to system, schedule and record.
+    due: what is entered first, see enter_all, if anything. Writes to system, schedule and record.
     """
+    if len(due) > 0:
+        enter_all(system, schedule, due, rules)
     pairs, agenda, n = system.pairs, schedule.agenda, len(system.bodies.mass)
     while agenda.size[0] > 0:
         item = agenda.heap[0]
@@ -271,18 +276,5 @@ def advance_locally(system: System, schedule: Schedule, end: float, rules: Rules
             return NO_ROOM
         if watched >= 0 and (pairs.first[pair] == watched or pairs.second[pair] == watched):
             record_contacts(pairs, system.reactions, schedule.flight, schedule.plans, watched, now, record)
+    fly_all_to(system.bodies, schedule.flight, end, rules)
     return LISTED
-
-
-@large_kernel
-def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
-    """Sum up what the contacts did to every body when they were last looked at. Writes to bodies."""
-    bodies.force[:] = 0.0
-    bodies.torque[:] = 0.0
-    for pair in range(len(pairs.first)):
-        if pairs.overlap[pair] > 0.0:
-            first, second = pairs.first[pair], pairs.second[pair]
-            force = row(reactions.force, pair)
-            add_wrench(bodies, first, -1.0, force, row(reactions.first_torque, pair))
-            if second >= 0:
-                add_wrench(bodies, second, 1.0, force, row(reactions.second_torque, pair))

@@ -11,7 +11,7 @@ from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, cur
 from lithobrake.dem.bodies.vectors import dot, minus, nearest, row
 from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, plan_search, put_on, take_off
-from lithobrake.dem.local_stepping.cells import gather_near, move_to_cell
+from lithobrake.dem.local_stepping.cells import gather_near, move_to_cell, put_in_cell
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, place_at, spin_bound
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
@@ -70,26 +70,24 @@ def enter_pair(
 
 
 @large_kernel
-def enter_all(
-    bodies: Bodies, planes: Planes, pairs: Pairs, laws: Laws, flight: Flight, plans: Plans, agenda: Agenda,
-    due: Floats,
-) -> None:  # fmt: skip
+def enter_all(system: System, schedule: Schedule, due: Floats, rules: Rules) -> None:
     """Enter the bodies and then the pairs of the first slots, due at instants [body_count + pair_count].
 
-    Writes to flight, plans and agenda.
+    A body due at minus infinity is new, and its neighbours have just been listed: it is put in its cell, and is due
+    when it could have left their reach. Writes to schedule.
     """
+    bodies, _, planes, pairs, laws, _, _ = system
+    flight, plans, agenda, cells = schedule
     n = len(bodies.mass)
     for body in range(n):
-        put_on(agenda, body, due[body])
+        if due[body] != -np.inf:
+            put_on(agenda, body, due[body])
+            continue
+        if cells.cell[body] >= 0:
+            put_in_cell(bodies, cells, body)
+        plan_search(bodies, flight, agenda, body, flight.time[body], rules)
     for pair in range(len(due) - n):
         enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, due[n + pair])
-
-
-@large_kernel
-def plan_all_searches(bodies: Bodies, flight: Flight, agenda: Agenda, now: float, rules: Rules) -> None:
-    """Make all bodies due whose neighbours have just been listed, now [s]. Writes to agenda."""
-    for body in range(len(bodies.mass)):
-        plan_search(bodies, flight, agenda, body, now, rules)
 
 
 @kernel

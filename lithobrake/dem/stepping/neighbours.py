@@ -98,8 +98,9 @@ def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Sc
         capacity = count
     met = pairs_of_parts(bodies.part_start, first[:count], second[:count])
     near = np.zeros(len(met.first), dtype=np.bool_)
-    parts = np.column_stack([met.first_part, met.second_part])
-    mark_near(bodies, cores, scratch, met.first, met.second, parts, skin, near)
+    if len(near) > 0:
+        parts = np.column_stack([met.first_part, met.second_part])
+        mark_near(bodies, cores, scratch, met.first, met.second, parts, skin, near)
     gap = planes.normal @ bodies.position.T - planes.offset[:, None] - reach
     plane, body = np.nonzero((gap < 0.0) & planes.meets)
     on_plane = pairs_of_parts(bodies.part_start, body, -1 - plane)

@@ -218,7 +218,7 @@ class Landers:
         attitudes = [answers.attitude[one] for one in np.flatnonzero(flies).tolist()]
         for lander, frame, attitude in zip(going.tolist(), axes, attitudes, strict=True):
             self.attitude[lander] = None if attitude is None else from_frame(frame) * attitude
-        flights = self._flown(going, velocity)
+        flights = self._flown(going, *self._leaving(going, answers.rise[flies], velocity))
         hits = np.flatnonzero(flights.status == FlightStatus.IMPACT)
         self._arrive(going[hits], flights, hits, spin[hits])
         return flights
@@ -244,11 +244,27 @@ class Landers:
             elif self.end[lander] == JourneyEnd.AT_REST and attitude is not None:
                 self.attitude[lander] = from_frame(self.axes[lander]) * attitude
 
-    def _flown(self, going: Integers, velocity: Array) -> "Flights":
-        """Fly landers to their next impact for what is left of their journeys."""
+    def _leaving(self, going: Integers, rise: Array, velocity: Array) -> tuple[Array, Array]:
+        """Places [m] and velocities [m/s] with which flights begin, [count, 3], fixed to the body.
+
+        A touchdown takes the lander for a point on the ground, from which its centre of mass has risen [m], [count]. A
+        flight begins as far above the ground. It cannot begin below: what has sunk starts on it, and has paid for the
+        way up.
+        """
+        place = self.position[going]
+        if not rise.any():
+            return place, velocity
+        up = self.body.shape.normals[self.body.shape.nearest(place)[1]]
+        outward, upward = (np.einsum("ni,ni->n", one, up) for one in (self.acceleration(going), velocity))
+        paid = np.sqrt(np.maximum(upward**2 + 2.0 * -outward * np.minimum(rise, 0.0), 0.0))
+        change = np.where((rise < 0.0) & (upward > 0.0), paid - upward, 0.0)
+        return place + np.maximum(rise, 0.0)[:, None] * up, velocity + change[:, None] * up
+
+    def _flown(self, going: Integers, start: Array, velocity: Array) -> "Flights":
+        """Fly landers from their starts [m] to their next impact for what is left of their journeys."""
         from lithobrake.smallbody import fly
 
-        start, site = self.position[going], self.begin.site
+        site = self.begin.site
         flights = fly(
             *(self.body, start, velocity, self.duration - self.time[going]),
             gravity=self.design.study.flight.gravity,

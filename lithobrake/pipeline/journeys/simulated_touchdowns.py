@@ -32,7 +32,7 @@ from lithobrake.vocabulary.quantities import (
     VELOCITY_OUT,
 )
 
-ALONG, ASIDE, DURATION, CONTACTS = TO_REST
+ALONG, ASIDE, DURATION, CONTACTS, RISE = TO_REST
 # Of these landings alone: what the study says of its runs is of those of its journeys.
 LEDGER = "emulated.sqlite"
 
@@ -122,6 +122,7 @@ def answers_of(records: Sequence[Record]) -> Answers:
         found.way[place], found.length[place] = (along, aside, 0.0), math.hypot(along, aside)
         # A program of the user's own may give the duration of the contact alone.
         found.duration[place] = outputs.get(DURATION, outputs.get("contact_duration", 0.0))
+        found.rise[place] = outputs.get(RISE, 0.0)
         found.contacts[place] = max(1, round(outputs.get(CONTACTS, 1.0)))
         is_clear = record.outcome == TouchdownOutcome.CLEAR
         # A touchdown that ends as the lander is captured has no attitude; a program that has none leaves it unturned.

@@ -82,7 +82,8 @@ class Answers:
 
     outcome     a word of TouchdownOutcome, "failed", or UNKNOWN_END
     velocity    [m/s], and spin against the ground [rad/s], of those that leave; with which captured ones slide on
-    way         from the impact to where the touchdown ended [m]; length: of the path between the two [m]
+    way         along the ground from the impact to where the touchdown ended [m]; length: of the path between them [m]
+    rise        of the lander from the impact to where it leaves, along the normal [m]; below 0 where it has sunk
     duration    [s]; contacts: with the ground
     attitude    of the lander in the frame at the end, None where the model has none; reason: why a touchdown failed
     """
@@ -92,6 +93,7 @@ class Answers:
     spin: Array
     way: Array
     length: Array
+    rise: Array
     duration: Array
     contacts: Integers
     attitude: "list[Rotation | None]" = field(default_factory=list)
@@ -100,9 +102,9 @@ class Answers:
     @classmethod
     def unknown(cls, count: int) -> "Answers":
         velocity, spin, way = (np.zeros((count, 3)) for _ in range(3))
-        length, duration = np.zeros(count), np.zeros(count)
+        length, rise, duration = (np.zeros(count) for _ in range(3))
         contacts = np.zeros(count, dtype=np.int64)
-        states = (velocity, spin, way, length, duration, contacts)
+        states = (velocity, spin, way, length, rise, duration, contacts)
         return cls(np.full(count, UNKNOWN_END, dtype=WORD), *states, [None] * count, [""] * count)
 
     @property

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 # Another file than that of single landings, whose inputs are those of the study alone.
 GRAVITY, SLOPE, _ = GROUND
-ALONG, ASIDE, DURATION, _ = TO_REST
+ALONG, ASIDE, DURATION, _, RISE = TO_REST
 # What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
 OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
@@ -80,7 +80,7 @@ class TouchdownEmulator:
         refits = model.refits(REFIT_COUNT, hashed_seed(study.seed, "refits"))
         height = height_of_beds(study, folder)
         terms = attitude_terms(study)
-        return cls(design, refits, terms, bed, trained_ranges(runs), rest, _across(runs), height)
+        return cls(design, refits, terms, bed, trained_ranges(study, runs), rest, _across(runs), height)
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -145,6 +145,8 @@ class TouchdownEmulator:
         found.velocity[which[left]], found.spin[which[left]] = drawn.velocity[left], drawn.spin[left]
         if DURATION in drawn.outputs:
             found.duration[which[left]] = drawn.outputs[DURATION][left]
+        if RISE in drawn.outputs:
+            found.rise[which[left]] = drawn.outputs[RISE][left]
         rests = which[found.outcome[which] == TouchdownOutcome.CAPTURED]
         # Nothing is fitted to touchdowns that end at rest: how long and far they go is that of one of them.
         if not len(rests):
@@ -163,16 +165,20 @@ def fit_touchdowns(job: Job) -> str | None:
         return why
     values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
     bound = energy_bound(job.design, height_of_beds(job.study, job.folder), values, runs.run_count, _across(runs))
-    outputs = outputs_of_runs(runs, (*RIDERS, DURATION))
+    outputs = outputs_of_runs(runs, (*RIDERS, DURATION, RISE))
     met = [outcome for outcome in TouchdownOutcome if outcome in runs.outcomes]
     fitted(job, _inputs(job, runs), runs, outputs, bound, met).save(job.folder / TOUCHDOWN_EMULATOR_FILE)
     return None
 
 
-def trained_ranges(runs: DesignRuns) -> dict[str, tuple[float, float]]:
+def trained_ranges(study: Study, runs: DesignRuns) -> dict[str, tuple[float, float]]:
     """The ranges of OF_TOUCHDOWN, in the file's units, in which the emulator of touchdowns has an answer."""
     found = {}
     for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items():
+        reach = DEGREES if name in LARGEST else (FACTOR - 1.0) * max(abs(lower), abs(upper))
+        # First touchdowns at one place have one ground: nothing is known of others, where landers are followed anyway.
+        if study.journey.touchdowns is not None and name in GROUND and upper - lower < reach:
+            continue
         if name in LARGEST:
             found[name] = max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
         else:
@@ -189,7 +195,7 @@ def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
     kept = {name: law for name, law in inputs_met(job.design, runs).items() if not name.startswith(ARRIVAL_TABLES)}
     # What is the same in all touchdowns says nothing of others; beyond it the emulator has no answer.
     varies = [name for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items() if lower < upper]
-    ranges = {name: ends for name, ends in trained_ranges(runs).items() if name in varies}
+    ranges = {name: ends for name, ends in trained_ranges(job.study, runs).items() if name in varies}
     found = kept | {name: (LogUniform if name == IMPACT_SPEED else Uniform)(*ends) for name, ends in ranges.items()}
     terms = attitude_terms(job.study)
     of_attitude = {} if terms is None else terms.ranges

@@ -10,6 +10,7 @@ from scipy import stats
 
 from lithobrake.pipeline.journeys.ground_touchdowns import Bounces
 from lithobrake.pipeline.journeys.landers import follow
+from lithobrake.pipeline.journeys.touchdown import Answers
 from lithobrake.smallbody import Body, HardSurface, Impacts, Rebounds, Shape, didymos, fly, rotation_history
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
@@ -98,6 +99,21 @@ def test_a_bounce_is_told_which_lander_it_is(plain: Body) -> None:
     assert thrown.seen[0].speed == pytest.approx([4e-3] * 3, rel=5e-3)
     assert thrown.seen[1].speed == pytest.approx([2e-3] * 2, rel=5e-3)
     assert (thrown.seen[1].incidence_deg < 6.0).all()
+
+
+@pytest.mark.parametrize("rise", [0.09, -0.02])
+def test_between_touchdown_and_flight_no_energy_is_lost(plain: Body, rise: float) -> None:
+    """A lander that has risen by h comes down with v^2 + 2 g h; one that has sunk has paid for the way up."""
+    origin, speed = np.array([3.0, 2.0, 100.0]), 5e-3
+    push = -float(plain.acceleration(origin)[2])
+    landers, which = thrown_landers(plain, origin, gravity="exact"), np.array([0])
+    risen = Answers.unknown(1)
+    risen.outcome[:], risen.velocity[:], risen.rise[:] = "clear", [[0.0, 0.0, speed]], rise
+    flights = landers.go_on(which, risen)
+    assert flights is not None
+    assert plain.shape.height(flights.start.position[0]) == pytest.approx(max(rise, 0.0), abs=1e-9)
+    # Gravity weakens by thousandths over the way up.
+    assert landers.speed[0] ** 2 == pytest.approx(speed**2 + 2.0 * push * rise, rel=5e-3)
 
 
 def test_a_bounce_into_the_ground_is_refused(plain: Body) -> None:
