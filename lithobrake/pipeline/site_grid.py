@@ -11,7 +11,6 @@ from lithobrake.files.reading import hashed_seed, read_rows
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quantile_of_some
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
-from lithobrake.pipeline.design.soils import felt
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN, follow_emulated
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
@@ -57,7 +56,7 @@ class SiteGround:
         points, facets = shape.locate(places[:, 0], places[:, 1])
         up, columns = shape.normals[facets], job.site.columns(len(points))
         time = job.site.clock(columns)
-        here = felt(job.site.body, points, time, columns["mass"], columns["spin_period"])
+        here = job.site.body.felt(points, time, columns["mass"], columns["spin_period"])
         strength = np.linalg.norm(here, axis=1)
         slope = np.degrees(np.arccos(np.clip(-(here * up).sum(axis=1) / strength, -1.0, 1.0)))
         light: dict[str, np.ndarray] = {

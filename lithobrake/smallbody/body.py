@@ -10,6 +10,7 @@ from lithobrake.smallbody import attraction
 from lithobrake.smallbody.acceleration import Entry, Orbit
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.smallbody.shape import Shape, checked_points, delivered_directions
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
@@ -130,6 +131,29 @@ class Body:
             spin, change = (one.reshape(p.shape) for one in self.rotation.at(times).whole_spin(rates))
             return self.acceleration(p) * ratio - np.cross(spin, np.cross(spin, p)) - np.cross(change, p)
         return self.acceleration(p) * ratio + spin_rate**2 * p * np.array([1.0, 1.0, 0.0])
+
+    def felt(self, points: Array, time: Array, mass: Array, spin_period: Array) -> Array:
+        """Acceleration [m/s2] of what rests on the ground, [count, 3], body-fixed, at points [count, 3] and times [s].
+
+        The partner acts by its tide: as a point, less what it does to the body as a whole. Rotation and tide are those
+        at the times, where the body does not turn uniformly, too. mass [kg] and spin_period [s]: of each, [count].
+        """
+        own: Array = self.effective_acceleration(points, mass=mass, spin_period=spin_period, time=time)
+        if self.partner is None:
+            return own
+        orbit = self.orbit_with(GRAVITATIONAL_CONSTANT * mass, 2.0 * np.pi / spin_period)
+        if not np.any(orbit.distance):
+            return own
+        angle = orbit.angle + orbit.rate * time
+        centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+        centre *= np.reshape(orbit.distance, (-1, 1))
+        if self.rotation is not None:
+            centre = self.rotation.at(time).out_of_frame(centre)
+        way = centre - points
+        strength = self.partner.body.gravitational_parameter
+        near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))
+        found: Array = own + strength * (near - mean)
+        return found
 
     def slope(self, latitude_deg: ArrayLike, longitude_deg: ArrayLike) -> NDArray[np.float64]:
         """Angle between the outward normal and the upward plumb line, gravity and rotation together [rad], shape [...].

@@ -16,7 +16,7 @@ from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.campaign import Journeys
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.landers import Landers
+from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
@@ -255,7 +255,7 @@ def _begun(study: Study, values: Row) -> tuple[Journeys, int]:
     number, design = round(values["journey"]), DrawnDesign(study)
     if not design.is_flown:
         begin = Arrivals.of_rows(design.site, [values], number)
-        return Journeys.of(Landers.of(design, begin, study.journey.touchdowns)), 0
+        return Journeys.of(StudyLanders.of(design, begin, study.journey.touchdowns)), 0
     # Journeys of a longer study begin with those of this one.
     design = design.with_run_count(max(study.design.run_count, number + 1))
     return Journeys.begun(design), number

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import about_z, arriving, axes_in_icrf, from_frame, quaternion
-from lithobrake.pipeline.design.soils import Soils, felt
+from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study
 from lithobrake.study.ground_checks import LEAST_FRICTION
@@ -218,7 +218,7 @@ def on_ground(
     spin_period: np.ndarray,
 ) -> list[Row]:
     """Touchdowns under the acceleration at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
-    local = np.einsum("nij,nj->ni", axes, felt(body, origin, time, mass, spin_period))
+    local = np.einsum("nij,nj->ni", axes, body.felt(origin, time, mass, spin_period))
     return [
         row | ground_inputs(one, row[IMPACT_AZIMUTH], friction_of(row)) for row, one in zip(rows, local, strict=True)
     ]

@@ -1,4 +1,4 @@
-"""The soils of a study by region of the body, and the acceleration of what rests on the ground."""
+"""The soils of a study by region of the body."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,38 +17,11 @@ from lithobrake.vocabulary.quantities import ELSEWHERE
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
-    from lithobrake.smallbody import Body, Shape
+    from lithobrake.smallbody import Shape
 
 Row = dict[str, float]
 # Parts of a facet along each edge, and how many parts there are at most, by which the areas of regions are summed.
 EDGE_PARTS, MOST_PARTS = 8, 200_000
-
-
-def felt(
-    body: "Body", points: np.ndarray, time: np.ndarray, mass: np.ndarray, spin_period: np.ndarray
-) -> np.ndarray:  # fmt: skip
-    """Acceleration [m/s2] of what rests on the ground, [count, 3], all body-fixed, at points [count, 3] and times [s].
-
-    The partner acts by its tide: as a point, less what it does to the body as a whole. Rotation and tide are those at
-    the times, where the body does not turn uniformly, too.
-    """
-    own: np.ndarray = body.effective_acceleration(points, mass=mass, spin_period=spin_period, time=time)
-    if body.partner is None:
-        return own
-    from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
-
-    orbit = body.orbit_with(GRAVITATIONAL_CONSTANT * mass, 2.0 * np.pi / spin_period)
-    if not np.any(orbit.distance):
-        return own
-    angle = orbit.angle + orbit.rate * time
-    centre = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
-    centre *= np.reshape(orbit.distance, (-1, 1))
-    if body.rotation is not None:
-        centre = body.rotation.at(time).out_of_frame(centre)
-    way = centre - points
-    strength = body.partner.body.gravitational_parameter
-    near, mean = (one / np.linalg.norm(one, axis=1, keepdims=True) ** 3 for one in (way, centre))
-    return own + strength * (near - mean)
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +174,7 @@ class Soils:
         # Many places share a facet, and the gravity is worked out once for each.
         own, place = np.unique(facets, return_inverse=True)
         columns, centres = self.site.columns(len(own)), self._shape.corners[own].mean(axis=1)
-        pull = felt(self.site.body, centres, self.site.clock(columns), columns["mass"], columns["spin_period"])
+        pull = self.site.body.felt(centres, self.site.clock(columns), columns["mass"], columns["spin_period"])
         upward = -np.einsum("nx,nx->n", pull, self._shape.normals[own]) / np.linalg.norm(pull, axis=1)
         slopes: np.ndarray = np.degrees(np.arccos(np.clip(upward, -1.0, 1.0)))[place]
         return slopes

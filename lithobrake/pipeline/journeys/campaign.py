@@ -16,12 +16,13 @@ from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
-from lithobrake.pipeline.journeys.landers import ENDS, Landers
+from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.journeys.simulated_touchdowns import LandingRows, answers_of
-from lithobrake.pipeline.journeys.touchdown import FAILED
 from lithobrake.pipeline.runs.landings import account, campaign_setting, model_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.smallbody.landers import ENDS
+from lithobrake.smallbody.touchdown import FAILED
 from lithobrake.vocabulary.file_names import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import out_of, percent
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
@@ -37,18 +38,18 @@ INTERVAL_ERRORS = 1.645
 
 @dataclass(frozen=True)
 class Journeys:
-    """Landers by simulated landings, with the rows of their tables.
+    """StudyLanders by simulated landings, with the rows of their tables.
 
     rows: inputs of the present touchdown of each; touchdowns, flights: rows of their tables, by column, of each.
     """
 
-    landers: Landers
+    landers: StudyLanders
     rows: list[Row]
     touchdowns: list[list[dict[str, Any]]] = field(default_factory=list)
     flights: list[list[dict[str, Any]]] = field(default_factory=list)
 
     @classmethod
-    def of(cls, landers: Landers) -> "Journeys":
+    def of(cls, landers: StudyLanders) -> "Journeys":
         count = len(landers)
         return cls(landers, list(landers.begin.rows), [[] for _ in range(count)], [[] for _ in range(count)])
 
@@ -57,8 +58,8 @@ class Journeys:
         """The journeys of a study at their first touchdowns; those that never touch down have ended aloft."""
         most, descents = design.study.journey.touchdowns, design.descents
         if descents is None:
-            return cls.of(Landers.of(design, Arrivals.of_rows(design.site, design.rows, 0), most))
-        landers = Landers.of(design, Arrivals.of_descents(descents, design.rows, design.beds), most)
+            return cls.of(StudyLanders.of(design, Arrivals.of_rows(design.site, design.rows, 0), most))
+        landers = StudyLanders.of(design, Arrivals.of_descents(descents, design.rows, design.beds), most)
         down = descents.touches_down
         landers.is_down[:] = down
         landers.end[~down] = [str(ENDS[FlightStatus(word)]) for word in descents.flights.status[~down].tolist()]

@@ -12,7 +12,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, on_hard_ground
-from lithobrake.pipeline.journeys.landers import Landers, followed
+from lithobrake.pipeline.journeys.landers import StudyLanders, followed
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.study import Study
 from lithobrake.study.delivery_sections import arrival_key
@@ -56,7 +56,7 @@ def follow_options(job: Job) -> None:
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-def _rows(job: Job, ground: str, landers: Landers | None) -> list[list[Any]]:
+def _rows(job: Job, ground: str, landers: StudyLanders | None) -> list[list[Any]]:
     """Rows of aim.csv; without landers nothing is known of any."""
     count = job.study.aim.lander_count * REFIT_COUNT
     if landers is None:

@@ -16,26 +16,26 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_touchdowns import EmulatedTouchdowns
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding
-from lithobrake.pipeline.journeys.landers import Landers, followed
+from lithobrake.pipeline.journeys.landers import StudyLanders, followed
 from lithobrake.pipeline.journeys.simulated_touchdowns import WithLandings
-from lithobrake.pipeline.journeys.touchdown import Touchdown
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, fit_touchdowns
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.table import ExplorerAttitude
+from lithobrake.smallbody.touchdown import Touchdown
 from lithobrake.study import Study
 from lithobrake.study.lander_section import directions_of_sides, side_words
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, JOURNEY_DESIGN, SPIN
 
 EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
-# Landers that the study has not followed, and those of its journeys.
+# StudyLanders that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
 COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
 MOST_LANDINGS = 0.1
-LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
+LANDINGS_ALONE = "StudyLanders that are delivered as states are followed by landings alone, and by no emulator."
 
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
@@ -134,13 +134,13 @@ def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, mos
 
 @dataclass(frozen=True)
 class EmulatedLanders:
-    """Landers that the emulator has followed to their ends.
+    """StudyLanders that the emulator has followed to their ends.
 
     beyond: the input of an impact that the emulator did not know, the last one of each lander, or ""; landings: that
     were simulated for each; [lander_count].
     """
 
-    landers: Landers
+    landers: StudyLanders
     beyond: np.ndarray
     landings: np.ndarray
 

@@ -11,8 +11,8 @@ from lithobrake.pipeline.design.arrivals import FLATTEST_DEG, ground_inputs
 from lithobrake.pipeline.design.lander_attitude import attitude_inputs_of
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, TouchdownEmulator
+from lithobrake.smallbody.touchdown import Answers, ImpactStates
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION
 
 # Bounds the tilt of the ground that a lander meets.

@@ -1,4 +1,4 @@
-"""Landers followed on other ground: hard, equivalent to the soil, and the soil by the expansion."""
+"""StudyLanders followed on other ground: hard, equivalent to the soil, and the soil by the expansion."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -11,12 +11,13 @@ from lithobrake.pipeline.first_bounces import bounce_laws
 from lithobrake.pipeline.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding
-from lithobrake.pipeline.journeys.landers import Landers, followed
-from lithobrake.pipeline.journeys.touchdown import Touchdown
+from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding
+from lithobrake.pipeline.journeys.landers import StudyLanders, followed
 from lithobrake.pipeline.run_flights import run_flight_dependencies
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.samples import Samples
+from lithobrake.smallbody.ground_touchdowns import Bounces
+from lithobrake.smallbody.touchdown import Touchdown
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import REST_FILE
 from lithobrake.vocabulary.quantities import FOLLOWED
@@ -71,7 +72,7 @@ def on_hard_ground(design: DrawnDesign, begin: Arrivals, title: str = "") -> Tou
 
 
 def further_landers(design: DrawnDesign, count: int) -> Arrivals:
-    """Landers that the study has not followed, with numbers behind those of its journeys.
+    """StudyLanders that the study has not followed, with numbers behind those of its journeys.
 
     Of landers that are flown to the ground those of the journeys, as many as reach it.
     """
@@ -109,7 +110,7 @@ def _grounds(job: Job, begin: Arrivals) -> Iterator[tuple[str, Touchdown]]:
         yield EXPANSION, sliding(job.design, begin, SlowArrivals.of(job.design, begin, bounces))
 
 
-def followed_rows(ground: str, landers: Landers) -> list[list[Any]]:
+def followed_rows(ground: str, landers: StudyLanders) -> list[list[Any]]:
     """A row of rest.csv for each lander; what is not on the ground of the body has no place there."""
     latitude, longitude = landers.body.shape.latitude_longitude(landers.position)
     columns = (

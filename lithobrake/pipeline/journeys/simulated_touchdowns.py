@@ -17,8 +17,8 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
 from lithobrake.pipeline.journeys.landers import touchdown_uniforms
-from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates, Touchdown
 from lithobrake.pipeline.runs.landings import touchdowns
+from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     IMPACT_AZIMUTH,

@@ -12,10 +12,10 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
 from lithobrake.pipeline.first_bounces.emulator import RIDERS, DrawnLandings, fitted, inputs_met, outputs_of_runs
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.journeys.touchdown import Answers
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.smallbody.touchdown import Answers
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE

@@ -1,4 +1,4 @@
-"""Landers on a body without a study: they are thrown from where they are, and then followed."""
+"""StudyLanders on a body without a study: they are thrown from where they are, and then followed."""
 
 import math
 from dataclasses import dataclass
@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, Sliding
-from lithobrake.pipeline.journeys.landers import Landers, follow
-from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates, Touchdown, into_frame
+from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.smallbody import Body, Bounce
+from lithobrake.smallbody.ground_touchdowns import Bounces, Sliding
+from lithobrake.smallbody.landers import follow
+from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown, into_frame
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 
@@ -50,8 +51,8 @@ def thrown_landers(
     mass: Any = None,
     gravity: str = "exact",
     roughness_deg: float | None = None,
-) -> Landers:
-    """Landers at places on the ground [m], [count, 3], in frames whose z is up there; time: as of `fly` [s]."""
+) -> StudyLanders:
+    """StudyLanders at places on the ground [m], [count, 3], in frames whose z is up there; time: as of `fly` [s]."""
     place = np.atleast_2d(np.asarray(position, dtype=float))
     count, up = len(place), body.shape.normals[body.shape.nearest(place)[1]]
     aside = np.cross(up, np.eye(3)[np.argmin(np.abs(up), axis=1)])
@@ -68,7 +69,7 @@ def thrown_landers(
         site=SimpleNamespace(roughness_deg=roughness_deg),
     )
     design: Any = SimpleNamespace(site=SimpleNamespace(body=body), study=study)
-    return Landers.of(design, begin, most, threads=1)
+    return StudyLanders.of(design, begin, most, threads=1)
 
 
 def hop(
@@ -81,8 +82,8 @@ def hop(
     captured: Any = False,
     friction: float = math.inf,
     **settings: Any,
-) -> tuple[Landers, Thrown]:
-    """Landers thrown with velocities [m/s], body-fixed, that bounce and slide until they have ended."""
+) -> tuple[StudyLanders, Thrown]:
+    """StudyLanders thrown with velocities [m/s], body-fixed, that bounce and slide until they have ended."""
     landers = thrown_landers(body, position, **settings)
     vectors = (np.broadcast_to(np.asarray(one, dtype=float), (len(landers), 3)) for one in (velocity, spin))
     lies = np.broadcast_to(captured, len(landers))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from lithobrake.pipeline.journeys.ground_touchdowns import Bounces
-from lithobrake.pipeline.journeys.landers import follow
-from lithobrake.pipeline.journeys.touchdown import Answers
 from lithobrake.smallbody import Body, HardSurface, Impacts, Rebounds, Shape, didymos, fly, rotation_history
+from lithobrake.smallbody.ground_touchdowns import Bounces
+from lithobrake.smallbody.landers import follow
+from lithobrake.smallbody.touchdown import Answers
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 from ...smallbody.meshes import CUBE_FACES, cube_vertices, sphere_mesh

@@ -15,10 +15,11 @@ from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE, first_axes
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.ground_touchdowns import Bounces
-from lithobrake.pipeline.journeys.landers import Landers, follow
+from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody import HardSurface, Impacts, fly
+from lithobrake.smallbody.ground_touchdowns import Bounces
+from lithobrake.smallbody.landers import follow
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.touchdown.touchdown_model import acceleration
@@ -86,10 +87,10 @@ def test_landings_on_hard_ground_lead_where_bounces_lead(made: Path) -> None:
     assert np.abs(found["time_s"] - ends.time)[rests].max() < 0.2
 
 
-def bouncing(design: DrawnDesign) -> Landers:
+def bouncing(design: DrawnDesign) -> StudyLanders:
     """The landers of a study by bounces off hard ground, all together and without a landing."""
     begin = Arrivals.of_rows(design.site, design.rows, 0)
-    return follow(Landers.of(design, begin), Bounces(HARD, 0, "hard ground"))
+    return follow(StudyLanders.of(design, begin), Bounces(HARD, 0, "hard ground"))
 
 
 def test_the_summary_has_ends_that_add_up_and_numbers_of_rest(made: Path) -> None:

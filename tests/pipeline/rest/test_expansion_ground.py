@@ -23,11 +23,12 @@ from lithobrake.pipeline.first_bounces.bounce_laws import (
     why_no_soil,
 )
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.ground_touchdowns import Bounces, SlowArrivals, sliding, soil_friction
+from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding, soil_friction
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies
-from lithobrake.pipeline.journeys.touchdown import Answers, ImpactStates
 from lithobrake.pipeline.samples import rolling_spin
 from lithobrake.smallbody import Impacts
+from lithobrake.smallbody.ground_touchdowns import Bounces
+from lithobrake.smallbody.touchdown import Answers, ImpactStates
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, UNKNOWN_END

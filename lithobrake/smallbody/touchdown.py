@@ -6,12 +6,11 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from lithobrake.campaign import RunStatus
 from lithobrake.vocabulary.array_types import Array, Integers
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
-FAILED = RunStatus.FAILED.value
+FAILED = JourneyEnd.FAILED.value
 # As wide as the longest word of an outcome: NumPy cuts longer ones without notice.
 WORD = f"<U{max(map(len, (*TouchdownOutcome, FAILED, UNKNOWN_END)))}"
 
@@ -122,6 +121,13 @@ class Answers:
                     mine[place] = value
             else:
                 mine[which] = theirs
+
+
+def horizontal_velocity(impacts: ImpactStates) -> Array:
+    """Incoming velocities along the ground [m/s], [count, 3], in the frames of the touchdowns."""
+    velocity = np.zeros((len(impacts), 3))
+    velocity[:, 0] = impacts.speed * np.sin(np.radians(impacts.incidence_deg))
+    return velocity
 
 
 class Touchdown(Protocol):
