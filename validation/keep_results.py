@@ -53,20 +53,23 @@ def rank_correlations(results: lithobrake.StudyResults) -> dict[str, dict[str, f
 
 def keep(study: Path, out: Path, motion: bool) -> None:
     out.mkdir(parents=True, exist_ok=True)
+    results = lithobrake.StudyResults(study)
+    # One touchdown of each lander stands in drawn.csv, with all that is known of it.
+    twice = ("journeys.csv", "touchdowns.csv") if results.study["journey"]["touchdowns"] == 1 else ()
     for name in KEPT:
-        if (study / name).exists():
+        if (study / name).exists() and name not in twice:
             shutil.copy(study / name, out / name)
     # Where the study was made is of no use elsewhere.
     summary = (out / "summary.json").read_text(encoding="utf-8")
     (out / "summary.json").write_text(summary.replace(f'"{study.resolve()}"', f'"runs/{study.name}"'), encoding="utf-8")
     (out / "runs").mkdir(exist_ok=True)
     for table in (study / "designs").glob("*.csv"):
-        shutil.copy(table, out / "runs" / table.name)
+        if table.name not in twice:
+            shutil.copy(table, out / "runs" / table.name)
     (out / "figures").mkdir(exist_ok=True)
     # The sheet shows the landing in more frames than its figure.
     for figure in sorted(set((study / "report").glob("*.png")) - set((study / "report").glob("*_landing.png"))):
         shutil.copy(figure, out / "figures" / figure.name)
-    results = lithobrake.StudyResults(study)
     if (study / "samples.h5").exists():
         write_document(out / "rank_correlations.json", rank_correlations(results))
     export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"], ExportOptions(replaces=True))

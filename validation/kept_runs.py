@@ -1,11 +1,12 @@
 """Fill the ledger of a study's folder with its kept landings, so that `lithobrake run` makes only what follows them.
 
     python validation/kept_runs.py showcase/drawn_700 runs/drawn_700
-    lithobrake run validation/studies/drawn_700.toml --out runs/drawn_700
+    lithobrake run showcase/drawn_700/study.toml --out runs/drawn_700
 
 For a change of what comes after the landings: their outputs are taken as they are kept, under the key of today's code,
 so whoever changes the engine makes them anew instead. The inputs of each landing are compared with those that today's
-code draws; they may differ by rounding, since machines round sines differently.
+code draws; they may differ by rounding, since machines round sines differently. Beds are poured by today's code: what
+the summary has of them, and the landing that it shows, are of these.
 """
 
 import argparse

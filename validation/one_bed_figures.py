@@ -22,7 +22,7 @@ from page import made, table, write_page, yes
 
 HERE = Path(__file__).parent
 Entry = dict[str, Any]
-PARTS = {"soil": "soil", "bed": "bed", "place_and_attitude": "everything else", "chaos": "chaos"}
+PARTS = {"soil": "soil", "attitude": "attitude", "bed": "bed", "place": "everything else", "chaos": "chaos"}
 INPUTS = {
     "grain.friction": "friction", "grain.young_modulus": "Young's modulus", "grain.restitution": "grain restitution",
     "grain.poisson_ratio": "Poisson's ratio", "lander.restitution": "lander restitution",
@@ -82,27 +82,27 @@ def draw_seeds(studies: list[Entry]) -> None:
         )
 
 
-def within(share: float) -> float:
-    """A fraction of a variance as it can be: an estimate may come out below 0 or above 1."""
-    return min(max(share, 0.0), 1.0)
+def parts_of(studies: list[Entry]) -> dict[str, str]:
+    """The parts of a variance that any of the studies tells apart, in words; attitude is else in what is left."""
+    known = [shares for one in studies for shares in one["variance_shares"].values() if shares]
+    return {part: word for part, word in PARTS.items() if any(shares.get(part) for shares in known)}
 
 
 def draw_grains(studies: list[Entry]) -> None:
     found = sorted(of_kind(studies, "grain sizes"), key=lambda one: -one["diameter_m"])
-    if not found:
-        return
+    words = parts_of(found)
     with figure(PAGES / "one_bed_grains.png", 1, len(OUTPUTS), (9.2, 3.6), dpi=150, sharey=True) as (drawn, axes):
         for axis, (output, symbol) in zip(axes, OUTPUTS.items(), strict=True):
             for number, (one, colour) in enumerate(zip(found, INPUT_COLOURS, strict=False)):
-                parts = [(one["variance_shares"][output] or {}).get(part) for part in PARTS]
+                parts = [(one["variance_shares"][output] or {}).get(part) for part in words]
                 for place, part in enumerate(parts):
                     if part:
-                        middle = within(part["share"])
+                        middle = min(max(part["share"], 0.0), 1.0)
                         ends = [max(middle - part["lower"], 0.0), max(part["upper"] - middle, 0.0)]
                         x, bars = place + 0.2 * number - 0.1, [[100.0 * end] for end in ends]
                         axis.errorbar(x, 100.0 * middle, bars, fmt="os^"[number], color=colour, capsize=2, ms=4)
             axis.axhline(0.0, color=QUIET, lw=0.6, zorder=0)
-            axis.set_xticks(range(len(PARTS)), [name.replace(" ", "\n") for name in PARTS.values()])
+            axis.set_xticks(range(len(words)), [name.replace(" ", "\n") for name in words.values()])
             axis.tick_params(axis="x", labelsize=7.5)
             axis.set_title(symbol)
         axes[0].set_ylabel("fraction of the variance [%], 90 % interval")
@@ -148,20 +148,22 @@ def place_table(studies: list[Entry]) -> str:
 
 def grain_table(studies: list[Entry]) -> str:
     """Parts of the variance by grain size, with intervals."""
-    lines = []
-    for one in sorted(of_kind(studies, "grain sizes"), key=lambda entry: -entry["diameter_m"]):
+    found, lines = of_kind(studies, "grain sizes"), []
+    words = parts_of(found)
+    for one in sorted(found, key=lambda entry: -entry["diameter_m"]):
         beside = (one["runs"]["side_runs"] or {}).get("soil_total_effect", {})
         for output, symbol in OUTPUTS.items():
             shares = one["variance_shares"].get(output)
-            cells = [_share(shares[part]) if shares else "" for part in PARTS] + [_share(beside.get(output))]
+            cells = [share_words((shares or {}).get(part)) for part in words] + [share_words(beside.get(output))]
             sizes = f"{100 * one['diameter_m']:.1f}", f"{LANDER_EDGE / one['diameter_m']:.1f}"
             lines.append([*sizes, symbol, *cells])
-    heads = ("grains [cm]", "lander's short edge / grain", "output", *PARTS.values(), "total effect of the soil")
+    heads = ("grains [cm]", "lander's short edge / grain", "output", *words.values(), "total effect of the soil")
     return table(heads, lines)
 
 
-def _share(part: dict[str, float] | None) -> str:
-    return f"{within(part['share']):.2f} ({part['lower']:.2f} to {part['upper']:.2f})" if part else ""
+def share_words(part: dict[str, float] | None) -> str:
+    """A fraction of a variance as it can be, with its interval: an estimate may come out below 0 or above 1."""
+    return f"{min(max(part['share'], 0.0), 1.0):.2f} ({part['lower']:.2f} to {part['upper']:.2f})" if part else ""
 
 
 def answer(studies: list[Entry]) -> str:

@@ -11,10 +11,11 @@ import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from paper_study import spread_of
+from one_bed_figures import INPUTS, PARTS, Entry, share_words
+from one_bed_figures import OUTPUTS as SYMBOLS
+from paper_study import told
 
 from lithobrake.report.figures.style import INK, QUIET, TEST, TRAINING
 
@@ -26,7 +27,6 @@ from page import table, write_page
 HERE = Path(__file__).parent
 SHOWCASE = ROOT / "showcase"
 SPEED, ELEVATION, SPIN = OUTPUTS = "speed_out", "elevation_out", "spin_out"
-SYMBOLS = {SPEED: "rebound speed", ELEVATION: "rebound elevation", SPIN: "rebound spin rate"}
 # Factor and unit of the tables.
 UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1.0, "rad/s")}
 HEADS = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
@@ -34,10 +34,6 @@ PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
 METHODS = {
     "paper": "expansion, 1500 grains", "drawn_170": "randomised, 170 landings", "drawn_700": "randomised, 700 landings",
-}  # fmt: skip
-INPUTS = {
-    "grain.restitution": "grain restitution", "grain.friction": "friction", "lander.restitution": "lander restitution",
-    "grain.young_modulus": "Young's modulus", "grain.poisson_ratio": "Poisson's ratio",
 }  # fmt: skip
 OUTCOMES = {
     "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
@@ -59,17 +55,11 @@ CHANGES = {
 FILES = {"paper": "scenarios/paper.toml"} | {
     name: f"validation/studies/{name}.toml" for name in ("drawn_170", "drawn_700")
 }
-Entry = dict[str, Any]
 
 
 def kept(name: str) -> Entry:
-    """The results of a study that the repository keeps, as `told` of paper_study.py has them."""
-    found: Entry = read_document(SHOWCASE / name / "summary.json")["results"]
-    if "designs" in found:
-        outcomes = {design: runs["outcomes"] for design, runs in found["designs"].items()}
-    else:
-        outcomes = found["runs"]["outcomes"]
-    return found | {"samples": spread_of(found), "outcomes": outcomes}
+    """The results of a study that the repository keeps."""
+    return told(read_document(SHOWCASE / name / "summary.json")["results"])
 
 
 def entries(kind: str) -> list[Entry]:
@@ -87,21 +77,13 @@ def share(one: Entry) -> tuple[float, float, float]:
     return 100.0 * returns["share"], 100.0 * low, 100.0 * high
 
 
-def within(part: dict[str, float]) -> float:
-    """A fraction of a variance as it can be: an estimate may come out a little below 0 or above 1."""
-    return min(max(part["share"], 0.0), 1.0)
-
-
 def drivers(one: Entry) -> str:
     """Return the origin of the variance of the rebound speed, the largest first."""
     if "screening" in one:
         total = one["screening"]["sobol_total"][SPEED]
         return "; ".join(f"{INPUTS[name]} {total[name]:.2f}" for name in sorted(total, key=lambda key: -total[key])[:3])
-    words = {"soil": "soil", "bed": "bed", "place_and_attitude": "everything else"}
-    parts = {word: one["variance_shares"][SPEED][part] for part, word in words.items()}
-    return "; ".join(
-        f"{word} {within(part):.2f} ({part['lower']:.2f} to {part['upper']:.2f})" for word, part in parts.items()
-    )
+    parts = one["variance_shares"][SPEED]
+    return "; ".join(f"{word} {share_words(parts[name])}" for name, word in PARTS.items() if parts.get(name))
 
 
 def every_study() -> Iterator[tuple[str, Entry]]:
@@ -257,9 +239,7 @@ def time_table() -> str:
 
 
 # Pictures of the kept study that the page shows: a page can show none from outside docs/.
-SHOWN = {
-    "landing/landing.png": "landing", "figures/figure_6_outputs.png": "outputs", "figures/figure_7_map.png": "map",
-}  # fmt: skip
+SHOWN = {"landing": "landing/landing.png", "outputs": "figures/*_outputs.png", "map": "figures/*_map.png"}
 
 
 def head() -> dict[str, object]:
@@ -276,8 +256,8 @@ def head() -> dict[str, object]:
 
 def main() -> None:
     draw_answers()
-    for source, name in SHOWN.items():
-        shutil.copy(SHOWCASE / "paper" / source, PAGES / f"paper_study_{name}.png")
+    for name, source in SHOWN.items():
+        shutil.copy(next((SHOWCASE / "paper").glob(source)), PAGES / f"paper_study_{name}.png")
     write_page(
         "paper_study", **head(), answers=answer_table(), drivers=driver_table(), errors=error_table(),
         fits=fit_table(), numerics=numerics_table(), outcomes=outcome_table(), grains=grain_size_table(),

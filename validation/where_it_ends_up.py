@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from hard_ground import HardGround
-from lithobrake.report.pages.study_page import study_content
 
 import lithobrake
 from lithobrake.report.figures.style import figure_style
+from lithobrake.report.pages.study_page import study_content
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.page_data import page_results
 from lithobrake.results.study_files import json_values

@@ -64,7 +64,7 @@ FLIGHT_PARTS = (
     "vocabulary/known_bodies.py", "vocabulary/quantities.py",
 )  # fmt: skip
 JOURNEY_PARTS = (
-    "pipeline/journeys/campaign.py", "pipeline/journeys/landers.py", "pipeline/journeys/touchdown.py",
+    "pipeline/journeys/campaign.py", "pipeline/journeys/landers.py",
     "pipeline/journeys/first_arrivals.py", "pipeline/journeys/simulated_touchdowns.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (

@@ -87,7 +87,8 @@ def test_the_count_of_agreements_is_that_of_the_page() -> None:
 def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
     folder = ROOT / "showcase" / study
     results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
-    designs = results.get("designs") or {"drawn": results["runs"]}
+    analysis = results["expansion"]
+    designs = {"drawn": results["runs"]} if analysis is None else analysis["designs"]
     for name, design in designs.items():
         with (folder / "runs" / f"{name}.csv").open(newline="", encoding="utf-8") as file:
             outcomes = Counter(row["outcome"] for row in csv.DictReader(file))

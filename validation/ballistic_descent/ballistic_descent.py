@@ -15,10 +15,12 @@ from descents import Descents, Floats, back_in_time, balls, radius
 from soil import RecordedSoil
 
 import lithobrake
-from lithobrake.smallbody import Body, Bounce, HardSurface, Launch, hop
+from lithobrake.smallbody import Body, Bounce, HardSurface
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "pipeline" / "journeys"))
 from harness import SCENARIOS, Row, add_row, command_line, origin, read_rows, timed, write_document
+from plain_landers import hop
 
 HERE = Path(__file__).parent
 TABLE = "ballistic_descent.csv"
@@ -56,11 +58,10 @@ def shares(body: Body, descents: Descents, bounce: Bounce) -> tuple[Floats, Floa
     """
     states, is_outside = launches(body, descents)
     place, velocity = states[is_outside, :3], states[is_outside, 3:]
-    journeys = hop(body, Launch(place, velocity), bounce, DURATION, friction=FRICTION, gravity="table", seed=SEED)
-    # What hits the primary without having bounced or slid before has not met the moon.
-    past = (journeys.status == "partner") & (journeys.bounce_count == 0) & (journeys.slid_time == 0.0)
+    landers, _ = hop(body, place, velocity, bounce, duration=DURATION, friction=FRICTION, gravity="table")
     both = np.zeros((2, len(states)))
-    both[:, is_outside] = np.isfinite(journeys.impact_speed) & ~past, journeys.status == "settled"
+    # The release counts as the first touchdown of each.
+    both[:, is_outside] = landers.touchdowns > 1, landers.end == "at_rest"
     touched, rested = both.reshape(2, -1, LANDERS).mean(axis=2)
     return touched, rested
 

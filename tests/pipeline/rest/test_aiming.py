@@ -116,7 +116,7 @@ def test_ways_over_the_ground_are_arcs() -> None:
     ({"grid": {"delivery.sped": [0.1]}}, r'aim\.grid\."delivery\.sped" is no aim; .* did you mean delivery\.speed'),
     ({"grid": {"delivery.speed": [0.1, 0.9]}}, r"ascending values from 0\.005 to 0\.4"),
     ({"grid": {"delivery.speed": [0.2, 0.1]}}, "ascending values"),
-    ({"within": ["incidence_deg"]}, r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, settled'),
+    ({"within": ["incidence_deg"]}, r'aim\.within has "incidence_deg"; allowed: one of speed, incidence_deg, at_rest'),
     ({"within": ["latitude_deg < 3"]}, "allowed: one of speed, incidence_deg"),
     ({"grid": {}}, r"aim\.within is given without aim\.grid"),
     ({"grid": {"delivery.speed": np.linspace(0.01, 0.4, 501).tolist()}}, "at most 3 and 500"),
