@@ -1,5 +1,11 @@
 from .body import Body as Body
 from .body import Partner as Partner
+from .body_rotation import PartnerPlace as PartnerPlace
+from .body_rotation import SpinState as SpinState
+from .body_rotation import read_partner as read_partner
+from .body_rotation import read_places as read_places
+from .body_rotation import read_spin as read_spin
+from .body_rotation import rotation_history as rotation_history
 from .bounce import Bounce as Bounce
 from .bounce import HardSurface as HardSurface
 from .bounce import Impacts as Impacts
@@ -15,12 +21,6 @@ from .hopping import hop as hop
 from .landers import Landers as Landers
 from .landers import follow as follow
 from .rotation import AttitudeHistory as AttitudeHistory
-from .body_rotation import PartnerPlace as PartnerPlace
-from .body_rotation import SpinState as SpinState
-from .body_rotation import read_partner as read_partner
-from .body_rotation import read_places as read_places
-from .body_rotation import read_spin as read_spin
-from .body_rotation import rotation_history as rotation_history
 from .rough_ground import incidence_on as incidence_on
 from .rough_ground import met_normals as met_normals
 from .shape import Shape as Shape
