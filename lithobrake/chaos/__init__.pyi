@@ -16,7 +16,6 @@ from .design import d_optimal as d_optimal
 from .design import fekete as fekete
 from .design import latin_hypercube as latin_hypercube
 from .design import sobol_sequence as sobol_sequence
-from .design import tensor_grid as tensor_grid
 from .distributions import Beta as Beta
 from .distributions import Distribution as Distribution
 from .distributions import Exponential as Exponential
@@ -26,6 +25,8 @@ from .distributions import LogUniform as LogUniform
 from .distributions import Normal as Normal
 from .distributions import Uniform as Uniform
 from .fitting import fit as fit
+from .grids import smolyak as smolyak
+from .grids import tensor_grid as tensor_grid
 from .numerical_distributions import Empirical as Empirical
 from .numerical_distributions import TruncatedNormal as TruncatedNormal
 from .numerical_distributions import distribution as distribution
@@ -39,7 +40,6 @@ from .postprocessing import sampled_outputs as sampled_outputs
 from .postprocessing import shape_moments as shape_moments
 from .scores import absolute_percentage_error as absolute_percentage_error
 from .scores import replicates as replicates
-from .smolyak_grid import smolyak as smolyak
 from .stochastic import StochasticSurrogate as StochasticSurrogate
 from .stochastic import fit_stochastic as fit_stochastic
 from .stochastic import joint_scatter as joint_scatter
