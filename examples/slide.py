@@ -1,4 +1,4 @@
-"""Draw a slide of a study of journeys: its title, main results and map.
+"""Draw a slide of a study that follows landers to rest: its title, main results and map.
 
 python examples/slide.py runs/hera
 

@@ -20,7 +20,7 @@ LOOKED_FOR = {
     "gjk": "dem/narrow_phase", "penetration": "dem/narrow_phase", "hertz": "dem/law", "coulomb": "dem/law",
     "restitution": "dem/law", "tangential_spring": "dem/law", "rolling_resistance": "dem/law",
     "time_step": "dem/stepping", "stability": "dem/stepping", "agenda": "dem/local_stepping",
-    "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "smolyak": "chaos",
+    "settling": "touchdown", "outcome_judge": "touchdown", "bootstrap": "chaos", "sobol_indices": "chaos",
     "polyhedron_gravity": "smallbody", "impact_search": "smallbody", "ledger": "campaign", "refusals": "study",
     "captions": "statements",
 }  # fmt: skip

@@ -128,12 +128,12 @@ def seed_table(studies: list[Entry]) -> str:
             known.append((places[seeds[0]], places[seeds[1]]))
         cells = [cell for two in known for cell in (f"{_interval(two[0])}; {_interval(two[1])}", yes(holds(*two)))]
         lines.append([f"{seeds[0]}, {seeds[1]}", *cells, *[""] * (4 - len(cells))])
-    heads = (f"{method} method: return fraction [%]" for method in ("drawn", "paper"))
+    heads = (f"{name}: return fraction [%]" for name in ("randomised landings", "expansion on one bed"))
     return table(["seeds", *(one for head in heads for one in (head, "agree"))], lines)
 
 
 def place_table(studies: list[Entry]) -> str:
-    """A line a study of the paper method."""
+    """A line a study by an expansion on one bed."""
     lines = []
     for one in of_kind(studies, "one place"):
         name, share = max(one["sobol_first"].items(), key=lambda item: item[1])
@@ -169,12 +169,12 @@ def share_words(part: dict[str, float] | None) -> str:
 def answer(studies: list[Entry]) -> str:
     """Return how far studies of both methods are apart, and how many pairs agree."""
     sentences = []
-    for kind, name in (("draws", "drawn"), ("one place", "paper")):
+    for kind, name in (("draws", "of randomised landings"), ("one place", "by an expansion on one bed")):
         found = of_kind(studies, kind)
         shares = [100.0 * one["returns"]["share"] for one in found]
         agree = [holds(*pair) for pair in pairs(found)]
         sentences.append(
-            f"{len(found)} studies of the {name} method give return fractions of {min(shares):.0f} to "
+            f"{len(found)} studies {name} give return fractions of {min(shares):.0f} to "
             f"{max(shares):.0f} %, and {sum(agree)} of {len(agree)} pairs agree."
         )
     return " ".join(sentences)

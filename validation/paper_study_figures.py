@@ -1,4 +1,4 @@
-"""Draw and tabulate the paper's study, the drawn studies, and what both depend on: paper_study.md.
+"""Draw and tabulate the paper's study, randomised landings, and what both depend on: paper_study.md.
 
     python validation/paper_study_figures.py
 
@@ -32,7 +32,9 @@ UNITS = {SPEED: (100.0, "cm/s"), ELEVATION: (math.degrees(1.0), "deg"), SPIN: (1
 HEADS = [f"{SYMBOLS[output]} [{UNITS[output][1]}]" for output in OUTPUTS]
 PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure 5
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
-METHODS = {"paper": "paper method, 1500 grains", "drawn_170": "drawn, 170 landings", "drawn_700": "drawn, 700 landings"}
+METHODS = {
+    "paper": "expansion, 1500 grains", "drawn_170": "randomised, 170 landings", "drawn_700": "randomised, 700 landings",
+}  # fmt: skip
 OUTCOMES = {
     "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
 }  # fmt: skip
@@ -87,7 +89,7 @@ def drivers(one: Entry) -> str:
 def every_study() -> Iterator[tuple[str, Entry]]:
     """Return all studies of the same question."""
     yield METHODS["paper"], kept("paper")
-    yield from ((f"paper method, {one['name']}", one) for one in entries("other beds"))
+    yield from ((f"expansion, {one['name']}", one) for one in entries("other beds"))
     yield from ((METHODS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
 
 

@@ -1,8 +1,7 @@
 """Designs by count, by grid or for a basis, and points of inputs that depend on each other."""
 
 import warnings
-from collections.abc import Mapping, Sequence
-from itertools import product
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,25 +21,6 @@ MOST_SOBOL = 2**30
 # Gauss nodes that stand for the density of one input when points are drawn from it times a squared polynomial.
 RULE_NODES = 200
 CANDIDATES_PER_TERM = 15
-
-
-def tensor_grid(inputs: Mapping[str, Distribution], level: int | Sequence[int]) -> Array:
-    """Full tensor of the Gauss nodes of each input, level + 1 in each, physical units, [node_count, input_count].
-
-    level: one number, or one for each input. The grid determines all polynomials of degree level in each input.
-    Raises ValueError for a level below 0 or more than ten million nodes.
-    """
-    distributions = checked_inputs(inputs)
-    given = list(level) if isinstance(level, Sequence | np.ndarray) else [level] * len(distributions)
-    levels = [whole_number("level", one, 0) for one in given]
-    if len(levels) != len(distributions):
-        raise ValueError(f"level has {len(levels)} entries, but must be one number or one for each input")
-    if np.prod([one + 1.0 for one in levels]) > 1e7:
-        raise ValueError(f"a tensor grid of level {level} in {len(levels)} inputs has over 1e7 nodes: use smolyak")
-    nodes = []
-    for entry, one in zip(distributions.values(), levels, strict=True):
-        nodes.append(entry.physical(entry.recurrence(int(one) + 1).gauss_rule()[0]))
-    return np.array(list(product(*nodes)), dtype=float)
 
 
 def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0, *, skip: int = 0) -> Array:

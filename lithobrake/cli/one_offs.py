@@ -215,13 +215,13 @@ def infer(
 
 
 study_command("bed", "Pour and settle the beds, and simulate a preview landing.", arguments.EXPERT, until="landing")
-study_command("screen", "Paper method: run the screening design and fit an expansion in all inputs.", arguments.EXPERT)
+study_command("screen", "Expansion: run the screening design and fit an expansion in all inputs.", arguments.EXPERT)
+study_command("refine", "Expansion: run the refined design and fit an expansion in the kept inputs.", arguments.EXPERT)
+study_command("test", "Expansion: run the test points and score the expansions on them.", arguments.EXPERT)
 study_command(
-    "refine", "Paper method: run the refined design and fit an expansion in the kept inputs.", arguments.EXPERT
-)
-study_command("test", "Paper method: run the test points and score the expansions on them.", arguments.EXPERT)
-study_command(
-    "sample", "Take Monte Carlo samples of the emulator (paper method: of the refined expansion).", arguments.EXPERT
+    "sample", "Sample the first touchdown by the refined expansion, or else by the emulator.", arguments.EXPERT
 )
 study_command("fly", "Fly the samples that leave the surface to their next impact.", arguments.EXPERT)
-study_command("rest", "Follow samples from bounce to bounce until they come to rest.", arguments.EXPERT)
+study_command(
+    "hard-ground", "Follow landers on hard ground until they come to rest.", arguments.EXPERT, until="hard_ground"
+)

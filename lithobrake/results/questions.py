@@ -90,7 +90,7 @@ class AimOnGround:
     """A delivery option on one ground: bounds over refits on soil, by the number of landers on hard ground."""
 
     settled: Share
-    """landers at rest where the ground holds them, after all bounces"""
+    """landers at rest where the ground holds them"""
     missing: float
     """share of the landers with an unknown outcome"""
     distance_p95: Number | None

@@ -28,7 +28,7 @@ _TWICE = ("input:journey", "input:touchdown", "key", "outcome")
 SUMMARY_FORMAT = 4
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
-# Files of what samples of an emulator or an expansion came to, which a study of journeys has none of.
+# Files of what samples of an emulator or an expansion came to, which a study without samples has none of.
 OF_SAMPLES = (
     file_names.SAMPLES_FILE,
     file_names.SAMPLE_FLIGHTS_FILE,

@@ -103,7 +103,7 @@ class StudyTables(StudyFiles):
 
     @cached_property
     def run_flights(self) -> "Table":
-        """How the flights of each run of a drawn study ended, from many sites, and which share of them returns."""
+        """How the flights of each first touchdown ended, from many sites, and which share of them returns."""
         return self._table("run", self._rows("run_flights.csv", ("run", *_RUN)), ("run", *_RUN), RUN | FLIGHT)
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +36,36 @@ class Launch:
     captured: ArrayLike = False
     mass: ArrayLike | None = None
     spin_period: ArrayLike | None = None
+
+    def landers(self, body: Body, **following: Any) -> Landers:
+        """The landers at their start; following: duration, most, gravity and threads of `Landers`."""
+        position = np.array(np.atleast_2d(numbers("launch: position", self.position)))
+        count = len(position)
+        velocity, period = per_lander(count, "velocity", self.velocity, 3), self.spin_period
+        return Landers(
+            body=body,
+            start=per_lander(count, "time", self.time),
+            mass=per_lander(count, "mass", body.mass if self.mass is None else self.mass),
+            spin_period=per_lander(count, "spin_period", body.spin_period if period is None else period),
+            position=position,
+            axes=impact_frame(velocity, body.shape.normals[body.shape.nearest(position)[1]]),
+            speed=np.zeros(count),
+            incidence_deg=np.zeros(count),
+            mean_incidence_deg=np.zeros(count),
+            spin=np.zeros((count, 3)),
+            **following,
+        )
+
+
+def per_lander(count: int, name: str, given: ArrayLike, *shape: int) -> Array:
+    """What is given for each lander or for all, [count, *shape]. Raises ValueError for an array of another shape."""
+    array = numbers(f"launch: {name}", given)
+    if array.shape not in (shape, (count, *shape)):
+        raise ValueError(
+            f"launch: {name} has shape {array.shape} for {count} landers; it must be {shape}, for all of them, "
+            f"or {(count, *shape)}."
+        )
+    return np.array(np.broadcast_to(array, (count, *shape)))
 
 
 @dataclass(frozen=True)
@@ -92,39 +123,11 @@ def hop(
     seed, bounce_limit = whole_number("seed", seed, 0), whole_number("bounce_limit", bounce_limit, 0)
     if not (numbers("friction", friction) >= 0.0).all():
         raise ValueError(f"friction is {friction!r}; it must be at least 0 (infinite: a lander rests where it is).")
-    position = np.array(np.atleast_2d(numbers("launch: position", launch.position)))
-    count = len(position)
-
-    def each(name: str, given: ArrayLike, *shape: int) -> Array:
-        array = numbers(f"launch: {name}", given)
-        if array.shape not in (shape, (count, *shape)):
-            raise ValueError(
-                f"launch: {name} has shape {array.shape} for {count} landers; it must be {shape}, for all of them, "
-                f"or {(count, *shape)}."
-            )
-        return np.array(np.broadcast_to(array, (count, *shape)))
-
-    time, velocity = each("time", launch.time), each("velocity", launch.velocity, 3)
-    period = each("spin_period", body.spin_period if launch.spin_period is None else launch.spin_period)
-    up = body.shape.normals[body.shape.nearest(position)[1]]
-    landers = Landers(
-        body=body,
-        duration=duration,
-        gravity=gravity,
-        most=bounce_limit + 1,
-        threads=threads,
-        start=time,
-        mass=each("mass", body.mass if launch.mass is None else launch.mass),
-        spin_period=period,
-        position=position,
-        axes=impact_frame(velocity, up),
-        speed=np.zeros(count),
-        incidence_deg=np.zeros(count),
-        mean_incidence_deg=np.zeros(count),
-        spin=np.zeros((count, 3)),
-    )
-    spin = each("spin", launch.spin, 3) - ground_spin(body.rotation, time, period)
+    landers = launch.landers(body, duration=duration, gravity=gravity, most=bounce_limit + 1, threads=threads)
+    count = len(landers)
+    spin = per_lander(count, "spin", launch.spin, 3) - ground_spin(body.rotation, landers.start, landers.spin_period)
     captured = np.broadcast_to(np.asarray(launch.captured, dtype=bool), count)
+    velocity = per_lander(count, "velocity", launch.velocity, 3)
     thrown = Thrown(Bounces(bounce, seed, "bounces"), velocity, spin, captured)
-    sliding = Sliding(thrown, body, each("friction", friction), rolls)
+    sliding = Sliding(thrown, body, per_lander(count, "friction", friction), rolls)
     return follow(landers, sliding, None if progress is None else lambda ended: progress(ended / max(count, 1)))

@@ -189,10 +189,10 @@ class SoilGrainSection(_SoilProperties):
 
 
 class SoilSection(Section):
-    """The soil of a region of the body; with [journey] only. There may be any number of regions, each in a table
-    [soil.NAME] of its own. A region is the ground within all of its bounds. Where regions overlap, the first in the
-    file applies; where there is none, [grain] applies. All beds are those of [bed] and [grain]: a touchdown in the
-    region uses one of them with the region's materials. The soil of each region is sampled once for each lander."""
+    """The soil of a region of the body. There may be any number of regions, each in a table [soil.NAME] of its own. A
+    region is the ground within all of its bounds. Where regions overlap, the first in the file applies; where there is
+    none, [grain] applies. All beds are those of [bed] and [grain]: a touchdown in the region uses one of them with the
+    region's materials. The soil of each region is sampled once for each lander."""
 
     latitude_deg: Annotated[Ends, Numbers("deg", at_least=-90, at_most=90, count=2, ascending=True)] | None = None
     """Smallest and largest planetocentric latitude. If this or a bound below is absent, it does not limit the

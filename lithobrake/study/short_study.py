@@ -106,7 +106,7 @@ def known_lander(name: str) -> KnownLander:
 
 
 def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float], shape: str | None = None) -> str:
-    """The text of a study of journeys that runs.
+    """The text of a study that runs and follows landers to rest.
 
     place: latitude and longitude of the aim point [deg]. shape: path of a mesh from the study file, instead of a shape
     that the package has. Raises ValueError where there is neither.

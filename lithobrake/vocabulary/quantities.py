@@ -13,7 +13,7 @@ OUTPUTS: tuple[OutputName, ...] = get_args(OutputName)
 # The designs of a study in two stages, in the order in which their runs are made, and of a drawn one.
 PAPER_DESIGNS = ("screening", "refined", "test_kept", "test_all")
 DRAWN_DESIGNS = ("drawn", "soil_pairs", "twins")
-# Every touchdown of the journeys of a drawn study; the first of each are also its drawn runs.
+# Every touchdown of the journeys of a study; the first of each are also its drawn runs.
 JOURNEY_DESIGN = "touchdowns"
 # The unit of a number that has none, where a header has to say so.
 PURE = "-"

@@ -179,7 +179,8 @@ def test_every_section_has_a_row_for_each_of_its_keys() -> None:
 @pytest.mark.parametrize(("section", "key", "cells"), [
     ("grain", "poisson_ratio", "|  | [0, 0.5) ± | needed |"),
     ("grain", "young_modulus", "| Pa | > 0 ± | needed |"),
-    ("bed", "sides", '| `"walls"`, `"periodic"` | `"walls"` |'),
+    ("bed", "sides", '| `"walls"`, `"periodic"` | `"periodic"` |'),
+    ("surface", "gravity", '| m/s2 | any, `"site"` ± | `"site"` |'),
     ("bed", "boulders.coverage", "|  | (0, 0.3] | needed |"),
     ("flight", "duration", "| s | > 0 | `43200.0` |"),
     ("campaign", "memory_limit", "| bytes | > 0 |  |"),

@@ -69,7 +69,8 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
         return EmulatedJourneys(None, 0, 0, most, 0.0, {}, None, None, ""), plain
     ends = _fresh_shares(job.study, table, fresh)
     control, shares = _narrowed(table, plain, fresh, own)
-    agrees = _agrees(plain, ends)
+    # Landers of the emulator go on to rest, whatever the landings are followed for.
+    agrees = _agrees(plain, ends) if job.study.journey.touchdowns is None else None
     unknown = float(np.mean(fresh.end == UNKNOWN_END))
     said = emulated_statement(ends, agrees, unknown)
     counts = len(fresh.end), int(fresh.landings.sum()), most

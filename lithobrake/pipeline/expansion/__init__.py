@@ -1,1 +1,1 @@
-"""The method of the paper: polynomial chaos expansions of the first touchdown, and samples by them."""
+"""Polynomial chaos expansions of the first touchdown, and samples by them. Source: [Landings-PCE]."""

@@ -1,1 +1,1 @@
-"""Studies of first bounces: the emulator of drawn runs, and journeys that go on by it."""
+"""The emulator of the first touchdown, and hard ground that is equivalent to the soil."""

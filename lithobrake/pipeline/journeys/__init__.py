@@ -1,1 +1,1 @@
-"""Journeys: each lander is followed from its delivery to rest, with a simulated landing at every impact."""
+"""Landers that are followed from delivery to their ends, and what answers their touchdowns."""

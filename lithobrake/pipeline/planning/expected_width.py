@@ -191,7 +191,7 @@ def _points(share: float) -> str:
 
 @dataclass(frozen=True)
 class RunsABed:
-    """Runs on each bed of a drawn study.
+    """Runs on each bed.
 
     runs          what they are, one and more
     count         on each bed, in the mean
@@ -222,7 +222,7 @@ class RunsABed:
 
 
 def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
-    """Those of a drawn study on several beds of its own; None for any other. ended: runs of this study that have."""
+    """Those of landers on several beds; None where there are none. ended: runs of this study that have."""
     if not study.design.run_count or study.bed_count == 1 or soil is None:
         return None
     pace = machine_pace() or 1.0

@@ -42,7 +42,7 @@ class Plan:
     bytes           of all files when finished, by what they hold
     free_bytes      where the folder is
     warnings        in sentences, the most important first
-    runs_a_bed      of a drawn study, beside the number that is best for the time; None for others
+    runs_a_bed      and the number that is best for the time; None without landers on several beds
     grains          of the beds; None where all have one size
     boulders        of the beds; None where there are none
     tile            of ground that repeats; None where it does not

@@ -209,7 +209,7 @@ def _reach(value: Scalar) -> tuple[float, float]:
 # Incidence from the normal [deg], and share of the landings that left the bed laterally: 1 of 64 and 57 of 112 with the
 # recipe of scenarios/first_bounce.toml (0.7 m wide, a box with a bounding radius of 0.13 m) at 15 and 75 deg,
 # two thirds of its impacts above 80 deg; 23 of 870 of drawn_700.toml and drawn_170.toml in validation/studies (2.4 m,
-# 0.22 m) at 30 deg. A study of first bounces over 0 to 88 deg lost 66 of 300; this table gives 24 %.
+# 0.22 m) at 30 deg. First touchdowns over 0 to 88 deg lost 66 of 300; this table gives 24 %.
 MEASURED = ((15.0, 1 / 64), (30.0, 23 / 870), (75.0, 57 / 112), (85.0, 2 / 3))
 # Half the width of the bed over the bounding radius of the lander, in those at 75 deg and above.
 MEASURED_ROOM = 2.6

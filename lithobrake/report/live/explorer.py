@@ -223,13 +223,18 @@ def touchdown_sections(data: PageData) -> list[LiveSection]:
         "action": "come to rest at this touchdown",
         "reach": explorer.interval_reach if over_beds else None,
     }
-    note = f"{_what(fitted, beds)} {_law(explorer)} {emulator_bands(explorer, over_beds)} "
+    note = f"{_what(explorer, fitted, beds)} {_law(explorer)} {emulator_bands(explorer, over_beds)} "
     return [explorer_section("touchdown-explorer", "Explorer of any touchdown", note, facts, explorer)]
 
 
-def _what(fitted: Table, beds: int) -> str:
+def _of_touchdown(explorer: ExplorerTables) -> list[str]:
+    """The inputs that differ from touchdown to touchdown; one that does not vary in the study is none."""
+    return [name for name in OF_TOUCHDOWN if name in explorer.input_names]
+
+
+def _what(explorer: ExplorerTables, fitted: Table, beds: int) -> str:
     """What is evaluated, and over which range it is known."""
-    ranges = listing([_range(fitted, name) for name in OF_TOUCHDOWN])
+    ranges = listing([_range(fitted, name) for name in _of_touchdown(explorer)])
     return (
         "Any touchdown of a journey: move the two ends of an input range, and this page evaluates the emulator of all "
         "touchdowns over it. The emulator was fitted to "
@@ -246,13 +251,16 @@ def _range(fitted: Table, name: str) -> str:
 
 def _law(explorer: ExplorerTables) -> str:
     """What the inputs are drawn from, and what no slider moves."""
-    even = listing([input_words(name) for name in OF_TOUCHDOWN if name != IMPACT_SPEED])
-    attitude = "Attitudes are uniform over all rotations, or have one side toward the ground; s"
-    attitude = attitude if explorer.attitude else "S"
-    named = {*OF_TOUCHDOWN, *explorer.attitude_inputs}
-    others = "Soil and lander follow their input distributions; " if set(explorer.input_names) - named else ""
-    words = (
-        f"{others}the logarithm of {input_words(IMPACT_SPEED)}, {even} are uniform over their ranges, independently "
-        f"of the number of touchdowns there. {attitude}pin and bed are part of the scatter."
-    )
-    return f"{words[:1].upper()}{words[1:]}"
+    moved = _of_touchdown(explorer)
+    even = listing([f"the logarithm of {input_words(name)}" if name == IMPACT_SPEED else input_words(name)
+                    for name in moved])  # fmt: skip
+    uniform = "is uniform over its range" if len(moved) == 1 else "are uniform over their ranges"
+    others = set(explorer.input_names) - {*OF_TOUCHDOWN, *explorer.attitude_inputs}
+    words = [
+        "soil and lander follow their input distributions" if others else "",
+        f"{even} {uniform}, independently of the number of touchdowns there" if moved else "",
+    ]
+    attitude = "attitudes are uniform over all rotations, or have one side toward the ground"
+    words = ["; ".join(filter(None, words)), f"{attitude}; spin and bed are part of the scatter" if explorer.attitude
+             else "spin and bed are part of the scatter"]  # fmt: skip
+    return " ".join(f"{one[:1].upper()}{one[1:]}." for one in words if one)

@@ -24,7 +24,6 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.results import StudyResults
-from lithobrake.results.summary import DrawnResults
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.quantities import ELSEWHERE
@@ -206,7 +205,6 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
 
 def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
     results = made.results
-    assert isinstance(results, DrawnResults)
     found, table = results.soils, made.touchdowns
     assert list(found) == ["sink", "strip", ELSEWHERE]
     assert sum(one.touchdowns for one in found.values()) == table.row_count
@@ -283,18 +281,7 @@ def test_regions_without_ground_are_refused_before_anything_runs(body_file: Path
     assert not (tmp_path / "out").exists()
 
 
-def test_what_knows_one_soil_is_refused(body_file: Path, tmp_path: Path) -> None:
-    given = tables(body_file, {"sink": SINK})
-    del given["journey"]
-    with pytest.raises(StudyError, match=r"soil\.sink is .* and the study has no \[journey\]"):
-        StudySource.of_tables(given | {"surface": {"gravity": 5e-5}})
-    with pytest.raises(StudyError, match=r"^study\.toml: aim\.grid asks the emulator of the touchdowns"):
-        read(body_file, {"sink": SINK}, aim={"grid": {"delivery.speed": [0.03, 0.04]}})
-    with pytest.raises(StudyError, match=r"journey\.emulated_count = 100 asks the emulator"):
-        read(body_file, {"sink": SINK}, journey={"emulated_count": 100})
-    source = StudySource.of_tables(tables(body_file, {"sink": SINK}), function_identity(touchdown))
-    with pytest.raises(ValueError, match=r"sites follows landers by the emulator .* \[soil\]"):
-        map_sites(source, tmp_path / "out", cell_count=24, lander_count=40, worker_count=1, model=touchdown)
+def test_one_landing_names_no_grains_of_a_soil_by_region(body_file: Path) -> None:
     with pytest.raises(ValueError, match=r"--set names grain\.friction; allowed: no key of grain"):
         landing_inputs(read(body_file, {"sink": SINK}), ["grain.friction=0.4"])
 
@@ -311,7 +298,6 @@ def test_status_counts_touchdowns_on_every_soil(made: StudyResults, tmp_path: Pa
 
 def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:
     results = made.results
-    assert isinstance(results, DrawnResults)
     assert "[soil] gives regions their own" in results.emulated.why
 
 
