@@ -47,7 +47,7 @@ TABLES: dict[str, Any] = {
                  "speed": {"distribution": "uniform", "lower": 0.02, "upper": 0.06},
                  "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
                  "north_error": {"distribution": "uniform", "lower": -60.0, "upper": 60.0}},
-    "journey": {"count": COUNT, "duration": 20000.0}, "flight": {"gravity": "exact"},
+    "journey": {"count": COUNT, "duration": 20000.0, "emulated_count": 200}, "flight": {"gravity": "exact"},
 }  # fmt: skip
 
 
@@ -296,9 +296,14 @@ def test_status_counts_touchdowns_on_every_soil(made: StudyResults, tmp_path: Pa
     assert (found.others, found.journeys.touchdowns) == (0, made.touchdowns.row_count)
 
 
-def test_there_is_no_emulator_and_the_summary_says_why(made: StudyResults) -> None:
-    results = made.results
-    assert "[soil] gives regions their own" in results.emulated.why
+def test_landers_of_the_emulator_meet_the_soils_as_those_of_the_landings_do(made: StudyResults) -> None:
+    emulated = made.results.emulated
+    assert emulated is not None
+    assert (emulated.why, emulated.count) == (None, 200)
+    # All journeys of the landings end at rest.
+    assert emulated.ends["at_rest"].share.value > 0.95
+    assert emulated.unknown < 0.05
+    assert emulated.agrees
 
 
 def test_the_soil_of_every_region_is_an_input_of_the_scatter(body_file: Path) -> None:
