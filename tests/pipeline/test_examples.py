@@ -32,13 +32,13 @@ def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_study_with_a_program_goes_to_its_report(plate: Path) -> None:
-    results = open_study(plate).summary["results"]
-    assert (results["beds"], results["designs"]["test_all"]["outcomes"]) == ([], {"clear": 10})
-    assert results["scores"]["test_all"]["speed_out"]["q2"] > 0.9
-    assert "solver.inputs.plate_tilt_deg" in results["screening"]["inputs"]
-    assert results["rest"]["soil"] is None
-    assert "impact.speed is no uncertain input" in results["rest"]["why_no_soil"]
-    assert results["rest"]["hard"]["sample_count"] == 200
+    results = open_study(plate).results
+    analysis, hard_ground = results.expansion, results.hard_ground
+    assert (results.beds, analysis.designs["test_all"].outcomes) == ((), {"clear": 10})
+    assert analysis.scores["test_all"]["speed_out"].q2 > 0.9
+    assert "solver.inputs.plate_tilt_deg" in analysis.screening.inputs
+    # One speed of all impacts: the expansion knows no later ones.
+    assert {ground: one.count for ground, one in hard_ground.items()} == {"hard": 200}
     page = (plate / "report" / "index.html").read_text()
     assert "The touchdowns were made by a program of the study&#x27;s author: python3 ball_on_plate.py" in page
 
