@@ -88,9 +88,8 @@ def main() -> None:
     log = given.log.read_text()
     made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
     if earlier:
-        made["landings"] = earlier.get("landings") or {
-            key: earlier[key] for key in ("date", "command", "load", "wall_s", "cpu_s")
-        }
+        keys = ("date", "machine", "command", "load", "wall_s", "cpu_s")
+        made["landings"] = earlier.get("landings") or {key: earlier[key] for key in keys}
     write_document(out / "origin.json", made)
 
 
