@@ -97,6 +97,7 @@ def scope(study: Study) -> Scope:
         flight_time=study.flight.duration,
         journey_time=study.journey.duration,
         to_rest=asks_rest(study),
+        touchdowns=study.journey.touchdowns,
     )
 
 
