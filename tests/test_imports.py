@@ -43,8 +43,8 @@ WITHOUT_CIRCLES = tuple(part for part in ALLOWED if (PACKAGE / part).is_dir())
 ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
-        *("site", "study_folder", "folder_state", "design", "job", "runs", "samples", "flights", "run_flights"),
-        *("first_bounces", "expansion", "journeys", "sky_at_rest", "answer", "site_grid", "stages", "outdated_files"),
+        *("site", "study_folder", "folder_state", "design", "job", "runs", "first_touchdown"),
+        *("expansion", "journeys", "sky_at_rest", "answer", "site_grid", "stages", "outdated_files"),
         *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "statements": (

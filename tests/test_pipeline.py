@@ -18,8 +18,8 @@ from lithobrake.pipeline.design.arrivals import place_region
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.expansion.expansions import kept_inputs, points
-from lithobrake.pipeline.flights import COLUMNS, starts
-from lithobrake.pipeline.samples import SAMPLE_OUTCOMES, Samples
+from lithobrake.pipeline.first_touchdown.flights import COLUMNS, starts
+from lithobrake.pipeline.first_touchdown.samples import SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.smallbody.bounce import COUNTS, EDGES
 from lithobrake.study import Study, StudyError, check_tables

@@ -47,9 +47,9 @@ from lithobrake.analysis.confidence import answered_runs, bed_components
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_estimates import return_fraction
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_width import expected_correlation, expected_width, law_of_runs
-from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder

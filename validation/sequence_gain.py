@@ -34,7 +34,7 @@ from lithobrake.analysis.confidence import bed_components, numbered_beds, t_quan
 from lithobrake.analysis.share_estimate import standard_error
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
-from lithobrake.pipeline.run_flights import RunFlights
+from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study

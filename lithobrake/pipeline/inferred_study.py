@@ -14,7 +14,7 @@ from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
+from lithobrake.pipeline.first_touchdown.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder

@@ -12,9 +12,9 @@ from lithobrake.analysis import half_width_of, next_run_count
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.first_touchdown.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.outdated_files import stage_keys
-from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.runs.run_table import DesignRuns, file_of
 from lithobrake.pipeline.stages import RUNS

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from lithobrake.files.reading import content_hash, hashed_seed, read_rows
-from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN

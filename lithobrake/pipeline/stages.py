@@ -12,12 +12,12 @@ from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files,
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
 from lithobrake.pipeline.expansion import expansions
 from lithobrake.pipeline.expansion.expansion_samples import draw_samples
-from lithobrake.pipeline.first_bounces import emulator
-from lithobrake.pipeline.flights import PATHS_FILE, flight_dependencies, fly_samples, write_paths
+from lithobrake.pipeline.first_touchdown import emulator
+from lithobrake.pipeline.first_touchdown.flights import PATHS_FILE, flight_dependencies, fly_samples, write_paths
+from lithobrake.pipeline.first_touchdown.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.job import Job, Stage, no_dependencies, same_files
 from lithobrake.pipeline.journeys import delivery_options, emulated_journeys, hard_ground
 from lithobrake.pipeline.journeys.campaign import JOURNEY_FILES, make_journeys
-from lithobrake.pipeline.run_flights import IMPACTS, RUN_FLIGHTS_FILE, fly_runs, run_flight_dependencies
 from lithobrake.pipeline.runs import landings
 from lithobrake.pipeline.runs.beds import pour_beds
 from lithobrake.pipeline.runs.run_table import file_of
@@ -59,19 +59,19 @@ RUN_PARTS = (
     "chaos", "vocabulary/quantities.py", "geometry/attitude.py",
 )  # fmt: skip
 FLIGHT_PARTS = (
-    "pipeline/flights.py", "pipeline/run_flights.py", "pipeline/site.py", "pipeline/samples.py",
-    "pipeline/runs/run_table.py", "smallbody", "geometry", "chaos", "vocabulary/constants.py",
-    "vocabulary/known_bodies.py", "vocabulary/quantities.py",
+    "pipeline/first_touchdown/flights.py", "pipeline/first_touchdown/run_flights.py",
+    "pipeline/first_touchdown/samples.py", "pipeline/site.py", "pipeline/runs/run_table.py", "smallbody", "geometry",
+    "chaos", "vocabulary/constants.py", "vocabulary/known_bodies.py", "vocabulary/quantities.py",
 )  # fmt: skip
 JOURNEY_PARTS = (
     "pipeline/journeys/campaign.py", "pipeline/journeys/landers.py",
     "pipeline/journeys/first_arrivals.py", "pipeline/journeys/simulated_touchdowns.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (
-    "pipeline/first_bounces/emulator.py", "pipeline/samples.py", "pipeline/runs/energy_bound.py", "emulator", "chaos",
-    "analysis", "results/table.py", "vocabulary/quantities.py",
+    "pipeline/first_touchdown/emulator.py", "pipeline/first_touchdown/samples.py", "pipeline/runs/energy_bound.py",
+    "emulator", "chaos", "analysis", "results/table.py", "vocabulary/quantities.py",
 )  # fmt: skip
-EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_bounces", *EMULATOR_PARTS, *FLIGHT_PARTS)
+EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_touchdown", *EMULATOR_PARTS, *FLIGHT_PARTS)
 EXPANSION_PARTS = ("pipeline/expansion", "analysis", "emulator", *RUN_PARTS)
 ANSWER_PARTS = (
     *("pipeline/answer", "pipeline/site.py", "pipeline/journeys", "pipeline/expansion"),

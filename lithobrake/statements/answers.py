@@ -85,7 +85,8 @@ def page_answer(data: "PageData") -> str:
     results = data.results
     if data.to_rest:
         rests = results.ends[JourneyEnd.AT_REST].share
-        return f"{at_rest(rests, data.study['journey']['duration'], level=LEVEL)}."
+        journey = data.study["journey"]
+        return f"{at_rest(rests, journey['duration'], level=LEVEL, touchdowns=journey['touchdowns'])}."
     if data.journeys is None:
         return results.answer[0]
     alone = "other beds, impact points or attitudes would change it"

@@ -46,7 +46,7 @@ class Scope:
 
     has_soil: whether its touchdowns are simulated; one_place: whether all runs have one impact point; has_scatter:
     whether the samples of an expansion have the scatter of the runs; to_rest: whether landers are drawn and followed to
-    rest, and not for their first touchdown alone.
+    rest, and not for their first touchdown alone; touchdowns: for how many at most, None without a limit.
     """
 
     has_soil: bool
@@ -57,6 +57,7 @@ class Scope:
     flight_time: float
     journey_time: float
     to_rest: bool
+    touchdowns: int | None = None
 
     @property
     def where(self) -> str:
@@ -107,10 +108,15 @@ def returning(limit: float, *, holds: bool) -> str:
 
 
 def at_rest(
-    one: Estimate, limit: float, where: str = "", of: str = "landers", level: float | None = None, digits: int = 0
-) -> str:
-    """Which fraction comes to rest within a time [s]; level: of the interval, where it is to be named."""
-    return f"{with_interval(one, digits, level=level)} of the {of} come to rest{where} within {time_limit(limit)}"
+    one: Estimate, limit: float, where: str = "", of: str = "landers", level: float | None = None, digits: int = 0,
+    touchdowns: int | None = None,
+) -> str:  # fmt: skip
+    """Which fraction comes to rest within a time [s], and within a number of touchdowns where that is limited.
+
+    level: of the interval, where it is to be named.
+    """
+    within = f"{counted(touchdowns, 'touchdown')} and {time_limit(limit)}" if touchdowns else time_limit(limit)
+    return f"{with_interval(one, digits, level=level)} of the {of} come to rest{where} within {within}"
 
 
 def assumed_at_rest(least: float, of: str) -> str:
@@ -230,7 +236,8 @@ def _other_ways(
 def journey_ends(scope: Scope, results: "Results") -> list[str]:
     """How many landers come to rest, from how many journeys, and how the others end."""
     rests = results.ends[JourneyEnd.AT_REST].share
-    said = f"{at_rest(rests, scope.journey_time, level=LEVEL)} ({journey_counts(results)}).{_others(results.ends)}"
+    main = at_rest(rests, scope.journey_time, level=LEVEL, touchdowns=scope.touchdowns)
+    said = f"{main} ({journey_counts(results)}).{_others(results.ends)}"
     return [said] if rests.why_missing is None else [said, rests.why_missing]
 
 

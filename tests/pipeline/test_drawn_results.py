@@ -10,10 +10,10 @@ import pytest
 import lithobrake
 from lithobrake.pipeline import StudyFolder, write_report_again
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.flights import Starts, fly_starts
+from lithobrake.pipeline.first_touchdown.flights import Starts, fly_starts
+from lithobrake.pipeline.first_touchdown.run_flights import run_sites
+from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.run_flights import run_sites
-from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values

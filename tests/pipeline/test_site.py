@@ -13,10 +13,10 @@ from lithobrake.pipeline import StudyFolder
 from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import summary_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.flights import Starts, flight_dependencies, fly_starts
+from lithobrake.pipeline.first_touchdown.flights import Starts, flight_dependencies, fly_starts
+from lithobrake.pipeline.first_touchdown.run_flights import FLIGHT_COUNT, run_sites
+from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.run_flights import FLIGHT_COUNT, run_sites
-from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape

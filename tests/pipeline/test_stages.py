@@ -133,7 +133,7 @@ def edited(files: list[Path]) -> Iterator[None]:
     ("report/pages", {"report"}),
     ("statements", {"estimate", "summary", "report"}),
     ("results/study_results.py", {"estimate", "summary", "report"}),
-    ("pipeline/first_bounces/bounce_laws.py", {"hard_ground", "aim", "summary", "report"}),
+    ("pipeline/first_touchdown/bounce_laws.py", {"hard_ground", "aim", "summary", "report"}),
     ("pipeline/answer", {"estimate", "summary", "report"}),
 ])  # fmt: skip
 def test_a_comma_outdates_what_its_room_makes_and_nothing_else(

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline import flights
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.pipeline.runs.run_table import PLAIN_COLUMNS
 from lithobrake.study import Study, StudyError, StudySource, check_tables, read_study
 from lithobrake.study.ground_sections import JOURNEYS_A_BED, LANDINGS_A_BED, default_bed_count

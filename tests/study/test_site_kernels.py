@@ -9,7 +9,7 @@ import pytest
 
 from lithobrake.pipeline.answer.dispersion_statistics import site_results
 from lithobrake.pipeline.answer.study_summary import study_tables
-from lithobrake.pipeline.flights import flight_dependencies
+from lithobrake.pipeline.first_touchdown.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
 from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import read_partner

@@ -10,7 +10,7 @@ from lithobrake.files.reading import read_rows
 from lithobrake.geometry.mesh_units import labelled_mesh, product_id
 from lithobrake.pipeline.answer.run_answers import SHARES, rest_regions
 from lithobrake.pipeline.design.arrivals import MEAN_INCIDENCE
-from lithobrake.pipeline.flights import flight_numbers
+from lithobrake.pipeline.first_touchdown.flights import flight_numbers
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import Site

@@ -14,10 +14,10 @@ from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.first_touchdown.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, FRESH, OWN, most_landings
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
-from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.journey_results import ControlVariate, EmulatedJourneys
 from lithobrake.results.run_results import CountedShare

@@ -12,11 +12,11 @@ from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, sample_fates
 from lithobrake.pipeline.answer.run_answers import failing_runs, left_in_flight, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.flights import read_table
+from lithobrake.pipeline.first_touchdown.flights import read_table
+from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
+from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim, LimitStateInput, LimitStateResult
 from lithobrake.results.run_results import CountedShare

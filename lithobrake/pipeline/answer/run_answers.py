@@ -10,9 +10,9 @@ from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.campaign import Record
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.run_flights import FATES as RUN_FATES
-from lithobrake.pipeline.run_flights import RETURNS as RETURNING
-from lithobrake.pipeline.run_flights import RUN_FLIGHTS_FILE
+from lithobrake.pipeline.first_touchdown.run_flights import FATES as RUN_FATES
+from lithobrake.pipeline.first_touchdown.run_flights import RETURNS as RETURNING
+from lithobrake.pipeline.first_touchdown.run_flights import RUN_FLIGHTS_FILE
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.dispersion import RestRegion
@@ -97,6 +97,7 @@ def scope(study: Study) -> Scope:
         flight_time=study.flight.duration,
         journey_time=study.journey.duration,
         to_rest=asks_rest(study),
+        touchdowns=study.journey.touchdowns,
     )
 
 

@@ -14,8 +14,8 @@ from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
+from lithobrake.pipeline.first_touchdown.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.run_flights import FATES, FLIGHT_COUNT, RunFlights, RunImpacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results import run_results
 from lithobrake.results.dispersion import ImpactNumber, ImpactNumbers

@@ -11,9 +11,9 @@ from lithobrake.pipeline.answer.dispersion_statistics import Rows, proportion
 from lithobrake.pipeline.answer.emulated_ends import Refits, sample_fates
 from lithobrake.pipeline.answer.expansion_results import ended_runs
 from lithobrake.pipeline.answer.run_answers import place_regions, scope
-from lithobrake.pipeline.flights import read_table
+from lithobrake.pipeline.first_touchdown.flights import read_table
+from lithobrake.pipeline.first_touchdown.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import MISSING, SAMPLE_OUTCOMES, Samples
 from lithobrake.results.dispersion import WithoutScatter
 from lithobrake.results.model_results import SampledOutput, SampleResults
 from lithobrake.results.run_results import CountedShare, ReturnFraction, SampleShares

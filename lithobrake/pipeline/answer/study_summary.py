@@ -33,7 +33,7 @@ from lithobrake.pipeline.answer.sample_results import (
     sample_results,
 )
 from lithobrake.pipeline.design.dependencies import bed_files
-from lithobrake.pipeline.first_bounces.emulator import EMULATOR_FILE, why_no_emulator
+from lithobrake.pipeline.first_touchdown.emulator import EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.results.dispersion import FlightResults

@@ -16,7 +16,7 @@ from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
-from lithobrake.pipeline.run_flights import RunFlights
+from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results import StudyResults, open_study

@@ -15,12 +15,12 @@ from lithobrake.campaign import Limits, LocalExecutor, WorkerDiedError
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.random_inputs import draw
-from lithobrake.pipeline.first_bounces.emulator import DrawnLandings, why_no_emulator
+from lithobrake.pipeline.first_touchdown.emulator import DrawnLandings, why_no_emulator
+from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
-from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
-from lithobrake.pipeline.first_bounces.bounce_laws import inputs_at
+from lithobrake.pipeline.first_touchdown.bounce_laws import inputs_at
+from lithobrake.pipeline.first_touchdown.samples import CAPTURED, CLEAR, VELOCITY, outgoing, rolling_spin
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import CAPTURED, CLEAR, VELOCITY, outgoing, rolling_spin
 from lithobrake.vocabulary.file_names import REFINED_FILE
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from lithobrake.analysis import OutcomeModel, sample_inputs
 from lithobrake.chaos import basis_matrix, input_tables, sobol_sequence
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.expansion.expansions import runs_of_designs
-from lithobrake.pipeline.first_bounces.emulator import EXPLORER_FILE, draw_emulator_samples, save_explorer
+from lithobrake.pipeline.first_touchdown.emulator import EXPLORER_FILE, draw_emulator_samples, save_explorer
+from lithobrake.pipeline.first_touchdown.samples import CLEAR, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import CLEAR, Samples, sampling_seed, touchdown_values
 from lithobrake.results.table import ExplorerTables
 from lithobrake.study.quantity import median
 from lithobrake.vocabulary.constants import REFIT_COUNT

@@ -13,7 +13,7 @@ from lithobrake.campaign import Ledger, Record, Runs, Tally, run_chains
 from lithobrake.pipeline.design.descents import descents_in_words
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import side_down
-from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
 from lithobrake.pipeline.journeys.landers import StudyLanders

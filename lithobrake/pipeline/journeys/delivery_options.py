@@ -7,7 +7,7 @@ import numpy as np
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import with_side_down
-from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals

@@ -10,8 +10,8 @@ from lithobrake.files.atomic import atomic_path
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX
-from lithobrake.pipeline.first_bounces.emulator import save_explorer, tables_of_refits
-from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.first_touchdown.emulator import save_explorer, tables_of_refits
+from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_touchdowns import EmulatedTouchdowns
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals

@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.dem.law.restitution import pair_value
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces import bounce_laws
+from lithobrake.pipeline.first_touchdown import bounce_laws
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.runs.energy_bound import gyrations
 from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown, horizontal_velocity

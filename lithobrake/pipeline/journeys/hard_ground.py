@@ -7,15 +7,15 @@ import numpy as np
 
 from lithobrake.pipeline.design.dependencies import design_dependencies
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_bounces import bounce_laws
-from lithobrake.pipeline.flights import write_table
+from lithobrake.pipeline.first_touchdown import bounce_laws
+from lithobrake.pipeline.first_touchdown.flights import write_table
+from lithobrake.pipeline.first_touchdown.run_flights import run_flight_dependencies
+from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding
 from lithobrake.pipeline.journeys.landers import StudyLanders, followed
-from lithobrake.pipeline.run_flights import run_flight_dependencies
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import Samples
 from lithobrake.smallbody.ground_touchdowns import Bounces
 from lithobrake.smallbody.touchdown import Touchdown
 from lithobrake.study import Study

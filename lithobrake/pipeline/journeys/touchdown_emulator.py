@@ -10,7 +10,7 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
-from lithobrake.pipeline.first_bounces.emulator import RIDERS, DrawnLandings, fitted, inputs_met, outputs_of_runs
+from lithobrake.pipeline.first_touchdown.emulator import RIDERS, DrawnLandings, fitted, inputs_met, outputs_of_runs
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns

@@ -15,7 +15,6 @@ import lithobrake
 from lithobrake.pipeline import run_study, study_status
 from lithobrake.pipeline.answer.run_estimates import parts_of_variance
 from lithobrake.pipeline.commands.one_lander import landing_inputs
-from lithobrake.pipeline.commands.site_maps import map_sites
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job, Silent

@@ -21,6 +21,7 @@ from lithobrake.cli import app
 from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
 from lithobrake.pipeline.design.dependencies import pour_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns
@@ -36,7 +37,6 @@ from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planned_ground import planned_boulders, planned_grains, planned_ground, planned_tile
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.planning.study_warnings import _missed, expected_loss, study_warnings
-from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study

@@ -10,8 +10,8 @@ import pytest
 
 import lithobrake
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.first_bounces.bounce_laws import implied
-from lithobrake.pipeline.first_bounces.emulator import REFIT_COUNT
+from lithobrake.pipeline.first_touchdown.bounce_laws import implied
+from lithobrake.pipeline.first_touchdown.emulator import REFIT_COUNT
 from lithobrake.pipeline.journeys.landers import ways_from_aims
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values

@@ -15,17 +15,17 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.expansion.expansion_journeys import SoilBounce
 from lithobrake.pipeline.expansion.expansion_samples import Scatter
 from lithobrake.pipeline.expansion.expansions import points
-from lithobrake.pipeline.first_bounces.bounce_laws import (
+from lithobrake.pipeline.first_touchdown.bounce_laws import (
     FRICTIONS,
     INTERCEPT,
     SLOPE,
     effective_friction,
     why_no_soil,
 )
+from lithobrake.pipeline.first_touchdown.samples import rolling_spin
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding, soil_friction
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies
-from lithobrake.pipeline.samples import rolling_spin
 from lithobrake.smallbody import Impacts
 from lithobrake.smallbody.ground_touchdowns import Bounces
 from lithobrake.smallbody.touchdown import Answers, ImpactStates

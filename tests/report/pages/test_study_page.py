@@ -80,6 +80,8 @@ def test_the_answer_names_the_fraction_at_rest_first_and_then_all_that_is_asked(
     )  # fmt: skip
     said = study_answer(scope, results)
     assert "of the landers come to rest within 48 h" in said[0]
+    limited = study_answer(replace(scope, touchdowns=3), results)[0]
+    assert "of the landers come to rest within 3 touchdowns and 48 h" in limited
     order = ["come to rest within", "on hard ground", "fast (speed_out", "The emulator of all touchdowns"]
     places = [next(place for place, one in enumerate(said) if part in one) for part in order]
     assert places == sorted(places)

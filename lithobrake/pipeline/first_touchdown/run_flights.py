@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from lithobrake.files.reading import hashed_seed, read_rows
-from lithobrake.pipeline.flights import Starts, flight_dependencies, fly_starts, write_table
+from lithobrake.pipeline.first_touchdown.flights import Starts, flight_dependencies, fly_starts, write_table
+from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import VELOCITY
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import Study

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.first_touchdown.samples import CAPTURED, VELOCITY, Samples, touchdown_values
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import CAPTURED, VELOCITY, Samples, touchdown_values
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
 from lithobrake.touchdown.lander_model import lander

@@ -10,8 +10,8 @@ import numpy as np
 from lithobrake.files.atomic import atomic_path, write_rows
 from lithobrake.files.reading import content_hash, read_rows
 from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
+from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Job
-from lithobrake.pipeline.samples import Samples
 from lithobrake.pipeline.site import SITE_KEYS, Site
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.study import BUILT_IN_BODIES, Study

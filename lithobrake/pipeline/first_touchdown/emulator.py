@@ -14,6 +14,7 @@ from lithobrake.analysis import sample_inputs
 from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
+from lithobrake.pipeline.first_touchdown.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import (
     EnergyBound,
@@ -23,7 +24,6 @@ from lithobrake.pipeline.runs.energy_bound import (
     height_of_beds,
 )
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import EMULATOR_FILE, EXPLORER_FILE

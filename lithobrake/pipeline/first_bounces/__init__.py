@@ -1,1 +1,0 @@
-"""The emulator of the first touchdown, and hard ground that is equivalent to the soil."""

@@ -1,0 +1,1 @@
+"""The first touchdown: its emulator, samples of it, and the flights after it."""
