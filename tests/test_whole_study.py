@@ -81,15 +81,17 @@ def out(study: Path) -> Path:
 
 def test_every_file_is_there_and_the_summary_adds_up(out: Path) -> None:
     assert [name for name in FILES if not (out / name).is_file()] == []
-    results = summary(out)["results"]
-    designs, shares = results["designs"], results["shares"]
-    assert sum(designs["screening"]["outcomes"].values()) == designs["screening"]["run_count"] == 5
-    assert designs["test_all"]["run_count"] == 2
+    results = open_study(out).results
+    analysis, samples = results.expansion, results.samples
+    designs, shares = analysis.designs, samples.shares
+    assert sum(designs["screening"].outcomes.values()) == designs["screening"].run_count == 5
+    assert designs["test_all"].run_count == 2
     ends = ("captured", "left_sideways", "time_limit", "outside", "impact", "flying", "escaped")
-    assert sum(shares[name]["count"] for name in ends) == shares["sample_count"]
-    assert shares["flight_count"] == sum(shares[name]["count"] for name in ends[4:])
-    assert 0 < results["monte_carlo"]["outputs"]["speed_out"]["mean"] < 0.4
-    assert results["kept_share"]["speed_out"] >= 0.9
+    counts = [shares.outcomes[name].count for name in ends]
+    assert sum(counts) == shares.sample_count
+    assert shares.flight_count == sum(counts[4:])
+    assert 0 < samples.outputs["speed_out"].mean < 0.4
+    assert analysis.kept_share["speed_out"] >= 0.9
 
 
 def test_every_key_that_soil_and_beds_write_has_a_field(out: Path) -> None:
