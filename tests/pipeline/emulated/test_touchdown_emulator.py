@@ -20,7 +20,8 @@ from lithobrake.pipeline import plan_lines, plan_study, served_models
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
-from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS, option_arrivals
+from lithobrake.pipeline.journeys.delivery_options import option_arrivals
+from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
