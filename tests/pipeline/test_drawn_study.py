@@ -36,14 +36,14 @@ def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, s
     run_study(StudySource.read(ball(folder, 12)), folder / "out", until="runs", worker_count=2)
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
     said = said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out", "--workers", 2)
-    assert "stage 1 of 10: runs" in said
+    assert "stage 1 of 11: landers" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     return folder, first, said
 
 
 def test_a_study_of_more_runs_makes_only_those_that_are_new(grown: tuple[Path, DesignRuns, str]) -> None:
     folder, first, said = grown
-    assert "drawn: 12 of 14 runs were known and are reused" in said
+    assert "14 journeys have 14 touchdowns, 1.0 each; 12 of them were known and are reused" in said
     assert (first.run_count, set(first.outcomes)) == (12, {"clear"})
     designs = ("drawn", "soil_pairs", "twins")
     runs = {name: DesignRuns.load(StudyFolder.only_read(folder / "out"), name) for name in designs}
@@ -62,7 +62,7 @@ def test_what_is_counted_before_is_what_is_made(grown: tuple[Path, DesignRuns, s
     assert plan.stages == ()
     assert (plan.runs[0].drawn, plan.runs[0].side, plan.runs[0].new) == (14, 26, 0)
     status = " ".join(study_status(folder / "out").lines())
-    assert "10 of 10 stages are current: runs, side runs, flights of the runs" in status
+    assert "11 of 11 stages are current: landers, side runs, flights of the first touchdowns" in status
 
 
 def test_a_stage_that_nothing_asks_for_is_told_so(grown: tuple[Path, DesignRuns, str], tmp_path: Path) -> None:

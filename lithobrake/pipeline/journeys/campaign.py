@@ -1,7 +1,6 @@
 """The stage that follows every lander of a study to the end of its journey, and the tables of journeys."""
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -182,9 +181,9 @@ def make_journeys(job: Job) -> None:
     journeys, rows = Journeys.begun(job.design), job.design.rows
     # Before they are made, so that other processes can distinguish these runs from others of the ledger.
     job.folder.note_runs("drawn", job.design.keys)
-    chains = follow_in_chains(job, journeys, rows)
+    chains, reused = follow_in_chains(job, journeys, rows)
     records = [record for chain in chains for record in chain]
-    _say_what_was_known(job, records)
+    _say_touchdowns(job, records, reused)
     first = Runs([chain[0] for chain in chains], 0)
     account(job, "drawn", first, tuple(job.design.inputs))
     # First touchdowns are what the drawn runs of other studies are, so all that reads those serves journeys as well.
@@ -193,19 +192,23 @@ def make_journeys(job: Job) -> None:
     journeys.write(job.folder)
 
 
-def follow_in_chains(job: Job, journeys: Journeys, rows: Sequence[Mapping[str, float]]) -> list[list[Record]]:
-    """Make all touchdowns of journeys that begin with these; those that the ledger has are read from it.
+def follow_in_chains(
+    job: Job, journeys: Journeys, rows: Sequence[Mapping[str, float]]
+) -> tuple[list[list[Record]], int]:
+    """Make all touchdowns of journeys that begin with these, and say how many of them the ledger had.
 
     Each lander goes on as soon as its own touchdown has ended. rows: first touchdowns, in the order of the journeys
     that have one.
     """
     # A lander that never touches down has no chain; the others keep their order.
-    landing = journeys.landers.going.tolist()
+    landing, reused = journeys.landers.going.tolist(), 0
 
     def then(number: int, records: Sequence[Record]) -> Mapping[str, float] | None:
         return journeys.go_on(landing[number], records[-1])
 
     def show(state: Tally) -> None:
+        nonlocal reused
+        reused = state.reused
         ends = [end for end in journeys.landers.end.tolist() if end]
         said = progress_words(ends, len(journeys), state.ended)
         # Other processes read this from the lock: the tables are written when all journeys have ended.
@@ -213,7 +216,7 @@ def follow_in_chains(job: Job, journeys: Journeys, rows: Sequence[Mapping[str, f
         job.progress(len(ends), len(journeys), "journeys", f"{said}\n{state.sentence()}")
 
     with Ledger(job.folder / RUNS_FILE) as ledger:
-        return run_chains(
+        chains = run_chains(
             model_of(job.study, job.folder.path.absolute(), job.model),
             rows,
             then,
@@ -221,6 +224,7 @@ def follow_in_chains(job: Job, journeys: Journeys, rows: Sequence[Mapping[str, f
             progress=show,
             **campaign_setting(job),
         )
+    return chains, reused
 
 
 def progress_words(ends: Sequence[str], journey_count: int, touchdown_count: int) -> str:
@@ -235,8 +239,8 @@ def progress_words(ends: Sequence[str], journey_count: int, touchdown_count: int
     return f"{said}, at rest so far {percent(at_rest / len(ends)).removesuffix(' %')} +- {percent(error)}"
 
 
-def _say_what_was_known(job: Job, records: Sequence[Record]) -> None:
-    """Say how many touchdowns the journeys have."""
-    per_journey = Counter(int(record.inputs["journey"]) for record in records)
-    mean = float(np.mean(list(per_journey.values())))
-    job.say(f"{len(per_journey)} journeys have {len(records)} touchdowns, {mean:.1f} each")
+def _say_touchdowns(job: Job, records: Sequence[Record], reused: int) -> None:
+    """Say how many touchdowns the journeys have, and how many of them were known."""
+    count, total = len({record.inputs["journey"] for record in records}), len(records)
+    known = f"; {reused} of them were known and are reused" if reused else ""
+    job.say(f"{count} journeys have {total} touchdowns, {total / count:.1f} each{known}")
