@@ -89,7 +89,8 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
 
     density = highest_density(table.position[rests], SHARES)
     faces = table.face[rests]
-    has_sides = bool((faces != "").any())
+    # A program may give the attitude of some landers alone, and these are no sample of all.
+    has_sides = len(faces) > 0 and bool((faces != "").all())
     return JourneyRest(
         of=journeys_at_rest(int(rests.sum()), len(rests)),
         time_s=quantiles("time_s"),

@@ -37,7 +37,7 @@ INTERVAL_ERRORS = 1.645
 
 @dataclass(frozen=True)
 class Journeys:
-    """StudyLanders by simulated landings, with the rows of their tables.
+    """Landers by simulated landings, with the rows of their tables.
 
     rows: inputs of the present touchdown of each; touchdowns, flights: rows of their tables, by column, of each.
     """

@@ -29,13 +29,13 @@ from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, JOURNEY_DESIGN, SPIN
 
 EMULATED_FILES: tuple[str, ...] = (TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE, EMULATED_FILE)
-# StudyLanders that the study has not followed, and those of its journeys.
+# Landers that the study has not followed, and those of its journeys.
 FRESH, OWN = "fresh", "own"
 # How often the emulator follows each lander of the journeys, each time by another refit.
 COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
 MOST_LANDINGS = 0.1
-LANDINGS_ALONE = "StudyLanders that are delivered as states are followed by landings alone, and by no emulator."
+LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
 
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
@@ -134,7 +134,7 @@ def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, mos
 
 @dataclass(frozen=True)
 class EmulatedLanders:
-    """StudyLanders that the emulator has followed to their ends.
+    """Landers that the emulator has followed to their ends.
 
     beyond: the input of an impact that the emulator did not know, the last one of each lander, or ""; landings: that
     were simulated for each; [lander_count].

@@ -1,4 +1,4 @@
-"""StudyLanders followed on other ground: hard, equivalent to the soil, and the soil by the expansion."""
+"""Landers followed on other ground: hard, equivalent to the soil, and the soil by the expansion."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -72,7 +72,7 @@ def on_hard_ground(design: DrawnDesign, begin: Arrivals, title: str = "") -> Tou
 
 
 def further_landers(design: DrawnDesign, count: int) -> Arrivals:
-    """StudyLanders that the study has not followed, with numbers behind those of its journeys.
+    """Landers that the study has not followed, with numbers behind those of its journeys.
 
     Of landers that are flown to the ground those of the journeys, as many as reach it.
     """

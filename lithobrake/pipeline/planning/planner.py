@@ -29,13 +29,11 @@ from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.stages import STAGES
+from lithobrake.pipeline.stages import EMULATOR, STAGES
 from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
 
 MAKE_RUNS = frozenset({"screening_runs", "refined_runs", "test_runs", "runs", "side_runs"})
-# The title of the stage whose emulator tells what bounces would say.
-EMULATOR = "emulator"
 FOLLOWED = frozenset({"emulated", "hard_ground"})
 SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
@@ -60,7 +58,7 @@ def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInferen
     why = None
     if not study.design.run_count:
         why = "their information follows from an emulator of drawn landers, and design.run_count is 0"
-    elif EMULATOR in plan.stages:
+    elif EMULATOR.title in plan.stages:
         why = (
             "their information follows from the emulator, which does not exist yet; make it with: "
             f"{shlex.join(['lithobrake', 'run', str(path), '--out', plan.folder])}"

@@ -170,6 +170,8 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
     assert "left the ground, and it needs 8" in emulated.why
     assert emulated.why in found.results.answer
     assert [one.soil.missing for one in aim.aims] == [1.0] * 4
+    # Three of the 24 landers alone have an attitude.
+    assert (found.results.rest.faces, found.results.rest.tilt_deg) == ({}, None)
     assert found.touchdown_explorer is None
     with h5py.File(found.folder / "touchdown_explorer.h5") as file:
         assert file.attrs["why"] == emulated.why
@@ -352,7 +354,7 @@ def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Pat
 
 
 def test_a_folder_without_an_emulator_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"has no emulator\.json; run a drawn study there first"):
+    with pytest.raises(ValueError, match=r"has no emulator\.json; run a study there first that draws landers"):
         InferredStudy.open(tmp_path)
 
 

@@ -1,4 +1,4 @@
-"""StudyLanders on a body without a study: they are thrown from where they are, and then followed."""
+"""Landers on a body without a study: they are thrown from where they are, and then followed."""
 
 import math
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ def thrown_landers(
     gravity: str = "exact",
     roughness_deg: float | None = None,
 ) -> StudyLanders:
-    """StudyLanders at places on the ground [m], [count, 3], in frames whose z is up there; time: as of `fly` [s]."""
+    """Landers at places on the ground [m], [count, 3], in frames whose z is up there; time: as of `fly` [s]."""
     place = np.atleast_2d(np.asarray(position, dtype=float))
     count, up = len(place), body.shape.normals[body.shape.nearest(place)[1]]
     aside = np.cross(up, np.eye(3)[np.argmin(np.abs(up), axis=1)])
@@ -83,7 +83,7 @@ def hop(
     friction: float = math.inf,
     **settings: Any,
 ) -> tuple[StudyLanders, Thrown]:
-    """StudyLanders thrown with velocities [m/s], body-fixed, that bounce and slide until they have ended."""
+    """Landers thrown with velocities [m/s], body-fixed, that bounce and slide until they have ended."""
     landers = thrown_landers(body, position, **settings)
     vectors = (np.broadcast_to(np.asarray(one, dtype=float), (len(landers), 3)) for one in (velocity, spin))
     lies = np.broadcast_to(captured, len(landers))
