@@ -25,7 +25,8 @@ SOIL: dict[str, Any] = {
 class SyntheticLander:
     """A model for `lithobrake.run`.
 
-    beds: seed of the effects of the beds. follows_speed: whether landers leave in proportion to their speed of arrival.
+    beds: seed of the effects of the beds. follows_speed: whether landers leave, and turn, in proportion to their speed
+    of arrival.
     """
 
     truth: Truth = field(default=WEAK)
@@ -40,7 +41,7 @@ class SyntheticLander:
         if landing.outcome[0] != "clear":
             return {"outcome": str(landing.outcome[0])}
         part = values["impact.speed"] / SPEED_LIMIT if self.follows_speed else 1.0
-        return {"outcome": "clear", "outputs": outputs_of(landing.y[0] * [part, 1.0, 1.0, 1.0])}
+        return {"outcome": "clear", "outputs": outputs_of(landing.y[0] * [part, 1.0, 1.0, part])}
 
 
 def outputs_of(y: np.ndarray) -> dict[str, float]:

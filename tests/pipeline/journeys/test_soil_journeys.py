@@ -81,6 +81,12 @@ def place(body: Body, row: Row) -> np.ndarray:
     return body.shape.surface_point(row["latitude_deg"], row["longitude_deg"])
 
 
+def normal(body: Body, point: np.ndarray) -> np.ndarray:
+    """Outward normal of the nearest facet, [3]."""
+    facet: np.ndarray = body.shape.nearest(point)[1]
+    return np.asarray(body.shape.normals[int(facet)])
+
+
 def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) -> None:
     again = tmp_path / "again"
     shutil.copytree(study.folder, again)
@@ -114,8 +120,10 @@ def test_times_add_up(study: StudyResults, body: Body) -> None:
 def test_places_follow_from_one_another(study: StudyResults, body: Body) -> None:
     for before, arc, after in steps(study):
         moved = vector(arc, "position") - place(body, before)
-        displacement = math.hypot(before["displacement_x"], before["displacement_y"])
-        assert abs(body.shape.height(vector(arc, "position"))) < 1e-4
+        displacement, rise = math.hypot(before["displacement_x"], before["displacement_y"]), before["displacement_z"]
+        # A flight begins where the centre of mass is, and one that has sunk on the ground.
+        assert body.shape.height(vector(arc, "position")) == pytest.approx(max(rise, 0.0), abs=1e-4)
+        moved -= max(rise, 0.0) * normal(body, vector(arc, "position"))
         # The displacement lies in the plane of a facet, and bends where it crosses an edge.
         assert 0.95 * displacement - 1e-6 < np.linalg.norm(moved) < 1.05 * displacement + 1e-6
         assert flown(study, body, arc).position[0] == pytest.approx(place(body, after), abs=1e-6)
@@ -162,6 +170,18 @@ def frame(body: Body, flight: Flights) -> np.ndarray:
     return np.array([x, np.cross(up, x), up])
 
 
+def risen(body: Body, arc: Row, velocity: np.ndarray, rise: float) -> np.ndarray:
+    """Velocity [m/s] of a lander that has come back from below the ground to it, by the work of its weight there."""
+    if rise >= 0.0:
+        return velocity
+    place = vector(arc, "position")
+    up = normal(body, place)
+    one = (np.array([value]) for value in (arc["clock_s"], body.mass, body.spin_period))
+    felt = body.felt(place[None], *one)[0]
+    paid = math.sqrt(max((velocity @ up) ** 2 - 2.0 * (felt @ up) * rise, 0.0))
+    return velocity + (paid - velocity @ up) * up
+
+
 def turned(attitude: np.ndarray, spin: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
     """Attitude [3, 3] and spin [rad/s] of the lander after a time without torque, in axes that do not turn.
 
@@ -188,10 +208,11 @@ def test_attitude_and_spin_at_an_impact_are_those_of_a_flight_without_torque(stu
     checked = 0
     for (journey, number), (before, arc, after) in every.items():
         # Of the first touchdown no flight has the velocity that comes in; long turns would take the integrator seconds.
-        if number == 0 or before["spin_out"] * (arc["end_s"] - arc["begin_s"]) > 150.0:
+        if number == 0 or before["spin_out"] * (arc["end_s"] - arc["begin_s"]) > 300.0:
             continue
         axes = frame(body, flown(study, body, every[journey, number - 1].arc))
-        assert vector(before, "velocity_out") @ axes == pytest.approx(vector(arc, "velocity"), abs=1e-12)
+        left = vector(before, "velocity_out") @ axes
+        assert vector(arc, "velocity") == pytest.approx(risen(body, arc, left, before["displacement_z"]), abs=1e-9)
         attitude = axes.T @ matrix([before[f"orientation_out_{axis}"] for axis in "wxyz"])
         flight = flown(study, body, arc)
         time = float(flight.time[0])

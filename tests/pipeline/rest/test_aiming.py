@@ -101,7 +101,7 @@ def test_every_key_is_described_and_the_page_shows_the_aims(results: StudyResult
     assert json_values(results.results) == results.summary["results"]
     assert found["statement"] in results.headline
     assert "ost landers come to rest with delivery.speed = " in found["statement"]
-    assert "Where to aim" in (results.folder / "report" / "index.html").read_text(encoding="utf-8")
+    assert "Delivery options" in (results.folder / "report" / "index.html").read_text(encoding="utf-8")
     assert [path.name for path in (results.folder / "report").glob("*_aim.png")]
 
 

@@ -115,7 +115,7 @@ def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any
     assert words in returns["why"]
     assert "would change the result; this study cannot show by how much" in results.headline[1]
     assert "interval" not in results.headline[0]
-    tables = found["shares"], found["shares"]["emulator"]
+    tables = found["shares"], found["samples"]["shares"]
     assert {a["lower"] for table in tables for a in table.values() if isinstance(a, dict) and "lower" in a} == {None}
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
