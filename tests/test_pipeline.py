@@ -266,15 +266,16 @@ def test_the_study_in_the_summary_reads_back_as_the_same_study() -> None:
 
 def test_every_column_of_the_flights_is_documented() -> None:
     text = (Path(__file__).parents[1] / "docs" / "flights.md").read_text(encoding="utf-8")
-    flights, hard = (_names_in_tables(part) for part in text.split("| column of `restitution.csv` |"))
-    assert [*flights, *hard[len(RESTITUTION_NAMES) :]] == [*COLUMNS, *FOLLOWED]
-    assert hard[: len(RESTITUTION_NAMES)] == RESTITUTION_NAMES
+    assert _names_in_table(text, "column") == [*COLUMNS]
+    assert _names_in_table(text, "column of `rest.csv`") == [*FOLLOWED]
+    assert _names_in_table(text, "column of `restitution.csv`") == RESTITUTION_NAMES
 
 
-def _names_in_tables(text: str) -> list[str]:
-    """What stands as code in the first cells of the rows of tables."""
-    rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
-    return [name for row in rows for name in re.findall(r"`(\w+)[`.]", row)]
+def _names_in_table(text: str, heading: str) -> list[str]:
+    """What stands as code in the first cells of the only table whose first column has this heading."""
+    (table,) = re.findall(rf"^\| {re.escape(heading)} \|.*\n((?:\|.*\n)+)", text, flags=re.MULTILINE)
+    cells = [line.split("|")[1] for line in table.splitlines()]
+    return [name for cell in cells for name in re.findall(r"`(\w+)[`.]", cell)]
 
 
 # Of each of the four quantities that have quantiles the table names the first.

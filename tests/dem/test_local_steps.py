@@ -208,7 +208,7 @@ def test_what_cannot_be_run_is_refused() -> None:
         world.run_locally(1.0, 2)
     with pytest.raises(ValueError, match="held_speed is nan m/s; allowed is a finite value of at least 0"):
         world.run_locally(1.0, 15.0, held_speed=math.nan)
-    with pytest.raises(ValueError, match=r"held_speed is 0\.1 m/s, but no body is watched"):
+    with pytest.raises(ValueError, match=r"held_speed is 0\.1 m/s; allowed is 0 while no body is watched: call watch"):
         world.run_locally(1.0, 15.0, held_speed=0.1)
 
 

@@ -128,7 +128,7 @@ def test_a_study_that_is_stopped_between_two_looks_ends_with_the_same_runs(
     assert DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn").run_count == 24
     said = Said()
     assert run(tmp_path, said, half_width=0.06).keys == narrow[1].keys
-    assert any("drawn: 24 of 50 runs were known" in sentence for sentence in said.sentences)
+    assert "50 journeys have 50 touchdowns, 1.0 each; 24 of them were known and are reused" in said.sentences
 
 
 def test_a_study_that_goes_on_still_shows_the_runs_that_there_are(tmp_path: Path) -> None:
@@ -158,6 +158,7 @@ def test_a_damaged_table_of_flights_is_made_again(asked: dict[str, float], tmp_p
     table, study, only_read = tmp_path / "run_flights.csv", source(**asked).study, StudyFolder.only_read(tmp_path)
     whole = table.read_bytes()
     table.write_text("nothing that could be read")
-    assert plan_of(grown(DrawnDesign(study), only_read), "ball", only_read, 2).stages[0] == "flights of the runs"
+    plan = plan_of(grown(DrawnDesign(study), only_read), "ball", only_read, 2)
+    assert plan.stages[0] == "flights of the first touchdowns"
     run(tmp_path, Said(), **asked)
     assert table.read_bytes() == whole

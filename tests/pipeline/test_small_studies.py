@@ -63,7 +63,7 @@ def test_an_input_that_becomes_uncertain_reuses_the_runs_at_its_median_and_says_
 
 def test_one_more_bed_reuses_the_runs_that_stay_on_theirs_and_says_so(fixed: Path) -> None:
     before = what_came(open_study(fixed).ledger)
-    changes = {FRICTION: "friction = 0.225", "grain_count = 100": "grain_count = 100\nbed_count = 2"}
+    changes = {FRICTION: "friction = 0.225", "bed_count = 1": "bed_count = 2"}
     said = said_by("screen", write_study(fixed.parent, changes), "--out", fixed, "--workers", 1)
     after = what_came(open_study(fixed).ledger)
     moved = [entry for entry in open_study(fixed).ledger if entry.inputs["bed"] == 1.0]
@@ -204,7 +204,7 @@ def test_a_folder_that_may_only_be_read_is_refused_in_one_sentence_and_its_runs_
         assert said[0].endswith("choose another folder with --out")
         assert said[1].startswith(f"{out / 'runs.sqlite'} cannot be used as a ledger (")
         assert said[2:4] == ["7", f"{out}: not running; there is no report yet"]
-        assert said[4] == "2 of 11 stages are current: screening runs, screening"
+        assert said[4] == "2 of 12 stages are current: screening runs, screening"
         assert said[5].startswith("not there: designs/refined.csv, refined.json, ")
         assert said[6:7] == ["7 runs: 7 done, 0 running, 0 failed"]
         assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
@@ -228,8 +228,9 @@ WORKS = {
     "screening runs": ["screening runs"], "screening": ["screening fit, outputs"], "refined runs": ["refined runs"],
     "refinement": ["refined fit, outputs"], "test runs": ["test kept runs", "test all runs"],
     "scores": ["scores with their intervals"],
-    "flights": ["gravity table", "checks of flights", "flights", "ways of flights", "flights without scatter"],
-    "bounces until rest": ["bounces, hard ground"],
+    "flights": ["gravity table", "checks of flights", "flights", "flights without scatter"],
+    "paths of flights": ["paths of flights", "ways of flights"],
+    "landers on hard ground": ["landers, hard ground"],
 }  # fmt: skip
 
 
@@ -252,7 +253,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Told, list[str]]:
         def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
             stages[list(stages)[-1]].setdefault(what, []).append((done, total))
 
-    run_study(StudySource.read(path), folder / "out", worker_count=1, until="rest", shown=Shown())
+    run_study(StudySource.read(path), folder / "out", worker_count=1, until="hard_ground", shown=Shown())
     return stages, said_first
 
 

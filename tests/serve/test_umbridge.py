@@ -13,6 +13,8 @@ import pytest
 
 import lithobrake
 from lithobrake.campaign import ModelServer
+from lithobrake.chaos import sobol_sequence
+from lithobrake.emulator import fit
 from lithobrake.pipeline.commands.serving import FLIGHT, EvaluationProcess, ServedStudy, served_models
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
@@ -276,7 +278,9 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
     ("mass", "mass is not a known key"),
 ])  # fmt: skip
 def test_a_key_that_no_run_reads_is_refused_by_the_emulator_too(name: str, said: str, tmp_path: Path) -> None:
-    (tmp_path / "emulator.json").touch()
-    emulator = served_models(BALL, tmp_path)[2]
+    served = ServedStudy(BALL, tmp_path)
+    x = sobol_sequence(served.design.inputs, 64)
+    fit(served.design.inputs, x, x[:, 0]).save(tmp_path / "emulator.json")
+    emulator = served.models()[2]
     with pytest.raises(ValueError, match=said):
         emulator.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": {name: 0.9}})

@@ -12,7 +12,6 @@ from lithobrake.geometry.attitude import rotation_matrices
 from lithobrake.smallbody import (
     AttitudeHistory,
     Body,
-    FlightStatus,
     Partner,
     Shape,
     dimorphos,
@@ -20,6 +19,7 @@ from lithobrake.smallbody import (
     rotation_history,
     tumble,
 )
+from lithobrake.vocabulary.outcomes import FlightStatus
 
 from .meshes import sphere_mesh
 

@@ -51,6 +51,7 @@ class OneStudy:
     """A study of the two: its folder, results, study file, and what it draws, run by run or journey by journey.
 
     bed: of each run [run_count]; columns of COMMON [run_count], NaN for a lander that never touched down.
+    number: row of each first touchdown among these [touchdown_count].
     """
 
     path: Path
@@ -58,6 +59,7 @@ class OneStudy:
     study: Study
     bed: np.ndarray
     columns: Mapping[str, np.ndarray]
+    number: np.ndarray
 
     @classmethod
     def open(cls, path: Path) -> "OneStudy":
@@ -69,10 +71,8 @@ class OneStudy:
         runs = DesignRuns.load(StudyFolder.only_read(path), "drawn")
         # A lander that is flown to the ground and misses it has a journey, and no run.
         bed, number = JourneyTable.load(StudyFolder.only_read(path)).bed, runs.inputs["journey"].astype(int)
-        columns = {name: np.full(len(bed), np.nan) for name in COMMON if name in runs.inputs}
-        for name, values in columns.items():
-            values[number] = runs.inputs[name]
-        return cls(path, results, source.study, bed.astype(int), columns | {"bed": bed.astype(float)})
+        columns = {name: _placed(runs.inputs[name], number, len(bed)) for name in COMMON if name in runs.inputs}
+        return cls(path, results, source.study, bed.astype(int), columns | {"bed": bed.astype(float)}, number)
 
     @property
     def run_count(self) -> int:
@@ -83,6 +83,17 @@ class OneStudy:
     def folder(self) -> StudyFolder:
         """Its folder, to read."""
         return StudyFolder.only_read(self.path)
+
+    def by_lander(self, values: np.ndarray) -> np.ndarray:
+        """Values of the first touchdowns [touchdown_count] as [run_count], NaN for a lander without one."""
+        return _placed(values, self.number, self.run_count)
+
+
+def _placed(values: np.ndarray, rows: np.ndarray, count: int) -> np.ndarray:
+    """Values in these rows of `count`, NaN in all others."""
+    placed = np.full(count, np.nan)
+    placed[rows] = values
+    return placed
 
 
 def compare_studies(first: Path, second: Path) -> StudyComparison:
@@ -207,21 +218,21 @@ def _journey_answers(
 def _bounce_answers(
     pair: tuple[OneStudy, OneStudy], count: int, bed: np.ndarray, why: str | None
 ) -> Iterator[tuple[str, ComparedAnswer]]:
-    runs = [DesignRuns.load(each.folder, "drawn") for each in pair]
-    returns = [RunFlights.load(each.folder, "drawn").returns[:count] for each in pair]
+    runs = [(each, DesignRuns.load(each.folder, "drawn")) for each in pair]
+    returns = [each.by_lander(RunFlights.load(each.folder, "drawn").returns)[:count] for each in pair]
     if all(np.isfinite(one).any() for one in returns):
         yield (
             "returns",
             _told("return fraction", "", share_difference(returns[0], returns[1], bed, why=why), is_fraction=True),
         )
-    captured = [_captured(one.outcomes[:count]) for one in runs]
+    captured = [each.by_lander(_captured(one.outcomes))[:count] for each, one in runs]
     if all(np.isfinite(one).any() for one in captured):
         yield (
             TouchdownOutcome.CAPTURED.value,
             _told("fraction captured", "", share_difference(captured[0], captured[1], bed, why=why), is_fraction=True),
         )
     for name in OUTPUTS:
-        values = [one.output(name)[:count] for one in runs]
+        values = [each.by_lander(one.output(name))[:count] for each, one in runs]
         if all(np.isfinite(one).sum() > 1 for one in values):
             what = TOUCHDOWN[name]
             yield from _quantiles(name, what.title or what.long_name, what.units, values, bed, why)

@@ -170,6 +170,7 @@ def test_landers_that_miss_the_ground_keep_their_number(tmp_path: Path) -> None:
     assert f"{len(ends[0])} pairs" in found.of
     answer = found.answers["at_rest"]
     assert (answer.difference.value, answer.pairs) == (pytest.approx(ends[1].mean() - ends[0].mean()), len(ends[0]))
+    assert found.answers["captured"].pairs == len(ends[0]) - 2
 
 
 def test_beds_that_differ_are_named(pair: tuple[Path, Path]) -> None:

@@ -71,7 +71,7 @@ def test_a_whole_folder_is_current_and_its_report_can_be_written_again(home: Pat
     }
     lines = said_by("status", home).splitlines()
     assert lines[0] == f"{home / 'out'}: not running; the report is there"
-    assert lines[1].startswith("11 of 11 stages are current: screening runs, screening, refined runs, refinement, ")
+    assert lines[1].startswith("12 of 12 stages are current: screening runs, screening, refined runs, refinement, ")
     assert not any("earlier" in line for line in lines)
     assert said_by("view", home).startswith("No browser found")
     assert len(said_by("report", home).splitlines()) == len(open_study(home / "out").summary["results"]["headline"]) + 1
@@ -87,7 +87,7 @@ def test_a_changed_study_makes_old_files_stale_and_tells_runs_of_earlier_setting
     run(home, "screen")
     lines = said_by("status", home).splitlines()
     assert lines[0].endswith("not running; the report is there, but its files have changed since")
-    assert lines[1] == "2 of 11 stages are current: screening runs, screening"
+    assert lines[1] == "2 of 12 stages are current: screening runs, screening"
     assert lines[2].startswith(
         "of an earlier setting or version: designs/refined.csv, refined.json, designs/test_kept.csv, "
     )
@@ -104,7 +104,7 @@ def test_edited_and_swapped_files_are_named_and_not_reported_on(home: Path) -> N
     out = home / "out"
     edit(out / "summary.json", {'"format_version": 4': '"format_version":  4'})
     (out / "flights.csv").unlink()
-    shutil.copy(out / "rest.json", out / "flights.json")
+    shutil.copy(out / "scores.json", out / "flights.json")
     said = said_by("report", home, code=2)
     assert "changed after it was made: flights.json, summary.json" in said
     assert "not there: flights.csv" in said
@@ -159,7 +159,7 @@ FILES: dict[str, tuple[str, Callable[[Path], object]]] = {
                    lambda path: edit(path, {'"jacobi_flight_count": ': '"a": ' + 400 * "9" + ', "b": '})),
     "empty flights": ("flights.csv", lambda path: path.write_text("")),
     "another table": ("flights.csv", lambda path: path.write_text("a,b\n1,2\n")),
-    "empty rest": ("rest.json", lambda path: path.write_text("")),
+    "empty rest": ("rest.csv", lambda path: path.write_text("")),
     "a number as scores": ("scores.json", lambda path: path.write_text("3")),
     "half an expansion": ("refined.json", lambda path: path.write_text(path.read_text()[:500])),
     "another expansion": ("screening.json", lambda path: path.write_text('{"format": "lithobrake expansion"}')),
@@ -263,7 +263,7 @@ def test_a_run_with_damaged_keys_says_so_and_makes_the_files_again(home: Path) -
     said = run(home)
     assert f"{home / 'out' / 'keys.json'} cannot be read (" in said
     assert "so its files are made again" in said
-    assert said_by("status", home).splitlines()[1].startswith("11 of 11 stages are current")
+    assert said_by("status", home).splitlines()[1].startswith("12 of 12 stages are current")
 
 
 @pytest.mark.parametrize("words", [["report"], ["status"], ["runs"], ["runs", "--csv"]], ids=" ".join)
