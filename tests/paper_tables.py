@@ -27,7 +27,7 @@ def paper_tables() -> dict[str, Any]:
             "journey": {"duration": 86_400.0},
             "design": {"run_count": 0},
             "expansion": levels,
-            "hard_ground": {"count": 10_000},
+            "hard_ground": {"count": 100},
         },
     )
 

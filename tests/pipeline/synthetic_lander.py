@@ -66,7 +66,7 @@ def synthetic_tables(**changes: dict[str, Any]) -> dict[str, Any]:
     tables["design"] = {"run_count": 144}
     tables["monte_carlo"] = {"sample_count": 4000}
     tables["site"] = {"heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0}}
-    tables["flight"] = {"flight_count": 1000}
+    tables["flight"], tables["hard_ground"] = {"flight_count": 1000}, {"count": 100}
     changed = tables | {name: tables.get(name, {}) | keys for name, keys in changes.items()}
     # A key that is None is left out.
     return {
