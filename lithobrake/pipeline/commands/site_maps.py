@@ -18,6 +18,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.stages import emulates_touchdowns
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.site_results import SiteMap
@@ -69,6 +70,11 @@ def map_sites(
 
 def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
     """Raise ValueError for a study that has no landers to deliver elsewhere, and for counts that make no map."""
+    if not emulates_touchdowns(study):
+        lacking = "journey.emulated_count" if study.design.run_count else "design.run_count"
+        raise ValueError(
+            f"sites asks the emulator of all touchdowns, and this study has none; set {lacking} above 0 to fit it"
+        )
     if study.delivery is not None and study.delivery.is_flown:
         raise ValueError(
             "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "

@@ -22,7 +22,15 @@ from lithobrake.study.delivery_sections import PLACE_KEYS
 from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain, usual_reach
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
-from lithobrake.vocabulary.quantities import ARRIVAL, IMPACT_AZIMUTH, ORIENTATION, PLACE, TIME_LEFT
+from lithobrake.vocabulary.quantities import (
+    ARRIVAL,
+    IMPACT_AZIMUTH,
+    IMPACT_INCIDENCE,
+    ORIENTATION,
+    PLACE,
+    SPIN,
+    TIME_LEFT,
+)
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -196,9 +204,15 @@ class DrawnDesign:
 
     @property
     def met_on_the_way(self) -> tuple[str, ...]:
-        """Numbers of a touchdown that follow no law of the study: soils of regions, and the arrival after a flight."""
+        """Numbers of a touchdown that follow no law of the study.
+
+        Soils of regions, the arrival after a flight, and the angle and spin that rough ground is met with.
+        """
         soils = {f"{GRAIN}{key}" for soil in self.study.soil.values() for key in soil.grain.values()}
-        return (*sorted(soils), *(ARRIVAL if self.is_flown else ()))
+        arrival = set(ARRIVAL if self.is_flown else ())
+        if self.study.site.roughness_deg:
+            arrival |= {IMPACT_INCIDENCE, *(self.inputs.keys() & set(SPIN))}
+        return (*sorted(soils), *(name for name in (*ARRIVAL, *SPIN) if name in arrival))
 
     def reaches_met(self, name: str) -> list[tuple[float, float]]:
         """From where to where a property of the grains reaches by region and elsewhere; empty for other numbers."""
@@ -211,8 +225,8 @@ class DrawnDesign:
     @property
     def lawful_inputs(self) -> "dict[str, Distribution]":
         """The uncertain inputs that all first touchdowns draw by the law that the study gives."""
-        met = GRAIN if self.study.soil else None
-        return {name: law for name, law in self.inputs.items() if met is None or not name.startswith(met)}
+        met = (*self.met_on_the_way, *((GRAIN,) if self.study.soil else ()))
+        return {name: law for name, law in self.inputs.items() if not name.startswith(met)}
 
     def with_run_count(self, count: int) -> "DrawnDesign":
         """The design of the same study with so many runs, which has all runs of one with fewer."""

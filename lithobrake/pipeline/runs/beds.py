@@ -65,12 +65,16 @@ def compile_flights(job: Job) -> int:
 
 
 def fly_briefly(study: Study) -> None:
-    """Fly one lander from the site of a study for a second, and weigh it there; makes the gravity table."""
+    """Fly one lander from the site of a study for a second, find its facet there and its weight.
+
+    Makes the gravity table.
+    """
     from lithobrake.smallbody import fly
 
     site = DrawnDesign(study).site
     origin, axes = site.frames(site.columns(1))
     site.body.effective_acceleration(origin)
+    site.body.shape.nearest(origin)
     fly(site.body, origin, axes[:, 2], 1.0, gravity=study.flight.gravity)
 
 

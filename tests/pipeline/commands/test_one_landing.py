@@ -20,7 +20,7 @@ from lithobrake.pipeline import OneJourney, follow_one, land_one, landing_inputs
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
-from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource, read_study
 from lithobrake.touchdown import land
@@ -32,7 +32,8 @@ from ...few_grains import few_grains
 from ..synthetic_lander import SOIL, synthetic_tables
 from .soil_journeys import SOIL_JOURNEYS
 
-TEXT = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\n"
+REGION = "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\n"
+TEXT = f"{few_grains(30, 0.54, 0.05)}{REGION}[journey]\ntouchdowns = 1\n"
 
 
 @pytest.fixture
@@ -102,19 +103,32 @@ def test_one_run_of_the_sequence_is_its_row(run: int, study_file: Path) -> None:
     assert DrawnDesign(study).row(run) == DrawnDesign(study).with_run_count(run + 1).rows[-1]
 
 
-@pytest.mark.parametrize("changes", [[], ["grain.friction=0.55"], ["surface.gravity=3e-5"]])
-def test_a_landing_feels_the_gravity_of_the_site(changes: list[str], tmp_path: Path) -> None:
+@pytest.mark.parametrize("changes", [[], ["grain.friction=0.55"]])
+def test_a_landing_feels_the_gravity_of_its_place_and_the_bed_that_of_the_site(
+    changes: list[str], tmp_path: Path
+) -> None:
     path = tmp_path / "site.toml"
     path.write_text(TEXT.replace("gravity = 1e-4", 'gravity = "site"') + '[site]\nbody = "dimorphos"\n')
     study = read_study(path)
     assert study.surface.gravity == "site"
-    values = landing_inputs(study, changes)
-    felt = with_site_gravity(study).surface.gravity
-    assert isinstance(felt, float)
-    assert values["surface.gravity"] == (3e-5 if "surface.gravity=3e-5" in changes else felt)
+    values, of_bed = landing_inputs(study, changes), with_site_gravity(study)
+    site = Site(of_bed)
+    columns = site.sampled(1)
+    origin, axes = site.frames(columns)
+    # With the tide of the partner, which stands elsewhere at every landing.
+    (felt,) = site.body.felt(origin, site.clock(columns), columns["mass"], columns["spin_period"])
     found = land_one(study, values)
-    assert found.landing.gravity == pytest.approx((0.0, 0.0, -values["surface.gravity"]))
-    assert found.bed.gravity == pytest.approx((0.0, 0.0, -felt))
+    assert values["surface.gravity"] == pytest.approx(np.linalg.norm(felt), rel=1e-12)
+    assert np.linalg.norm(found.landing.gravity) == pytest.approx(np.linalg.norm(felt), rel=1e-12)
+    assert found.landing.gravity[2] == pytest.approx(axes[0, 2] @ felt, rel=1e-12)
+    assert found.bed.gravity == pytest.approx((0.0, 0.0, -of_bed.surface.gravity))
+
+
+def test_a_gravity_that_is_given_can_be_changed_for_a_landing_on_the_same_bed(study_file: Path) -> None:
+    study = read_study(study_file)
+    found = land_one(study, landing_inputs(study, ["surface.gravity=3e-5"]))
+    assert found.landing.gravity == pytest.approx((0.0, 0.0, -3e-5))
+    assert found.bed.gravity == pytest.approx((0.0, 0.0, -1e-4))
 
 
 def test_a_solver_of_the_user_has_no_soil() -> None:
@@ -145,11 +159,15 @@ def followed(journeys_file: Path) -> tuple[OneJourney, list[str]]:
     return follow_one(study, landing_inputs(study, number=NUMBER), told.append), told
 
 
+def touchdowns(found: OneJourney) -> list[dict[str, Any]]:
+    return found.journeys.touchdowns[found.lander]
+
+
 def test_it_has_the_bits_of_that_of_the_study(results: StudyResults, followed: tuple[OneJourney, list[str]]) -> None:
     found, _ = followed
     records = {record.key: record for record in read_records(results.folder / "runs.sqlite")}
     assert len(found.landings) > 1
-    for touchdown, made in zip(found.journey.touchdowns, found.landings, strict=True):
+    for touchdown, made in zip(touchdowns(found), found.landings, strict=True):
         record = records[touchdown["key"]]
         assert made.values == record.inputs
         assert {name: value for name, value in made.outcome.outputs.items() if not np.isnan(value)} == record.outputs
@@ -159,7 +177,7 @@ def test_it_has_the_bits_of_that_of_the_study(results: StudyResults, followed: t
     }
     # The flights between them, too.
     of_journey = results.touchdowns["journey"] == NUMBER
-    assert [one["begin_s"] for one in found.journey.touchdowns] == results.touchdowns["begin_s"][of_journey].tolist()
+    assert [one["begin_s"] for one in touchdowns(found)] == results.touchdowns["begin_s"][of_journey].tolist()
 
 
 def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJourney, list[str]]) -> None:
@@ -170,11 +188,13 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
     assert [int(line[0]) for line in lines] == list(range(len(found.landings)))
     for line, made in zip(lines, found.landings, strict=True):
         assert float(line[2]) == pytest.approx(made.values["impact.speed"], rel=5e-3)
-    # Each flight of a lander that came down again has its way over the ground. It is highest in between, so that it is
-    # nowhere faster than at the faster of its ends.
-    for (line, after), (one, another) in zip(pairwise(lines), pairwise(found.journey.touchdowns), strict=True):
+    # A lander that came down again has its way over the ground: on the bed, and in a flight that is highest in between,
+    # so that it is nowhere faster than at the faster of its ends.
+    rows = zip(pairwise(lines), pairwise(touchdowns(found)), found.landings[:-1], strict=True)
+    for (line, after), (one, another), made in rows:
+        on_bed = math.hypot(made.outcome.outputs["displacement_x"], made.outcome.outputs["displacement_y"])
         fastest = max(float(line[4]), float(after[2]))
-        assert 0.0 < float(line[6]) < fastest * (another["begin_s"] - one["end_s"])
+        assert 0.0 < float(line[6]) < on_bed + fastest * (another["begin_s"] - one["end_s"])
     assert track.end == JourneyEnd.AT_REST
     assert lines[-1][4] == "at rest"
     assert f"in {len(lines)} touchdowns, at latitude {track.end_place[0]:.3f}" in track.end_words

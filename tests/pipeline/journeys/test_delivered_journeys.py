@@ -482,7 +482,7 @@ def test_the_summary_and_the_page_have_it(journeys: StudyResults, journeys_folde
 def test_the_sky_without_journeys_is_refused() -> None:
     tables = deepcopy(paper_tables())
     tables["sky"] = {"sun_latitude_deg": 0.0}
-    with pytest.raises(StudyError, match="leave one out or add the other"):
+    with pytest.raises(StudyError, match=r"design.run_count is 0; raise it, or leave \[sky\] out"):
         check_tables(tables, Path())
     tables["sky"] = {"mask_deg": 10.0}
     with pytest.raises(StudyError, match="leave it out, or ask for one"):

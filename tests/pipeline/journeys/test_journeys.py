@@ -249,6 +249,19 @@ def test_journeys_on_rough_ground_end_and_are_followed_by_the_emulator(tmp_path:
     assert results.results.ends["at_rest"].share.value > 0.5
 
 
+def test_rough_ground_is_met_at_angles_and_spins_that_follow_no_law_of_the_study() -> None:
+    spin = {"spin_x": {"distribution": "uniform", "lower": 0.0, "upper": 0.02}}
+    smooth, rough = (DrawnDesign(rough_study(angle, **spin)) for angle in (0.0, 12.0))
+    met = ("impact.incidence_deg", "impact.spin_x")
+    assert (smooth.met_on_the_way, rough.met_on_the_way) == ((), met)
+    assert smooth.lawful_inputs == smooth.inputs
+    assert rough.inputs.keys() - rough.lawful_inputs.keys() == set(met)
+    for name in met:
+        low, high = rough.inputs[name].support
+        values = np.array([row[name] for row in rough.rows])
+        assert ((values < low) | (values > high)).any()
+
+
 def test_what_no_impact_reads_is_refused() -> None:
     one_ground = rough_tables(12.0) | {"surface": {"gravity": 5e-5}}
     one_ground["journey"] = {"count": 24, "touchdowns": 1}

@@ -116,13 +116,17 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     assert all_at_rest(landers, fitted).value == pytest.approx((90 + 50 + 100) / (90 + 100 + 100))
 
 
-def test_impacts_are_beyond_the_first_range_that_they_leave() -> None:
+@pytest.mark.parametrize(("touchdowns", "slow"), [(None, ""), (1, "impact.speed")])
+def test_impacts_are_beyond_the_first_range_that_they_leave(touchdowns: int | None, slow: str) -> None:
+    """To rest no impact is too slow; an emulator of first touchdowns alone knows no slower ones."""
+    journey = {} if touchdowns is None else {"touchdowns": touchdowns}
+    design = job_of(source_of(journey=journey)).design
     ranges = {"impact.speed": (0.1, 0.2), "surface.gravity": (4e-5, 5e-5)}
-    emulator = TouchdownEmulator(None, [], None, np.zeros(0), ranges, np.zeros((0, 3)), 0.0, 0.0)
+    emulator = TouchdownEmulator(design, [], None, np.zeros(0), ranges, np.zeros((0, 3)), 0.0, 0.0)
     found = emulator.beyond(
         {"impact.speed": np.array([0.15, 0.01, 0.3, 0.15]), "surface.gravity": np.array([4.5e-5, 5e-5, 1e-5, 1e-5])}
     )
-    assert found.tolist() == ["", "", "impact.speed", "surface.gravity"]
+    assert found.tolist() == ["", slow, "impact.speed", "surface.gravity"]
 
 
 def test_a_cell_has_what_the_journeys_of_the_study_have_there(site_map: SiteMap, journeys: StudyResults) -> None:
@@ -240,7 +244,7 @@ def test_counts_that_make_no_map_are_refused(words: list[str], message: str, tmp
 
 
 def test_studies_that_deliver_nothing_elsewhere_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"the study has no \[journey\]; add it"):
+    with pytest.raises(ValueError, match=r"this study has none; set journey.emulated_count above 0"):
         map_sites(StudySource.read(Path("scenarios/first_bounce.toml")), tmp_path)
     with pytest.raises(ValueError, match=r"\[delivery\] flies them to the ground from states"):
         map_sites(StudySource.read(Path("scenarios/release.toml")), tmp_path)

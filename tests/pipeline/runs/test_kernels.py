@@ -83,10 +83,11 @@ site = Site(study)
 origin, axes = site.frames(site.columns(3))
 velocity = 0.01 * axes[:, 2]
 fly(replace(site.body, partner=None), origin, velocity, 60.0, gravity="table", threads=2).jacobi_drift
-body, facet = site.body, site.body.shape.nearest(origin)[1]
-one = np.ones(3)
-ground = OnGround(body, facet, one, body.mass * one, body.spin_period * one, 0.0 * one)
-ends = slide(ground, origin, 0.01 * axes[:, 0], 3600.0 * one)
+# Over the equator the ground of this body holds nothing.
+body, one = site.body, np.ones(3)
+place = np.tile(body.shape.surface_point(60.0, 0.0), (3, 1))
+ground = OnGround(body, body.shape.nearest(place)[1], one, body.mass * one, body.spin_period * one, 0.0 * one)
+ends = slide(ground, place, 0.01 * axes[:, 0], 3600.0 * one)
 print(len(ahead), [form for form in called() if form not in ahead], ends.time.max() > 0.0)
 """
 

@@ -26,7 +26,7 @@ from lithobrake.touchdown import bed_library
 
 from ...few_grains import few_grains
 
-TEXT = few_grains(30, 0.54, 0.05).replace("[grain]", "bed_count = 3\n[grain]")
+TEXT = few_grains(30, 0.54, 0.05).replace("[grain]", "bed_count = 3\n[grain]") + "[journey]\ntouchdowns = 1\n"
 STUDY = check_tables(tomllib.loads(TEXT), Path())
 NAMES = tuple(bed_files(STUDY))
 

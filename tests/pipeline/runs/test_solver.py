@@ -187,7 +187,8 @@ density = 500.0
 def test_gyration_and_attitude_are_those_of_all_parts(tmp_path: Path) -> None:
     """A sphere alone is the same from all sides; a boom gives it axes, and its inertia to the bound of the spin."""
     path = tmp_path / "study.toml"
-    path.write_text(few_grains(30, 0.8, 0.05).replace("[surface]", PARTS + "[surface]"))
+    text = few_grains(30, 0.8, 0.05).replace("[surface]", PARTS + "[surface]")
+    path.write_text(f"{text}[journey]\ntouchdowns = 1\n")
     study = StudySource.read(path).study
     design = DrawnDesign(study)
     masses = np.array([0.1, 0.2, 0.1])
@@ -207,7 +208,7 @@ def test_a_study_of_a_lander_with_parts_has_their_numbers_among_its_inputs(tmp_p
     text = few_grains(30, 0.8, 0.05, "0.6").replace("[surface]", PARTS + "[surface]")
     text = text.replace('restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }', "restitution = 0.7")
     path = tmp_path / "study.toml"
-    path.write_text(f"seed = 5\n{text}[design]\nrun_count = 3\n")
+    path.write_text(f"seed = 5\n{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 3\n")
     run_study(StudySource.read(path), tmp_path / "out", until="runs", worker_count=1)
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path / "out"), "drawn")
     assert runs.run_count == 3
