@@ -19,9 +19,8 @@ from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, heigh
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
-from lithobrake.study import Study, StudySource
+from lithobrake.study import Study
 from lithobrake.study.units import conversion, input_units, run_units
-from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
@@ -133,7 +132,7 @@ class InferredStudy:
         folder = StudyFolder.only_read(path)
         if not (folder / EMULATOR_FILE).is_file():
             raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
-        source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
+        source = folder.source()
         study = with_site_gravity(source.study, source.name)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):

@@ -35,17 +35,18 @@ class StudySource:
     path: Path | None
 
     @classmethod
-    def read(cls, path: Path, function: str | None = None) -> "StudySource":
+    def read(cls, path: Path, function: str | None = None, folder: Path | None = None) -> "StudySource":
         """Read a study file, or the shipped study of a name.
 
-        function: identity of a Python function that makes the touchdowns in place of the soil.
+        function: identity of a Python function that makes the touchdowns in place of the soil. folder: from which
+        relative paths count, where the file is a copy; None: its own.
 
         Raises StudyError with one sentence for each problem.
         """
         path = study_path(path)
         content = read_bytes(path)
         tables = parse_tables(path, content)
-        return cls(check_tables(tables, path.resolve().parent, path.name, function), tables, content, path)
+        return cls(check_tables(tables, folder or path.resolve().parent, path.name, function), tables, content, path)
 
     @classmethod
     def of_tables(cls, tables: Mapping[str, Any], function: str | None = None) -> "StudySource":

@@ -23,7 +23,7 @@ from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.study_files import intact_file, json_values
 from lithobrake.statements.comparison import lines, other_beds, pairs
-from lithobrake.study import Study, StudySource
+from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN, counted
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
@@ -65,7 +65,7 @@ class OneStudy:
     def open(cls, path: Path) -> "OneStudy":
         """Read a folder. Raises ValueError for a study that draws no lander, or did not run to its summary."""
         results = open_study(path)
-        source = StudySource.read(intact_file(path, STUDY_FILE, REMEDY))
+        source = StudyFolder.only_read(path).source()
         if not source.study.design.run_count:
             raise ValueError(f"{path} draws no lander (design.run_count is 0); compare studies that draw some")
         runs = DesignRuns.load(StudyFolder.only_read(path), "drawn")

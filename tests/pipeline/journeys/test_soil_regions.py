@@ -10,6 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+import tomli_w
 
 import lithobrake
 from lithobrake.pipeline import run_study, study_status
@@ -22,6 +23,7 @@ from lithobrake.pipeline.planning.planned_ground import planned_soils
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.study import Study, StudyError
 from lithobrake.study.source import StudySource
@@ -227,6 +229,18 @@ def test_the_same_soil_changes_no_bit(body_file: Path, tmp_path: Path) -> None:
         assert (tmp_path / "all" / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
     plain, named = ((tmp_path / name / "touchdowns.csv").read_text().splitlines() for name in ("one", "all"))
     assert named == [f"{plain[0]},soil", *(f"{line},all" for line in plain[1:])]
+
+
+def test_paths_in_the_copy_of_a_study_count_from_where_the_study_file_was(body_file: Path, tmp_path: Path) -> None:
+    shutil.copy(body_file, tmp_path / "ball.obj")
+    given = tables(body_file, {}, journey={"count": 4, "emulated_count": 0}, bed={"bed_count": 2})
+    given["site"]["body"] = "ball.obj"
+    (tmp_path / "study.toml").write_text(tomli_w.dumps(given))
+    source = StudySource.read(tmp_path / "study.toml", function_identity(touchdown))
+    run_study(source, tmp_path / "made" / "out", until="runs", worker_count=1, model=touchdown)
+    found = StudyFolder.only_read(tmp_path / "made" / "out").source()
+    assert found.study.site.body == str(tmp_path / "ball.obj")
+    assert found.content == source.content
 
 
 def test_the_plan_states_the_regions(body_file: Path, tmp_path: Path) -> None:
