@@ -28,7 +28,8 @@ QUESTIONS: dict[str, dict[str, Any]] = {
     "limit_states": {"fast": "speed_out > 0.05", "gone": "escaped or speed_out > 0.2"},
     "expansion": {"screening_level": 2, "screening_degree": 2, "refined_level": 2, "refined_degree": 2,
                   "test_count": 20, "kept_outputs": ["speed_out"]},
-    "monte_carlo": {"sample_count": 1000},
+    "monte_carlo": {"sample_count": 400},
+    "journey": {"emulated_count": 100},
     "flight": {"flight_count": 60},
     "hard_ground": {"count": 20},
 }  # fmt: skip
@@ -67,7 +68,7 @@ def test_landers_to_rest_answer_every_question_together(asked: StudyResults) -> 
     assert found.aim is not None
     assert len(found.aim.aims) == 2
     assert found.samples is not None
-    assert (found.samples.model, found.samples.sample_count) == ("expansion", 1000)
+    assert (found.samples.model, found.samples.sample_count) == ("expansion", 400)
     assert found.emulator is not None
     assert set(found.hard_ground) >= {"hard"}
     assert len(asked.touchdowns["outcome"]) == found.touchdowns > found.journeys
@@ -133,7 +134,7 @@ def test_first_touchdowns_take_sky_soils_attitude_and_boulders(first: StudyResul
     assert set(found.soils) == {"slab", "elsewhere"}
     assert sum(one.touchdowns for one in found.soils.values()) == 48
     assert found.samples is not None
-    assert (found.samples.model, found.samples.sample_count) == ("emulator", 1000)
+    assert (found.samples.model, found.samples.sample_count) == ("emulator", 400)
     friction = first.samples["grain.friction"]
     # Half of the landers come down in the region, whose friction begins where that of the other ground ends.
     assert 0.2 < float(np.mean(friction < 0.5)) < 0.8
