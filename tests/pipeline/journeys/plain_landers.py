@@ -11,22 +11,16 @@ from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.smallbody import Body, Bounce
 from lithobrake.smallbody.ground_touchdowns import Bounces, Sliding
+from lithobrake.smallbody.hopping import Thrown
 from lithobrake.smallbody.landers import follow
-from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown, into_frame
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown
 
 
 @dataclass
-class Thrown:
-    """Every first touchdown ends as it is told, with a velocity and spin [count, 3], body-fixed; then as another's.
-
-    seen: the impacts after the first.
-    """
+class Recorded:
+    """Touchdowns of a model; seen: the impacts after the first of each lander."""
 
     touchdown: Touchdown
-    velocity: np.ndarray
-    spin: np.ndarray
-    captured: np.ndarray
 
     def __post_init__(self) -> None:
         self.seen: list[ImpactStates] = []
@@ -34,11 +28,7 @@ class Thrown:
     def answers(self, impacts: ImpactStates) -> Answers:
         if impacts.number[0] > 0:
             self.seen.append(impacts)
-            return self.touchdown.answers(impacts)
-        found, which = Answers.unknown(len(impacts)), impacts.lander
-        found.outcome[:] = np.where(self.captured[which], TouchdownOutcome.CAPTURED, TouchdownOutcome.CLEAR)
-        found.velocity[:], found.spin[:] = (into_frame(impacts.axes, one[which]) for one in (self.velocity, self.spin))
-        return found
+        return self.touchdown.answers(impacts)
 
 
 def thrown_landers(
@@ -82,11 +72,11 @@ def hop(
     captured: Any = False,
     friction: float = math.inf,
     **settings: Any,
-) -> tuple[StudyLanders, Thrown]:
+) -> tuple[StudyLanders, Recorded]:
     """Landers thrown with velocities [m/s], body-fixed, that bounce and slide until they have ended."""
     landers = thrown_landers(body, position, **settings)
     vectors = (np.broadcast_to(np.asarray(one, dtype=float), (len(landers), 3)) for one in (velocity, spin))
     lies = np.broadcast_to(captured, len(landers))
-    thrown = Thrown(Bounces(bounce, 0, "bounces"), *vectors, lies)
+    thrown = Recorded(Thrown(Bounces(bounce, 0, "bounces"), *vectors, lies))
     sliding = Sliding(thrown, body, np.full(len(landers), friction), rolls=False)
     return follow(landers, sliding), thrown

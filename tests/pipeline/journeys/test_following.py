@@ -10,12 +10,13 @@ from scipy import stats
 
 from lithobrake.smallbody import Body, HardSurface, Impacts, Rebounds, Shape, didymos, fly, rotation_history
 from lithobrake.smallbody.ground_touchdowns import Bounces
+from lithobrake.smallbody.hopping import Thrown
 from lithobrake.smallbody.landers import follow
 from lithobrake.smallbody.touchdown import Answers
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 from ...smallbody.meshes import CUBE_FACES, cube_vertices, sphere_mesh
-from .plain_landers import Thrown, hop, thrown_landers
+from .plain_landers import Recorded, hop, thrown_landers
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -290,9 +291,10 @@ def test_what_leaves_rough_ground_downward_meets_ground_again_at_once(plain: Bod
         np.zeros((200, 3)),
         np.zeros(200, bool),
     )
-    follow(landers, thrown)
+    recorded = Recorded(thrown)
+    follow(landers, recorded)
     normals, places, downward = {}, {}, 0
-    for seen in thrown.seen:
+    for seen in recorded.seen:
         for lander, place, axes in zip(seen.lander.tolist(), seen.position, seen.axes, strict=True):
             # Flights begin within a tenth of a millimetre of the ground, as starts on it may.
             if lander in places and np.linalg.norm(place - places[lander]) < 1e-3:
