@@ -158,12 +158,8 @@ class DrawnDesign:
             raise ValueError(f"lander {run + 1} of the study never touches down; choose another")
         return row
 
-    def own_soil(self, run: int) -> dict[str, float]:
-        """The numbers of [grain] that a run draws, by dotted key, whatever the region that it comes down in."""
-        return {name: float(values[0]) for name, values in self.own_soils(np.array([run])).items()}
-
     def own_soils(self, runs: np.ndarray) -> dict[str, np.ndarray]:
-        """The same of several runs, [run_count] each."""
+        """The numbers of [grain] that runs draw, by dotted key, [run_count], in whatever region they come down."""
         first, last = int(runs.min()), int(runs.max())
         count = last + 1 - first
         rows = self.rows_at([0] * count, self._points(count, skip=first))

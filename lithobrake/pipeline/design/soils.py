@@ -46,12 +46,9 @@ class Soils:
         """Touchdowns of journeys at places [m], [count, 3], on the soil of their regions; elsewhere as they are."""
         if not self.site.study.soil or not len(rows):
             return list(rows)
-        drawn = self.drawn([int(row["journey"]) for row in rows])
-        found = []
-        for number, (row, name) in enumerate(zip(rows, self.at(points), strict=True)):
-            own = {key: float(values[number]) for key, values in drawn.items() if _region(key) == name}
-            found.append(row | {_grain_key(key): value for key, value in own.items()})
-        return found
+        own = {key: np.array([row[key] for row in rows]) for key in {_grain_key(one): None for one in self.values}}
+        met = self.met(np.array([int(row["journey"]) for row in rows]), own, points)
+        return [row | {key: float(values[number]) for key, values in met.items()} for number, row in enumerate(rows)]
 
     def met(self, journeys: np.ndarray, own: Mapping[str, np.ndarray], points: np.ndarray) -> dict[str, np.ndarray]:
         """The numbers of the grains that landers meet at places [m], [count, 3], by dotted key, [count] each.

@@ -100,9 +100,9 @@ class LandingRows:
         """
         if not self.design.study.soil:
             return {}
-        own = self.design.own_soil(journey)
-        (met,) = self._soils.on_soil([own | {"journey": float(journey)}], place[None])
-        return {key: met[key] for key in own}
+        own = self.design.own_soils(np.array([journey]))
+        met = self._soils.met(np.array([journey]), own, place[None])
+        return {key: float(values[0]) for key, values in met.items()}
 
     def soil_column(self, place: np.ndarray) -> dict[str, str]:
         """The region of a touchdown at a place [m], [3], as its table has it; nothing where there are no regions."""

@@ -185,7 +185,7 @@ def test_every_touchdown_is_on_the_soil_of_its_place(made: StudyResults, body_fi
     study = with_site_gravity(read(body_file, {"sink": SINK, "strip": STRIP}))
     in_strip, design = Soils(Site(study)).drawn(range(COUNT))["soil.strip.grain.friction"], DrawnDesign(study)
     journey = table["journey"].astype(int)
-    own = np.array([design.own_soil(number)["grain.friction"] for number in range(COUNT)])
+    own = design.own_soils(np.arange(COUNT))["grain.friction"]
     # One draw of a journey for the strip, wherever it was before, and one for all other ground.
     assert table["grain.friction"].tolist() == np.where(strip, in_strip[journey], own[journey]).tolist()
     assert [n for n in range(COUNT) if len(set(table["soil"][journey == n].tolist())) > 1]
@@ -201,7 +201,9 @@ def test_landers_that_are_flown_down_meet_the_soil_of_where_they_come_down(body_
         flown = given | {"delivery": given["delivery"] | {"release": down}}
         design = DrawnDesign(with_site_gravity(StudySource.of_tables(flown).study))
         assert [row["grain.restitution"] for row in design.rows] == [restitution] * 2
-        assert [row["grain.friction"] for row in design.rows] == [design.own_soil(n)["grain.friction"] for n in (0, 1)]
+        assert [row["grain.friction"] for row in design.rows] == design.own_soils(np.arange(2))[
+            "grain.friction"
+        ].tolist()
 
 
 def test_a_soil_that_captures_holds_every_lander(made: StudyResults) -> None:
