@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.files.atomic import locked, write_json, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
-from lithobrake.results.study_files import KEYS, LOCK, intact_file
+from lithobrake.results.study_files import KEYS, LOCK, folder_of_paths, intact_file
 from lithobrake.vocabulary.file_names import STUDY_FILE
 
 if TYPE_CHECKING:
@@ -142,8 +142,8 @@ class StudyFolder:
         """
         from lithobrake.study import StudySource
 
-        copy, noted = intact_file(self.path, STUDY_FILE, REMEDY), Notes.read(self.path).study_path(self.path)
-        return StudySource.read(copy, folder=noted.parent if noted else Path.cwd())
+        copy = intact_file(self.path, STUDY_FILE, REMEDY)
+        return StudySource.read(copy, folder=folder_of_paths(self.path, REMEDY))
 
     def alone(self) -> AbstractContextManager[Callable[..., None]]:
         """Work in the folder while nobody else does, and note at what. Raises ValueError when another process does."""

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.files.reading import read_json, reading
+from lithobrake.files.reading import reading
+from lithobrake.results.study_files import folder_of_paths
 from lithobrake.study import Study, check_tables, load_tables
 from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.touchdown_model import TouchdownModel, engine_hash, landing, stored_bed, touchdown_version
@@ -131,11 +132,7 @@ def landing_study(folder: Path) -> Study:
     if "states" in delivery:
         still = {"position": [0.0, 0.0, 0.0], "velocity": [0.0, 0.0, 0.0]}
         tables["delivery"] = {key: value for key, value in delivery.items() if key != "states"} | {"release": still}
-    noted = {"file": ""}
-    if (folder / "keys.json").is_file():
-        noted = read_json(folder / "keys.json", {"study": {"file": str}}, "put a copy of it back")["study"]
-    # Paths in a study file count from where it lies, which is not where its copy does.
-    return check_tables(tables, (folder / noted["file"]).resolve().parent if noted["file"] else Path.cwd())
+    return check_tables(tables, folder_of_paths(folder, "put a copy of it back"))
 
 
 def _refuse_another_landing(name: str, record: "Record", outcome: "Outcome", again: str) -> None:

@@ -39,6 +39,17 @@ OF_SAMPLES = (
 T = TypeVar("T")
 
 
+def folder_of_paths(folder: Path, remedy: str) -> Path:
+    """From where relative paths count in the copy of a study: where its file lay, or the current folder for tables."""
+    if not (folder / KEYS).is_file():
+        return Path.cwd()
+    notes = read_json(folder / KEYS, dict, remedy)
+    with reading(folder / KEYS, remedy):
+        # Notes of the first format name no study file.
+        file = notes.get("study", {}).get("file", "")
+        return (folder / file).resolve().parent if file else Path.cwd()
+
+
 def intact_file(folder: Path, name: str, remedy: str) -> Path:
     """The path of a file of a folder, there or not.
 
