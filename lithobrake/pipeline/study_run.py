@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training_data import one_thread
@@ -18,7 +18,7 @@ from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.outdated_files import make, setting
 from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
-from lithobrake.pipeline.runs.solver import Model, function_identity
+from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import stages_until

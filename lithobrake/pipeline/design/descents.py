@@ -19,7 +19,7 @@ from lithobrake.study.ground_checks import contact_problems
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Flights
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
 # Of a direction from the centre next to the pole, about which north is any.
 POLAR = 1e-9
-Row = dict[str, float]
 # A start so far below the ground is on it, of a millionth of the radius and at most [m].
 SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
