@@ -239,4 +239,4 @@ LengthUnit = Literal["m", "km", "cm", "mm"]
 class Section(BaseModel):
     """One table of the study file; a key that it does not know is refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, defer_build=True)
