@@ -13,6 +13,7 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
+from lithobrake.study.delivered_states import delivery_warning
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
@@ -119,6 +120,17 @@ class Site:
             f"The body rotates from the state in [site.rotation]: its long axis deviates by up to {x:.0f} deg and its "
             f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {duration(DAY * start.days)}."
         )
+
+    @cached_property
+    def cautions(self) -> tuple[str, ...]:
+        """What the study takes for many deliveries where it is one, in sentences."""
+        words = delivery_warning(self.study)
+        return () if words is None else (words,)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What to know of the study before its landers fly, in sentences."""
+        return [*self.cautions, *filter(None, (self.warning, self.rotation_words))]
 
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """Times at which landers arrive [s], [count], of the partner's motion and of the body's rotation.

@@ -109,11 +109,8 @@ def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     orbiter = study.sky.orbiter
     assert orbiter is not None
     if orbiter.states is not None:
-        states = orbiter_states(study)
-        # Each stands for half the time to its neighbours.
-        ends = np.concatenate([states.time[:1], 0.5 * (states.time[1:] + states.time[:-1]), states.time[-1:]])
-        weight = np.diff(ends)
-        return OrbiterPlaces(states.position, weight / weight.sum())
+        states, weight = orbiter_states(study)
+        return OrbiterPlaces(states.position, weight)
     if orbiter.kernel_name is not None:
         return OrbiterPlaces(
             _of_kernels(study, orbiter.kernel_name, sky_dates(study, PLACES)), np.full(PLACES, 1.0 / PLACES)

@@ -13,9 +13,10 @@ from lithobrake.pipeline.design import arrivals
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
-from lithobrake.study.delivered_states import DeliveredStates, states_of
+from lithobrake.study.delivered_states import states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
+from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
