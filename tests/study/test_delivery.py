@@ -143,6 +143,12 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
     (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
     (("210", "nan"), "line 3: y is"),
+    (("210", "1e308"), 'line 3: y is "1e308"; allowed: a finite number, at most 1e+09 m in size'),
+    (("-0.05", "1e200"), 'line 2: vy is "1e200"; allowed: a finite number, at most 1e+06 m/s'),
+    (("1,0,210", "1e300,0,210"), 'line 3: time is "1e300"; allowed: a finite number, at most 1e+12 s'),
+    ((",y_m", ";y_m"), "has comma and semicolon; allowed: titles such as time_s, x_m"),
+    ((STATES, STATES.replace(",", " ")), "has no separator"),
+    ((STATES, STATES.replace(",", ";").replace("-0.05", "-0,05")), "a finite number, with a decimal point"),
     ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
     (("time_s", "<xml>"), "is XML"),
     ((",vz_m_s", ""), "the column vz_m_s is missing"),
@@ -191,13 +197,18 @@ META_STOP
 
 @pytest.mark.parametrize(("change", "frame", "words"), [
     (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
-    (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
+    (("", ""), "body_fixed", 'line 8: REF_FRAME is ICRF, and the states of the study are "body_fixed"'),
     (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
     (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
     (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
     (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
     (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
     (("META_START", "META_STOP"), "icrf", "the segment has no"),
+    (("META_STOP\n", ""), "icrf", "line 7: the block META_START has no META_STOP before it; write it"),
+    (("REF_FRAME", "TIME_SYSTEM = UTC\nREF_FRAME"), "icrf", "line 7: TIME_SYSTEM stands twice in its segment"),
+    (("META_STOP\n", "META_STOP\nCOVARIANCE_START\n"), "icrf", "COVARIANCE_START has no COVARIANCE_STOP"),
+    (("0 0.2 0 0 -5e-5 0\n2027", "0 1e308 0 0 -5e-5 0\n2027"), "icrf", "line 8: a number is not finite or too large"),
+    (("META_STOP", "USEABLE_START_TIME = noon\nMETA_STOP"), "icrf", "line 8: USEABLE_START_TIME is noon"),
 ])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path
@@ -214,7 +225,7 @@ def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
     path.write_text(OEM)
     found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
     assert (found.time.tolist(), found.position[0].tolist()) == ([0.5, 10.0], [0.0, 200.0, 0.0])
-    assert read_states(path, "icrf", None, ()).time.tolist() == [0.0, 9.5]
+    assert read_states(path, "icrf", None, ("DIMORPHOS",)).time.tolist() == [0.0, 9.5]
 
 
 BOOM = {"shape": "box", "edges": [1.5, 0.01, 0.02], "centre": [0.93, 0.0, 0.01], "mass": 0.05}
