@@ -11,8 +11,9 @@ import numpy as np
 
 from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.files.oem_reader import USEABLE, MessageState, message_states, useable_time
+from lithobrake.study.delivery_sections import LARGEST
 from lithobrake.study.impact_sections import SiteSection
-from lithobrake.study.state_paths import LARGEST, DeliveredStates, Segment, orbiter_path, path_warning, useable
+from lithobrake.study.state_paths import DeliveredStates, Segment, orbiter_path, path_warning, useable
 from lithobrake.study.state_tables import table_states
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.plain_text import show

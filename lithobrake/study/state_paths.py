@@ -7,9 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Largest numbers of a state by their units: an orbit is well within the first about any small body, and the second is
-# far above what one turns by at that distance. The resolution of a larger time is worse than 0.1 ms.
-LARGEST = {"m": 1e9, "m/s": 1e6, "s": 1e12, "rad/s": 1e3}
 # Two states lie on one path where the way between them is the mean of their velocities times the time, within this part
 # of it; of other landers it is off by its own size, and three in a row are no chance.
 PATH_ERROR = 0.1

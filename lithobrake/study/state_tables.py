@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lithobrake.study.state_paths import LARGEST, DeliveredStates
+from lithobrake.study.delivery_sections import LARGEST
+from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.plain_text import closest, show
 

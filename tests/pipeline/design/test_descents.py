@@ -304,6 +304,15 @@ def test_a_state_below_the_ground_is_refused_with_its_line(tmp_path: Path) -> No
         _ = DrawnDesign(study(delivery=released(position=[0.0, 60.0, 0.0]))).descents
 
 
+def test_a_state_within_the_partner_is_refused_with_its_line(tmp_path: Path) -> None:
+    """Didymos stands 1157 m from Dimorphos, over longitude 0, and reaches 425 m."""
+    states = some_states()
+    states[2, 1:4] = [1180.0, 0.0, 0.0]
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    with pytest.raises(StudyError, match=r"states\.csv, line 4 lies 30\d m below the surface of didymos; allowed"):
+        _ = DrawnDesign(study(delivery={"states": path}, site={"partner": True})).descents
+
+
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
     with pytest.raises(StudyError, match=r"impact\.speed reaches"):
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
