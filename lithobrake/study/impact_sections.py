@@ -2,10 +2,12 @@
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, Strict
 
+from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 
@@ -272,6 +274,9 @@ def _key_problems(site: SiteSection) -> Iterator[str]:
     for path in site.kernels:
         if not os.path.isfile(path):
             yield f'site.kernels has "{path}"; no such file; give its path from the study file'
+        elif (kind := file_kind(Path(path))) not in (None, FileKind.TEXT_KERNEL, FileKind.BINARY_KERNEL):
+            remedy = "give it as site.body" if kind is FileKind.SHAPE_KERNEL else "leave it out"
+            yield f'site.kernels has "{path}", which is {kind}; allowed: PCK, LSK, SPK and meta-kernels; {remedy}'
     built_in = site.body in BUILT_IN_BODIES
     if not built_in and site.kernel_body is None:
         yield 'site.kernel_body is missing; kernels know a mesh by the name of its body, say "bennu", or its number'
