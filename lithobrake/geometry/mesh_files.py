@@ -38,7 +38,9 @@ def _refuse_kind(path: Path, ending: str) -> None:
     kind = file_kind(path)
     endings = ENDINGS.get(kind, ()) if kind else READERS
     if kind and not endings:
-        raise ValueError(f"{path} is {kind}; meshes are read from OBJ, STL, PDS plates, ICQ and shape kernels: convert.")
+        raise ValueError(
+            f"{path} is {kind}; meshes are read from OBJ, STL, PDS plates, ICQ and shape kernels: convert."
+        )
     if kind and ending not in endings:
         raise ValueError(f"{path} is {kind}, which its ending does not say; allowed: {', '.join(endings)}; rename it.")
 

@@ -75,9 +75,13 @@ class ReleaseSection(quantity.Section):
 
     time: Annotated[float, quantity.Number("s", at_least=-LATE, at_most=LATE)] = 0.0
     """Time of the release, counted from delivery.epoch."""
-    position: Annotated[tuple[float, ...], quantity.Numbers("m", at_least=-FAR, at_most=FAR)] = Field(examples=["[0.0, -300.0, 0.0]"])
+    position: Annotated[tuple[float, ...], quantity.Numbers("m", at_least=-FAR, at_most=FAR)] = Field(
+        examples=["[0.0, -300.0, 0.0]"]
+    )
     """x, y, z from the centre of the body."""
-    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s", at_least=-FAST, at_most=FAST)] = Field(examples=["[0.0, 0.03, 0.0]"])
+    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s", at_least=-FAST, at_most=FAST)] = Field(
+        examples=["[0.0, 0.03, 0.0]"]
+    )
     """Along the same axes."""
     position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0, at_most=FAR)] | None = Field(
         default=None, examples=["30.0"]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class DeliveredStates:
     def chosen(self, rows: np.ndarray) -> "DeliveredStates":
         """Those of these numbers, in this order."""
         columns = ("time", "position", "velocity", "attitude", "rates", "segment")
-        given = {name: None if (one := getattr(self, name)) is None else one[rows] for name in columns}
+        given: dict[str, Any] = {name: None if (one := getattr(self, name)) is None else one[rows] for name in columns}
         return replace(self, source=[self.source[row] for row in rows.tolist()], **given)
 
     @property

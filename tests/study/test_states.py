@@ -57,14 +57,19 @@ def test_a_file_is_recognised_by_its_content(content: bytes, kind: FileKind | No
     path.write_bytes(content)
     assert file_kind(path) is kind
     if kind not in (None, FileKind.OEM):
-        with pytest.raises(ValueError, match="states are read from an OEM as keyword = value text, or from a CSV") as error:
+        with pytest.raises(
+            ValueError, match="states are read from an OEM as keyword = value text, or from a CSV"
+        ) as error:
             read_states(path, "icrf", None, ("RYUGU",))
         assert str(error.value).startswith(f"file.csv is {kind}; ")
 
 
 def test_the_remedy_of_another_kind_is_its_own(tmp_path: Path) -> None:
     path = tmp_path / "states"
-    for content, remedy in ((META, "write CCSDS_OEM_VERS = 2.0 as its first line"), ("X_DOT = 1", "[delivery.release]")):
+    for content, remedy in (
+        (META, "write CCSDS_OEM_VERS = 2.0 as its first line"),
+        ("X_DOT = 1", "[delivery.release]"),
+    ):
         path.write_text(content)
         with pytest.raises(ValueError, match="states are read") as error:
             read_states(path, "icrf", None, ("RYUGU",))

@@ -177,6 +177,7 @@ def flight_dependencies(study: Study) -> dict[str, Any]:
     later = {
         "gravity_facets": study.site.gravity_facets,
         "extents": study.site.extents,
+        "partner_body": None if study.site.partner_body is None else study.site.partner_body.model_dump(),
         "rotation": None if turning is None else turning.model_dump(mode="json"),
     }
     return (
