@@ -70,8 +70,8 @@ def ball_partner(
 ) -> Partner:
     """A partner of a body: a ball of a mass [kg] and a diameter [m] on a circle, which always shows it one face.
 
-    The orbit is given by its period [s], or by the distance of the centres [m]; with neither, the body keeps one face to
-    its partner.
+    The orbit is given by its period [s], or by the distance of the centres [m]; with neither, the body keeps one face
+    to its partner.
     """
     ball = Body(_ball(diameter, name), mass, body.spin_period, name)
     if distance is not None:

@@ -22,7 +22,7 @@ SMALLEST, LARGEST = 1.0, 1e6
 # Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
 FASTEST = 1.0
 # Of a body, as other programs take it too.
-NAME = r"[A-Za-z0-9][\w -]{0,39}"
+NAME, NAME_WORDS = r"[A-Za-z0-9][\w -]{0,39}", "1 to 40 letters, digits, blanks, _ and -"
 SYNCHRONOUS = [key for key, body in BUILT_IN_BODIES.items() if body.is_synchronous]
 # A body whose spin period is within this part of that of its orbit keeps one face to its partner: distances are not
 # known well enough to tell the two apart.
@@ -91,7 +91,7 @@ def _name_problems(study: Study) -> Iterator[str]:
     if study.site.body in BUILT_IN_BODIES:
         yield f"site.name is {show(name)}, and site.body is built in and has one; leave it out"
     elif not re.fullmatch(NAME, name, flags=re.ASCII):
-        yield f"site.name is {show(name)}; allowed: 1 to 40 letters, digits, blanks, _ and -; write such a name"
+        yield f"site.name is {show(name)}; allowed: {NAME_WORDS}; write such a name"
 
 
 def _spin_problems(study: Study) -> Iterator[str]:
@@ -124,6 +124,8 @@ def _partner_problems(study: Study) -> Iterator[str]:
     if site.body in BUILT_IN_BODIES or not site.partner:
         why = f"site.body is {show(site.body)}, which has its own" if site.partner else "site.partner is false"
         yield f"site.partner_body is given, and {why}; keep one of the two"
+    if not re.fullmatch(NAME, partner.name, flags=re.ASCII):
+        yield f"site.partner_body.name is {show(partner.name)}; allowed: {NAME_WORDS}; write such a name"
     if partner.period is not None and partner.distance is not None:
         yield (
             f"site.partner_body.period is {partner.period:g} s and distance {partner.distance:g} m; either follows "
@@ -152,8 +154,8 @@ def partner_warning(site: SiteSection) -> str | None:
         return None
     return (
         f"{known.name} orbits with {other.name}, which this study leaves out: weights and flights lack its attraction; "
-        f'write [site.partner_body] with name = "{other.name}", mass = {other.mass:g} and diameter = {other.diameter:g}, '
-        f"or site.partner = false if it is meant so."
+        f'write [site.partner_body] with name = "{other.name}", mass = {other.mass:g} and diameter = '
+        f"{other.diameter:g}, or site.partner = false if it is meant so."
     )
 
 

@@ -171,6 +171,6 @@ def _refuse_segment(state: MessageState, name: str, frame: str, centres: Sequenc
     if frame == "body_fixed" and _plain(given) in ICRF_NAMES:
         remedy = 'of a delivery write delivery.frame = "icrf"'
     raise ValueError(
-        f'{where}: REF_FRAME is {given}, and the states of the study are "{frame}"; allowed: {", ".join(known)}; convert '
-        f"the states, or {remedy}"
+        f'{where}: REF_FRAME is {given}, and the states of the study are "{frame}"; allowed: {", ".join(known)}; '
+        f"convert the states, or {remedy}"
     )

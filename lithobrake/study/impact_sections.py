@@ -133,9 +133,9 @@ class RotationSection(Section):
 
 
 class PartnerSection(Section):
-    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball on a circular orbit
-    in the plane of the equator, which attracts and may be hit. `period` or `distance` gives the orbit; with neither the
-    body keeps one face to its partner, over longitude 0."""
+    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball on a circular
+    orbit in the plane of the equator, which attracts and may be hit. `period` or `distance` gives the orbit; with
+    neither the body keeps one face to its partner, over longitude 0."""
 
     name: str = "partner"
     """Name of the partner."""
@@ -167,7 +167,8 @@ class SiteSection(Section):
     """Number of facets for the gravity. A mesh with more facets is simplified for this purpose, with the same volume
     and centroid; the ground keeps the whole mesh. Absent: all facets."""
     partner: Annotated[bool, Strict()] = True
-    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
+    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper. A mesh
+    has the one of `partner_body`; false: none is meant."""
     partner_body: PartnerSection | None = None
     partner_longitude_deg: Angle | None = None
     """East longitude over which the partner is when the lander leaves. Absent: unknown, sampled over the circle; 0 of a
