@@ -13,7 +13,7 @@ from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.files.oem_reader import USEABLE, MessageState, message_states, useable_time
 from lithobrake.study.delivery_sections import LARGEST
 from lithobrake.study.impact_sections import SiteSection
-from lithobrake.study.state_paths import DeliveredStates, Segment, orbiter_path, path_warning, useable
+from lithobrake.study.state_paths import DeliveredStates, StateSegment, orbiter_path, path_warning, useable
 from lithobrake.study.state_tables import table_states
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.plain_text import show
@@ -143,10 +143,10 @@ def _of_message(
     )
 
 
-def _segment(given: dict[str, str], start: datetime) -> Segment:
+def _segment(given: dict[str, str], start: datetime) -> StateSegment:
     """What a segment says of its states; start: when their time is 0."""
     begin, end = (useable_time(given, key) for key in USEABLE)
-    return Segment(
+    return StateSegment(
         given.get("OBJECT_NAME", ""),
         "INTERPOLATION" in given,
         -math.inf if begin is None else (begin - start).total_seconds(),

@@ -12,7 +12,7 @@ import numpy as np
 PATH_ERROR = 0.1
 
 
-class Segment(NamedTuple):
+class StateSegment(NamedTuple):
     """What a file says of some of its states: the name of their object, whether they are to be interpolated, as states
     of one path are, and between which times they count [s]; a table says nothing."""
 
@@ -41,7 +41,7 @@ class DeliveredStates:
     attitude: np.ndarray | None = None
     rates: np.ndarray | None = None
     segment: np.ndarray | None = None
-    segments: Sequence[Segment] = (Segment(),)
+    segments: Sequence[StateSegment] = (StateSegment(),)
 
     def rows(self, first: int, count: int) -> "DeliveredStates":
         return self.chosen(np.arange(len(self.time))[first : first + count])

@@ -9,7 +9,7 @@ import pytest
 from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.study.delivered_states import names_of_body, read_states
 from lithobrake.study.impact_sections import SiteSection
-from lithobrake.study.state_paths import DeliveredStates, Segment, orbiter_path, path_warning, paths, useable
+from lithobrake.study.state_paths import DeliveredStates, StateSegment, orbiter_path, path_warning, paths, useable
 
 TITLES = "time_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s"
 META = "META_START\nOBJECT_NAME = A\nCENTER_NAME = RYUGU\nREF_FRAME = ICRF\nTIME_SYSTEM = UTC\nMETA_STOP\n"
@@ -119,7 +119,9 @@ def test_a_mesh_without_a_name_has_that_of_its_file() -> None:
     assert names_of_body(SiteSection(body="dimorphos")) == ["DIMORPHOS", "120065803"]
 
 
-def states(times: list[float], segment: list[int] | None = None, *segments: Segment, **more: Any) -> DeliveredStates:
+def states(
+    times: list[float], segment: list[int] | None = None, *segments: StateSegment, **more: Any
+) -> DeliveredStates:
     """States at 1 cm/s along x whose places are 40 m apart, or as given: of landers that have nothing in common."""
     count = len(times)
     apart = 40.0 * np.random.default_rng(2).standard_normal((count, 3))
@@ -127,7 +129,7 @@ def states(times: list[float], segment: list[int] | None = None, *segments: Segm
     given = {"position": apart, "velocity": velocity} | more
     return DeliveredStates(
         [f"line {row}" for row in range(count)], np.array(times), **given,
-        segment=None if segment is None else np.array(segment), segments=segments or (Segment(),),
+        segment=None if segment is None else np.array(segment), segments=segments or (StateSegment(),),
     )  # fmt: skip
 
 
@@ -138,8 +140,8 @@ def along(times: list[float]) -> dict[str, Any]:
             "velocity": (1e-4 * t + 0.02) * [1.0, 0.0, 0.0]}  # fmt: skip
 
 
-A, B = Segment("A"), Segment("B")
-PATH = Segment("A", is_path=True)
+A, B = StateSegment("A"), StateSegment("B")
+PATH = StateSegment("A", is_path=True)
 FALL = [0.0, 60.0, 120.0, 180.0]
 # What states stand for: times, segments, and the paths that they lie on.
 STAND_FOR: dict[str, tuple[DeliveredStates, list[int]]] = {
@@ -150,7 +152,7 @@ STAND_FOR: dict[str, tuple[DeliveredStates, list[int]]] = {
     "two by chance on one line": (states(FALL[:2], **along(FALL[:2])), [0, 1]),
     "a segment to be interpolated": (states(FALL, [0] * 4, PATH), [0, 0, 0, 0]),
     "a segment without a word": (states(FALL, [0] * 4, A), [0, 1, 2, 3]),
-    "a lander a segment": (states(FALL, [0, 0, 1, 1], PATH, Segment("B", is_path=True)), [0, 0, 1, 1]),
+    "a lander a segment": (states(FALL, [0, 0, 1, 1], PATH, StateSegment("B", is_path=True)), [0, 0, 1, 1]),
     "one object with a gap": (states(FALL, [0, 0, 1, 1], PATH, PATH), [0, 0, 0, 0]),
     "one name for two landers": (states([0.0, 60.0, 0.0, 60.0], [0, 0, 1, 1], PATH, PATH), [0, 0, 1, 1]),
 }
@@ -168,7 +170,7 @@ def test_states_on_one_path_are_one_delivery(given: DeliveredStates, wanted: lis
 
 
 def test_states_beyond_the_useable_time_are_no_landers() -> None:
-    found = useable(states(FALL, [0, 0, 1, 1], Segment("A", end=30.0), Segment("B", begin=180.0)))
+    found = useable(states(FALL, [0, 0, 1, 1], StateSegment("A", end=30.0), StateSegment("B", begin=180.0)))
     assert (found.source, found.time.tolist()) == (["line 0", "line 3"], [0.0, 180.0])
 
 
@@ -179,10 +181,10 @@ WEIGHTS: dict[str, tuple[DeliveredStates, list[float], list[float]]] = {
         states([0.0, 10.0, 1000.0, 1010.0], [0, 0, 1, 1], A, A), [0.0, 10.0, 1000.0, 1010.0], [0.25] * 4),
     "segments that meet": (states([0.0, 10.0, 10.0, 20.0], [0, 0, 1, 1], A, A), [0.0, 10.0, 10.0, 20.0], [0.25] * 4),
     "within the useable time": (
-        states([0.0, 10.0, 20.0, 30.0], [0] * 4, Segment("A", begin=8.0, end=20.0)), [0.0, 10.0, 20.0, 30.0],
+        states([0.0, 10.0, 20.0, 30.0], [0] * 4, StateSegment("A", begin=8.0, end=20.0)), [0.0, 10.0, 20.0, 30.0],
         [0.0, 7 / 12, 5 / 12, 0.0]),
     "segments cut to their useable times": (
-        states([0.0, 20.0, 10.0, 30.0], [0, 0, 1, 1], Segment("A", end=15.0), Segment("A", begin=15.0)),
+        states([0.0, 20.0, 10.0, 30.0], [0, 0, 1, 1], StateSegment("A", end=15.0), StateSegment("A", begin=15.0)),
         [0.0, 20.0, 10.0, 30.0], [10 / 30, 5 / 30, 5 / 30, 10 / 30]),
 }  # fmt: skip
 
