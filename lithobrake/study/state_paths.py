@@ -101,8 +101,8 @@ def path_warning(states: DeliveredStates) -> str | None:
     return (
         f"The {count} states of delivery.states lie on {whole} ({states.source[first]} to {states.source[last]}"
         f"{' are one' if path_count > 1 else ''}), and states along a path are one delivery: the {count} landers stand "
-        f"for {path_count} {'delivery' if path_count == 1 else 'deliveries'}, of which alone fractions and intervals "
-        "hold; give one state per lander, or the spread in [delivery.release]."
+        f"for {path_count} {'delivery' if path_count == 1 else 'deliveries'}, and fractions and intervals hold for no "
+        "other; give one state per lander, or the spread in [delivery.release]."
     )
 
 
