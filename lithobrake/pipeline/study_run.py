@@ -21,6 +21,7 @@ from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sky_at_rest import refuse_hidden_orbiter
 from lithobrake.pipeline.stages import stages_until
 from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.report.plotted_study import PlottedStudy
@@ -110,6 +111,7 @@ def run_study(
     stages_until(study, until)
     drawn = DrawnDesign(study)
     Soils(drawn.site).refuse(source.name)
+    refuse_hidden_orbiter(drawn.site)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)
     folder = StudyFolder(out)

@@ -65,6 +65,21 @@ def median(value: Scalar) -> float:
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
 
 
+def scaled(value: Scalar, factor: float) -> Scalar:
+    """A factor above 0 times a number or, whatever its distribution, an uncertain one."""
+    if not isinstance(value, Uncertain):
+        return factor * value
+    changed = dict(value.parameters)
+    for name in changed:
+        if value.distribution == "log_normal":
+            changed[name] += math.log(factor) if name == "mean" else 0.0
+        elif name in ("lower", "upper", "mean", "std", "scale"):
+            changed[name] *= factor
+        elif name == "rate":
+            changed[name] /= factor
+    return Uncertain(value.distribution, changed)
+
+
 def reach(value: Scalar) -> tuple[float, float]:
     """Smallest and largest possible value; infinite where its distribution has no end."""
     return value.support() if isinstance(value, Uncertain) else (value, value)
