@@ -15,6 +15,7 @@ from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
+from lithobrake.pipeline.planning.known_journeys import journeys_under_way
 from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
 from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
@@ -81,7 +82,8 @@ def plan_of(
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
-    made = _made(study, stale.keys(), runs, beds)
+    under_way = journeys_under_way(folder, set(design.keys), known) if _makes_journeys(study, stale.keys()) else 0
+    made = _made(study, stale.keys(), runs, beds, under_way)
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
@@ -113,15 +115,15 @@ def plan_of(
 
 
 def _made(
-    study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...]
+    study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...], under_way: int
 ) -> dict[str, tuple[int, int]]:
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
-    if study.journey.touchdowns != 1:
-        landers = [min(one.new, one.drawn) if stale & MAKE_RUNS else 0 for one in runs]
-        journeys = min(landers), max(landers)
-        touchdowns = touchdowns[0] - journeys[0], touchdowns[1] - journeys[1]
+    if _makes_journeys(study, stale):
+        landers = [one.drawn_new for one in runs]
+        touchdowns = touchdowns[0] - min(landers), touchdowns[1] - max(landers)
+        journeys = min(landers) + under_way, max(landers) + under_way
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),
@@ -132,6 +134,10 @@ def _made(
         "flights": (0, expected_time.flight_count(study) if "fly" in stale else 0),
         "journeys": (expected_time.followed_count(study),) * 2 if stale & FOLLOWED else (0, 0),
     }
+
+
+def _makes_journeys(study: Study, stale: Set[str]) -> bool:
+    return study.journey.touchdowns != 1 and bool(stale & MAKE_RUNS)
 
 
 def _no_room(needed: int, free: int) -> list[str]:
