@@ -182,7 +182,9 @@ class _Chains:
     def _pending(self, key: str, row: dict[str, float], attempts: int, rank: int) -> PendingRun:
         options = self.options
         log = options.log_folder and options.log_folder / f"{key}.log"
-        return PendingRun(_callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts, rank)
+        return PendingRun(
+            _callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts, rank
+        )
 
     def _queue(self, pending: Mapping[str, PendingRun], *, adds: bool) -> None:
         """Enter runs that are to be made into the ledger; adds: beside those that were queued before."""

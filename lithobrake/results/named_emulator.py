@@ -154,7 +154,9 @@ class NamedEmulator:
         upper = np.tile(runs.upper[0], (len(x), 1))
         columns = [self.model.output_names.index(name) for name in (SPEED, SPIN) if name in self.model.output_names]
         if columns and np.isfinite(upper[:, columns]).all():
-            upper[:, columns] = allowed_motion(self._bound(), dict(zip(self.model.runs.inputs, x.T, strict=True)), len(x))
+            upper[:, columns] = allowed_motion(
+                self._bound(), dict(zip(self.model.runs.inputs, x.T, strict=True)), len(x)
+            )
         return upper
 
     def _outputs(self, y: np.ndarray, upper: np.ndarray) -> dict[str, np.ndarray]:

@@ -136,7 +136,9 @@ JOURNEY = {
     "journey": Quantity("", "number of the journey, from 0"),
     "bed": Quantity("", "number of the bed that it meets, from 0"),
     "end": Quantity("", "how the journey ended"),
-    "time_s": Quantity("s", "time from the first touchdown to the end, or from delivery where there is none", title="time to rest"),
+    "time_s": Quantity(
+        "s", "time from the first touchdown to the end, or from delivery where there is none", title="time to rest"
+    ),
     "latitude_deg": FLIGHT["latitude_deg"],
     "longitude_deg": FLIGHT["longitude_deg"],
     **{f"position_{axis}": Quantity("m", f"place of the end along {axis}", FIXED) for axis in "xyz"},

@@ -29,6 +29,8 @@ ENDS: dict[str, JourneyEnd] = {
     TouchdownOutcome.CAPTURED: JourneyEnd.AT_REST,
     TouchdownOutcome.TIME_LIMIT: JourneyEnd.UNDER_WAY,
 }
+
+
 @dataclass(frozen=True)
 class RunningEstimates:
     """Estimates from the runs that have ended, beds as the units of all intervals.
