@@ -242,7 +242,8 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
     in an input does not count; row_inputs [row_count, input_count], standardised; location, log_scale, scale_limits,
     rows, row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root
     [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run; distant
-    [coordinate_count], 1 where these bend no coordinate and draws are only kept inside. Raises ValueError for no emulator.
+    [coordinate_count], 1 where these bend no coordinate and draws are only kept inside. Raises ValueError for no
+    emulator.
     """
     if not models:
         raise ValueError("models are none, but must be at least one emulator: give those of refits")

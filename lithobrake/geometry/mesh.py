@@ -67,7 +67,7 @@ def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np
 
 
 def holds_origin(vertices: Vertices, faces: Faces) -> bool:
-    """Tell whether a closed surface goes round the origin, and not through it: whether it fills the sky seen from there.
+    """Tell whether a closed surface goes round the origin, not through it: whether it fills the sky seen from there.
 
     Source: [Van-Oosterom-1983].
     """
