@@ -93,7 +93,7 @@ def _sentence(sample: int, arc: int, count: int) -> str:
 
 
 def ephemeris_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
-    """Names of the files: that of the mean, where it is made or nothing else is asked for, and of each chosen sample."""
+    """Names of the files: of the mean, where it is made or nothing else is asked for, and of each chosen sample."""
     has_mean = flight_count(results) >= FEWEST or not chosen.samples
     return [*([MEAN_FILE] if has_mean else []), *(f"flight_{sample}.oem" for sample in chosen.samples)]
 

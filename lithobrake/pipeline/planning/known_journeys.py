@@ -25,7 +25,7 @@ def journeys_under_way(folder: StudyFolder, asked: Collection[str], known: Colle
     """
     path = folder / RUNS_FILE
     every = read_records(path) if path.is_file() else []
-    own = touchdown_keys(folder.path, every, asked, is_current=False)
+    own = touchdown_keys(folder.path, every, set(asked), is_current=False)
     waiting = [one for one in every if one.key in own and one.key not in known]
     return len({one.inputs[NUMBER] for one in waiting if one.inputs[TOUCHDOWN] > 0.0})
 

@@ -82,8 +82,7 @@ def plan_of(
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
-    under_way = journeys_under_way(folder, set(design.keys), known) if _makes_journeys(study, stale.keys()) else 0
-    made = _made(study, stale.keys(), runs, beds, under_way)
+    made = _made(study, stale.keys(), runs, beds, journeys_under_way(folder, design.keys, known))
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
@@ -117,10 +116,11 @@ def plan_of(
 def _made(
     study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...], under_way: int
 ) -> dict[str, tuple[int, int]]:
+    """How many of each are to be made; under_way: journeys that go on after touchdowns that have ended."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
-    if _makes_journeys(study, stale):
+    if study.journey.touchdowns != 1 and stale & MAKE_RUNS:
         landers = [one.drawn_new for one in runs]
         touchdowns = touchdowns[0] - min(landers), touchdowns[1] - max(landers)
         journeys = min(landers) + under_way, max(landers) + under_way
@@ -134,10 +134,6 @@ def _made(
         "flights": (0, expected_time.flight_count(study) if "fly" in stale else 0),
         "journeys": (expected_time.followed_count(study),) * 2 if stale & FOLLOWED else (0, 0),
     }
-
-
-def _makes_journeys(study: Study, stale: Set[str]) -> bool:
-    return study.journey.touchdowns != 1 and bool(stale & MAKE_RUNS)
 
 
 def _no_room(needed: int, free: int) -> list[str]:
