@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lithobrake.campaign import Record, read_records
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.study_files import TOUCHDOWNS
 from lithobrake.vocabulary.file_names import RUNS_FILE, STUDY_FILE
@@ -18,14 +19,16 @@ SOIL, KEPT = "grain.", ("lander.", "solver.")
 _LATER = "~"
 
 
-def journeys_under_way(folder: StudyFolder, asked: Collection[str], known: Collection[str]) -> int:
+def journeys_under_way(design: DrawnDesign, folder: StudyFolder, known: Collection[str]) -> int:
     """How many journeys have touchdowns that have ended, and a later one that waits in the ledger.
 
-    asked: keys of the first touchdowns of a study; known: of all runs that have ended.
+    known: keys of all runs that have ended.
     """
     path = folder / RUNS_FILE
-    every = read_records(path) if path.is_file() else []
-    own = touchdown_keys(folder.path, every, set(asked), is_current=False)
+    if not (design.study.design.run_count and path.is_file()):
+        return 0
+    every = read_records(path)
+    own = touchdown_keys(folder.path, every, set(design.keys), is_current=False)
     waiting = [one for one in every if one.key in own and one.key not in known]
     return len({one.inputs[NUMBER] for one in waiting if one.inputs[TOUCHDOWN] > 0.0})
 

@@ -82,7 +82,7 @@ def plan_of(
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
-    made = _made(study, stale.keys(), runs, beds, journeys_under_way(folder, design.keys, known))
+    made = _made(study, stale.keys(), runs, beds, journeys_under_way(design, folder, known))
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
