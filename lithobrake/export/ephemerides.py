@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.export.flown import ExportOptions, Flown
+from lithobrake.export.flown import ExportOptions, Flown, flight_count, has_journeys
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path, write_whole
 from lithobrake.geometry.naif_kernels import NUMBERS, spice
@@ -23,6 +23,7 @@ STEPS = 100
 log = logging.getLogger(__name__)
 # Fewer flights have a covariance without full rank.
 FEWEST = 7
+MEAN_FILE = "flight_mean.oem"
 # A line of text with a time and six numbers of 16 digits; six lines with the 21 of a covariance, and one with a time.
 BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
 # Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
@@ -92,26 +93,45 @@ def _sentence(sample: int, arc: int, count: int) -> str:
 
 
 def ephemeris_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
-    return ["flight_mean.oem", *(f"flight_{sample}.oem" for sample in chosen.samples)]
+    """Names of the files: of the mean, where it is made or nothing else is asked for, and of each chosen sample."""
+    has_mean = flight_count(results) >= FEWEST or not chosen.samples
+    return [*([MEAN_FILE] if has_mean else []), *(f"flight_{sample}.oem" for sample in chosen.samples)]
 
 
 def write_ephemerides(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write an ephemeris of the mean of all first flights, and a file for each chosen sample.
 
     The standard has one object in a file. That of a sample has a segment for each of its flights over the bounces.
-    A warning says so where the files get larger than 100 MB. Raises ValueError for a frame, an epoch, a step or a
-    sample that there is not, for ICRF without a pole, and where too few flights make a cloud.
+    A warning says so where the files get larger than 100 MB, and where too few flights make a mean. Raises ValueError
+    for a frame, an epoch, a step or a sample that there is not, for ICRF without a pole, and for a mean of too few
+    flights where no sample is chosen.
     """
     axes, flown = Frame.of(results, chosen.frame, chosen.epoch), Flown.of(results)
     flights = axes.timed(results, flown.journeys(results, chosen.samples))
     step = checked_step(flown, chosen.step)
     comments = [f"Flights of a study of lithobrake on {axes.body}. {axes.sentences}", axes.clock_sentence]
     _warn_of_size(flown, flights, step)
-    cloud = _cloud(axes.timed_together(results, flown), axes, step, chosen.progress)
+    lacking = _lacking_flights(results, len(flown.sample))
+    if lacking and not chosen.samples:
+        raise ValueError(f"{lacking}; name single flights with --flight, or {_more_flights(results)}")
+    if lacking:
+        log.warning("%s is not written: %s; %s.", MEAN_FILE, lacking, _more_flights(results))
+    clouds = [] if lacking else [[_cloud(axes.timed_together(results, flown), axes, step, chosen.progress)]]
     segments = flight_segments(flights, axes, step, chosen.progress)
-    for path, parts in zip(paths, [[cloud], *(segments[sample] for sample in chosen.samples)], strict=True):
+    for path, parts in zip(paths, [*clouds, *(segments[sample] for sample in chosen.samples)], strict=True):
         chosen.progress(1.0, f"writing {path.name}")
         write_oem(path, parts, axes.epoch, comments)
+
+
+def _lacking_flights(results: StudyResults, count: int) -> str:
+    """Why so many flights have no mean, in words; empty where they have."""
+    who = "lander" if has_journeys(results) else "sample"
+    flew = f"{count} {who} has a flight" if count == 1 else f"{count} {who}s have flights"
+    return f"{flew}, and the covariance of their mean needs {FEWEST}" if count < FEWEST else ""
+
+
+def _more_flights(results: StudyResults) -> str:
+    return f"raise {'journey.count' if has_journeys(results) else 'flight.flight_count'} for the mean"
 
 
 def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
@@ -128,10 +148,6 @@ def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
 
 def _cloud(flown: Flown, axes: Frame, step: float, progress: Progress) -> Segment:
     """Mean and covariance of the flights that last, as long as there are enough of them."""
-    if len(flown.sample) < FEWEST:
-        raise ValueError(
-            f"{len(flown.sample)} samples of the study fly; their covariance needs {FEWEST}: raise flight.flight_count"
-        )
     times, means, covariances, counts = [], [], [], []
     for aloft in stepped(flown, step, FEWEST, progress, "mean of all flights"):
         state = axes.states(aloft, aloft.time, aloft.position, aloft.velocity)

@@ -198,6 +198,11 @@ def has_journeys(results: StudyResults) -> bool:
     return results.results.journeys > 0 and results.study["journey"]["touchdowns"] != 1
 
 
+def flight_count(results: StudyResults) -> int:
+    """Number of flights that `Flown.of` gives."""
+    return int((results.arcs["arc"] == 0.0).sum()) if has_journeys(results) else results.flights.row_count
+
+
 def _noted(arcs: Table, duration: float) -> dict[str, Any]:
     """Flights as a table has them that notes where each began; duration: of the journeys [s]."""
     position, velocity = (np.column_stack([arcs[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity"))

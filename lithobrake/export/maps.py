@@ -191,11 +191,11 @@ def _write_points(results: StudyResults, path: Path, what: str, table: Table, na
 
 def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[Any], **more: Any) -> None:
     """Write features as GeoJSON in the frame of the body; more: members that say more of them."""
-    # The newest standard knows the Earth alone; the member of the one before says which body this is.
+    # RFC 7946 has coordinates on the Earth alone and no member for others: this one has a name of its own.
     content = {
         "type": "FeatureCollection",
         "name": f"{what} on {frame.body}",
-        "crs": {"type": "name", "properties": {"name": frame.wkt}},
+        "body_frame": frame.wkt,
         "note": NOTE,
         **more,
         "features": features,

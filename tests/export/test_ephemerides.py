@@ -106,6 +106,19 @@ def test_what_cannot_be_written_is_refused(results: StudyResults, tmp_path: Path
     assert not list(tmp_path.iterdir())
 
 
+def test_a_chosen_flight_is_written_where_too_few_fly_for_a_mean(
+    delivered: StudyResults, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All eight landers fly: a mean that needs nine is not made, and takes no flight with it."""
+    monkeypatch.setattr(ephemerides, "FEWEST", 9)
+    assert [path.name for path in written(delivered, tmp_path, "oem", [3])] == ["flight_3.oem"]
+    assert [path.name for path in tmp_path.iterdir()] == ["flight_3.oem"]
+    words = "8 landers have flights, and the covariance of their mean needs 9"
+    assert caplog.messages == [f"flight_mean.oem is not written: {words}; raise journey.count for the mean."]
+    with pytest.raises(ValueError, match=f"{words}; name single flights with --flight, or raise journey.count"):
+        written(delivered, tmp_path, "oem")
+
+
 def test_progress_reaches_its_end_and_large_files_are_announced(
     results: StudyResults, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

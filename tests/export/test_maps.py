@@ -58,7 +58,10 @@ def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: S
             abs=1e-6,
         )
         assert point["properties"]["impact_speed"] == results.flights["impact_speed"][row]
-    crs = rasterio.crs.CRS.from_user_input(json.loads(path.read_text())["crs"]["properties"]["name"])
+    content = json.loads(path.read_text())
+    # RFC 7946, section 4: no member "crs".
+    assert "crs" not in content
+    crs = rasterio.crs.CRS.from_user_input(content["body_frame"])
     assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
 
 

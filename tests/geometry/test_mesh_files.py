@@ -309,6 +309,13 @@ def test_a_surface_goes_round_the_origin_or_not(shift: float, inside: bool) -> N
         assert holds_origin(UNIT_CUBE + shift * direction, FACES) == inside
 
 
+def test_a_surface_through_the_origin_does_not_go_round_it() -> None:
+    """Whichever way its facets are turned: of slanted ones rounding leaves the origin above or below."""
+    turns = np.linalg.qr(np.random.default_rng(0).normal(size=(40, 3, 3)))[0]
+    on_facets = UNIT_CUBE + np.array([0.5, 0.1, 0.2])
+    assert not any(holds_origin(on_facets @ turn, FACES) for turn in turns)
+
+
 def test_a_flat_body_has_no_volume() -> None:
     with pytest.raises(ValueError, match="flat, it encloses"):
         closed_faces(np.vstack([np.eye(3), -np.eye(3)]) * [1.0, 1.0, 1e-12], OCTANTS, "plate")

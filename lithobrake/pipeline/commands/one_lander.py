@@ -20,7 +20,7 @@ from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
-from lithobrake.results.journey_track import HEADS
+from lithobrake.results.journey_track import HEADS, descent_time
 from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.touchdown.lander_model import lander
@@ -206,9 +206,10 @@ class OneJourney:
     @property
     def track(self) -> JourneyTrack:
         """Where the lander went, and how it ended."""
-        site, facts = self.journeys.design.site, map(_facts, self._touchdowns, self.landings)
+        site, descent = self.journeys.design.site, _descent(self.journeys, self.lander)
+        facts = [_facts(*one, descent) for one in zip(self._touchdowns, self.landings, strict=True)]
         row = dict(zip(JOURNEY, self.journeys.row(self.lander), strict=True))
-        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices)
+        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices, descent)
 
     @property
     def _touchdowns(self) -> list[dict[str, Any]]:
@@ -274,7 +275,7 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
 
 
 def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
-    facts, there = _facts(journeys.touchdowns[lander][-1], landing), None
+    facts, there = _facts(journeys.touchdowns[lander][-1], landing, _descent(journeys, lander)), None
     word, site = str(journeys.landers.end[lander]), journeys.design.site
     if not word:
         latitude, longitude = site.body.shape.latitude_longitude(journeys.landers.position[lander])
@@ -282,5 +283,9 @@ def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
     return facts.line(facts.to_next(there, site.aim_radius, JourneyEnd(word) if word else None))
 
 
-def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:
-    return TouchdownFacts.of({**landing.values, **landing.outcome.outputs, **touchdown})
+def _descent(journeys: Journeys, lander: int) -> float:
+    return descent_time([float(flight["begin_s"]) for flight in journeys.flights[lander]])
+
+
+def _facts(touchdown: Mapping[str, Any], landing: OneLanding, descent: float) -> TouchdownFacts:
+    return TouchdownFacts.of({**landing.values, **landing.outcome.outputs, **touchdown}, descent)

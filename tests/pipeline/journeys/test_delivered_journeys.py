@@ -28,6 +28,7 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
+from lithobrake.vocabulary.number_words import duration
 from lithobrake.vocabulary.quantities import SIDES, SKY
 
 from ...paper_tables import paper_tables, with_keys
@@ -68,6 +69,17 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResults, np.nd
     states = write_states(folder / "states.csv", away=(3, 9))
     run_without_emulator(tables(delivery={"states": str(folder / "states.csv")}), folder / "out", report=True)
     return lithobrake.open_study(folder / "out"), states
+
+
+@pytest.mark.parametrize("number", [0, 3])
+def test_the_words_of_a_journey_count_from_its_delivery(flown: tuple[StudyResults, np.ndarray], number: int) -> None:
+    """Lander 3 never touches down, and its table counts from delivery as well."""
+    results, _ = flown
+    track, begins = results.journey(number).track, results.arcs["begin_s"][results.arcs["sample"] == number]
+    descent, time = -begins[0], results.journeys["time_s"][number]
+    assert (descent > 60.0) == (number == 0)
+    assert [one.begin for one in track.touchdowns][:1] == ([descent] if number == 0 else [])
+    assert f"{track.end.label.capitalize()} {duration(descent + time)} after delivery" in track.lines()[-1]
 
 
 def test_every_state_is_one_journey_with_one_end(flown: tuple[StudyResults, np.ndarray]) -> None:
