@@ -2,6 +2,7 @@
 
 import csv
 import hashlib
+import io
 import json
 import math
 import os
@@ -63,8 +64,14 @@ def open_regular(path: str | PathLike[str]) -> Iterator[BinaryIO]:
     """Open a file to read its bytes. Raises ValueError at once for a pipe or a device, OSError as `open` does."""
     with open(path, "rb", opener=lambda path, flags: os.open(path, flags | getattr(os, "O_NONBLOCK", 0))) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise ValueError(f"{path} is no regular file")
+            raise ValueError("it is no regular file")
         yield file
+
+
+def read_text(path: str | PathLike[str]) -> str:
+    """The text of a file in UTF-8, without a byte order mark. Raises ValueError and OSError as open_regular does."""
+    with open_regular(path) as file:
+        return io.TextIOWrapper(file, encoding="utf-8-sig").read()
 
 
 def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:

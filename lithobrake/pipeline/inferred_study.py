@@ -133,7 +133,7 @@ class InferredStudy:
         if not (folder / EMULATOR_FILE).is_file():
             raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
         source = folder.source()
-        study = with_site_gravity(source.study, source.name)
+        study = with_site_gravity(source.study)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.files.oem_reader import MessageState, is_message, message_states
+from lithobrake.files.reading import read_text
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
@@ -75,8 +76,8 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
     """
     try:
         # Spreadsheets begin a CSV file with a byte order mark.
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_text(path)
+    except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise ValueError(f"{path.name} cannot be read ({why}); give the path of a CSV or OEM file in UTF-8") from error
     if is_message(text):

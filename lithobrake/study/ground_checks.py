@@ -18,6 +18,8 @@ GRAINS_PER_LANDER = 1e6
 # Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of
 # motion can be solved for it. Booms and panels that the shape leaves out may reach far.
 INERTIAS = (1e-6, 1e2)
+# Of a point of the lander [m/s], as of the impact speed.
+FASTEST = 1000.0
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
 TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
@@ -66,17 +68,50 @@ def contact_problems(study: Study) -> Iterator[str]:
             "million of the heaviest, as no soil answers to another lander; change it or the grains"
         )
         return
-    radius = 0.5 * largest
-    # That of a lander that is flown to the ground is not known before its flight.
-    speed = 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
-    depth = _first_overlap(study, min(high, grain), radius, speed)
-    if depth > radius:
-        modulus = usual_reach(study.grain.young_modulus)[0]
-        yield (
-            f"impact.speed reaches {speed:.4g} m/s with grain.young_modulus down to {modulus:.3g} Pa, so the first "
-            f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
-            "lower the speed or raise Young's modulus"
-        )
+    speed = _impact_speed(study)
+    if wrong := deep_contact(study, speed):
+        yield f"impact.speed reaches {speed:.4g} m/s {wrong}; lower the speed or raise Young's modulus"
+
+
+def spin_problems(study: Study, radius: float) -> Iterator[str]:
+    """A spin that is too fast for a lander whose farthest point is at a radius [m]."""
+    spin = math.hypot(*(max(map(abs, usual_reach(getattr(study.impact, f"spin_{axis}")))) for axis in "xyz"))
+    if wrong := fast_spin(study, spin, radius):
+        yield f"impact.spin_x, impact.spin_y and impact.spin_z reach {wrong}"
+
+
+def fast_spin(study: Study, spin: float, radius: float) -> str | None:
+    """A spin [rad/s] in words where the tip of the lander, at a radius [m], is too fast, or its contact means nothing.
+
+    None where it is not.
+    """
+    tip, speed = spin * radius, _impact_speed(study)
+    said = f"{spin:.4g} rad/s, at which the tip of the lander moves at {tip:.4g} m/s"
+    if tip > FASTEST:
+        return f"{said}; allowed: at most {FASTEST:g} m/s, as of impact.speed; lower the spin, and write it in rad/s"
+    for one in (study, *map(study.on_soil, study.soil)) if study.has_soil else ():
+        # What the speed alone makes too deep is refused by itself.
+        if not deep_contact(one, speed) and (wrong := deep_contact(one, speed + tip)):
+            return f"{said} {wrong}; lower the spin, and write it in rad/s, or raise Young's modulus"
+    return None
+
+
+def _impact_speed(study: Study) -> float:
+    """The largest [m/s]; 0 of a lander that is flown to the ground, as it is not known before its flight."""
+    return 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
+
+
+def deep_contact(study: Study, speed: float) -> str | None:
+    """What a speed [m/s] of the first contact does to it, where that is deeper than a grain; None where it is not."""
+    largest = _grain_sizes(study)[1]
+    radius, mass = 0.5 * largest, usual_reach(study.lander.mass)[1]
+    depth = _first_overlap(study, min(mass, _ball_mass(usual_reach(study.grain.density)[1], largest)), radius, speed)
+    if depth <= radius:
+        return None
+    return (
+        f"with grain.young_modulus down to {usual_reach(study.grain.young_modulus)[0]:.3g} Pa, so the first contact "
+        f"with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m"
+    )
 
 
 def _grain_sizes(study: Study) -> tuple[float, float]:

@@ -94,9 +94,9 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     design = DrawnDesign(study)
-    Soils(design.site).refuse("the study")
+    Soils(design.site).refuse()
     values = _values(design, number)
     own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
@@ -126,7 +126,7 @@ def land_one(study: Study, values: dict[str, float], progress: Progress = silent
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
     another soil that is landed on, and not another bed.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
 
 
@@ -239,7 +239,7 @@ def follow_one(
     tell: called with a line for each touchdown as soon as it is known how it ended, heads before the first. The bits
     are those of that journey in the study.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     journeys, lander = _begun(study, values)
     bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
     row: Row | None = values

@@ -26,6 +26,7 @@ from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
 from lithobrake.results.study_files import intact_file
 from lithobrake.serve import ClientGoneError, ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
+from lithobrake.study.lander_checks import quaternion_problems
 from lithobrake.study.quantity import is_number
 from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
@@ -55,7 +56,7 @@ class ServedStudy:
     def __init__(self, study: Path, out: Path) -> None:
         """Read the study. Raises ValueError where it is refused."""
         source = StudySource.read(study)
-        self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+        self.study, self.folder = with_site_gravity(source.study), StudyFolder.only_read(out)
         self.design = DrawnDesign(self.study)
         self.inputs = tuple(self.design.inputs)
 
@@ -222,8 +223,10 @@ def _attitude(config: Mapping[str, Any], seed: int) -> Rotation:
     if given is None:
         # A stream of its own, so that the attitude and the draw of the touchdown are independent.
         return Rotation.random(1, rng=np.random.default_rng([seed, 1]))
-    if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)) or not any(given):
+    if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)):
         raise ValueError(f"config.orientation is {show(given)}; allowed: a quaternion of four numbers w, x, y, z")
+    for wrong in quaternion_problems("config.orientation", given):
+        raise ValueError(wrong)
     w, x, y, z = given
     return Rotation.from_quat([[x, y, z, w]])
 
