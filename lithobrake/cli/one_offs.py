@@ -111,14 +111,13 @@ def doctor(
 def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
+    from lithobrake.cli.results import refuse_motion_file
     from lithobrake.pipeline import land_one
-    from lithobrake.view import refuse_other_kinds, show, write_motion
+    from lithobrake.view import show, write_motion
 
     if out is not None:
         # Refused before the landing, which may need a bed to be poured first.
-        if out.suffix != ".h5":
-            refuse_other_kinds(out)
-        arguments.refuse_written(out, force)
+        refuse_motion_file(out, force, also=(".h5",))
     with arguments.shown_progress("landing") as progress:
         found = land_one(study, values, progress)
     # The file of a landing needs no library of the extra [view].

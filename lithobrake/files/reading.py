@@ -82,9 +82,19 @@ def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:
 
 def parsed(text: str | bytes, form: Form) -> Any:
     """The value of a JSON text. Raises ValueError or RecursionError when it is none, or not of the form."""
-    value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite, object_pairs_hook=unique)
     check(value, form)
     return value
+
+
+def unique(pairs: Iterable[tuple[Any, Any]]) -> dict[Any, Any]:
+    """A table of pairs of a name and a value. Raises ValueError for a name that stands twice."""
+    found: dict[Any, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"it has {reprlib.repr(name)} twice; write each name once")
+        found[name] = value
+    return found
 
 
 def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:

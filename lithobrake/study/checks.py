@@ -5,6 +5,7 @@ import re
 import shlex
 import shutil
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 from lithobrake.study import ground_checks, lander_checks
 from lithobrake.study.body_checks import body_problems, rotation_problems
@@ -273,3 +274,5 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     if not plain or os.path.splitext(solver.answer)[1].lower() not in DECODERS:
         endings = ", ".join(DECODERS)
         yield f"solver.answer is {solver.answer!r}; allowed: a file name without folders, ending in {endings}"
+    elif solver.answer.lower().endswith((".yaml", ".yml")) and find_spec("yaml") is None:
+        yield f'solver.answer is {solver.answer!r}, and PyYAML is not installed: pip install "lithobrake[yaml]"'

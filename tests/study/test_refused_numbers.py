@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from lithobrake.study import checks
+
 from .test_study import problems, table
 
 REGION = {"latitude_deg": [0.0, 90.0], "grain": {"friction": 0.4}}
@@ -41,6 +43,16 @@ def test_a_spin_that_the_contact_carries_is_no_problem() -> None:
 def test_a_pipe_is_not_waited_for(changes: dict[str, Any], tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     assert "it is no regular file" in " ".join(problems(changes, tmp_path))
+
+
+def test_what_samples_and_answers_need_is_missed_before_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "at least 8" in " ".join(
+        problems({"expansion": None, "design.run_count": 4, "monte_carlo.sample_count": 100})
+    )
+    assert problems({"expansion": None, "design.run_count": 8, "monte_carlo.sample_count": 100}) == []
+    monkeypatch.setattr(checks, "find_spec", lambda name: None)
+    said = problems({"solver": {"command": "python3 x.py", "answer": "a.yaml"}})
+    assert any('PyYAML is not installed: pip install "lithobrake[yaml]"' in one for one in said)
 
 
 def test_keys_are_named_as_the_file_has_them() -> None:

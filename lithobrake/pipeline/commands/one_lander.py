@@ -100,7 +100,11 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     values = _values(design, number)
     own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
-    changed = dict(_changed(change, free) for change in changes)
+    changed: dict[str, float] = {}
+    for key, value in (_changed(change, free) for change in changes):
+        if key in changed:
+            raise ValueError(f"--set has {key} twice; give each key once")
+        changed[key] = value
     if not changed:
         return values
     if design.is_flown:
