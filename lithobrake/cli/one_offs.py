@@ -112,7 +112,7 @@ def _landed(
     study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     from lithobrake.cli.results import refuse_motion_file
-    from lithobrake.pipeline import land_one
+    from lithobrake.pipeline import energy_gained, land_one
     from lithobrake.view import show, write_motion
 
     if out is not None:
@@ -127,7 +127,8 @@ def _landed(
         write_motion(found.bodies(), out)
     if shown:
         show(found.bodies())
-    return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
+    gained = energy_gained(study, [found])
+    return found.to_json(), [*found.lines(), *_warned(gained), *_motion_lines([] if out is None else [out])]
 
 
 def _followed(
@@ -135,7 +136,7 @@ def _followed(
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
     from lithobrake.cli.results import refuse_journey_file, show_touchdowns
-    from lithobrake.pipeline import follow_one
+    from lithobrake.pipeline import energy_gained, follow_one
     from lithobrake.view.motion_files import touchdown_paths, write_journey
 
     def tell(line: str) -> None:
@@ -154,7 +155,11 @@ def _followed(
             paths = write_journey(found.motion(), out, progress=progress)
     if shown:
         show_touchdowns(found.motion())
-    return found.to_json(), _motion_lines(paths)
+    return found.to_json(), [*_warned(energy_gained(study, found.landings)), *_motion_lines(paths)]
+
+
+def _warned(gained: str | None) -> list[str]:
+    return [] if gained is None else [f"Warning: {gained}."]
 
 
 def _motion_lines(paths: list[Path]) -> list[str]:

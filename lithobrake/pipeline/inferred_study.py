@@ -120,11 +120,6 @@ def _without_emulator(path: Path, study: Study) -> str:
     lacks = f"{path} has no {EMULATOR_FILE}"
     if not study.design.run_count:
         return f"{lacks}, as its study draws no lander (design.run_count is 0); infer from one that draws some"
-    if study.journey.touchdowns != 1:
-        return (
-            f"{lacks}: infer takes a study of first bounces (journey.touchdowns = 1), and that of {path} follows its "
-            "landers farther; run one with journey.touchdowns = 1 in another folder"
-        )
     return f"{lacks}; finish the study there with: lithobrake run STUDY.toml --out {path}"
 
 

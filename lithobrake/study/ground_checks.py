@@ -8,7 +8,7 @@ from pathlib import Path
 from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
-from lithobrake.study.quantity import usual_reach
+from lithobrake.study.quantity import median, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
@@ -20,6 +20,10 @@ GRAINS_PER_LANDER = 1e6
 INERTIAS = (1e-6, 1e2)
 # Of a point of the lander [m/s], as of the impact speed.
 FASTEST = 1000.0
+# Of what two grains at rest overlap by cohesion, over the radius of the smaller: Hertz' law is one of small overlaps.
+DEEPEST_PULL = 0.1
+# Young's modulus of a region over that of the bed, which is poured once for all regions.
+STIFFER = 1e5
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
 TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
@@ -71,6 +75,36 @@ def contact_problems(study: Study) -> Iterator[str]:
     speed = _impact_speed(study)
     if wrong := deep_contact(study, speed):
         yield f"impact.speed reaches {speed:.4g} m/s {wrong}; lower the speed or raise Young's modulus"
+
+
+def cohesion_problems(study: Study) -> Iterator[str]:
+    """Grains that pull each other deeper than the contact law describes; for this program's own soil."""
+    grain, radius = study.grain, 0.5 * _grain_sizes(study)[0]
+    line, softest = usual_reach(grain.surface_energy)[1], usual_reach(grain.young_modulus)[0]
+    # Of two equal grains: half the radius of one, half the modulus of one.
+    pull = usual_reach(grain.cohesion_force)[1] + 4.0 * math.pi * line * 0.5 * radius
+    modulus = 0.5 * softest / (1.0 - usual_reach(grain.poisson_ratio)[0] ** 2)
+    depth = (0.75 * pull / modulus / math.sqrt(0.5 * radius)) ** (2.0 / 3.0)
+    if depth > DEEPEST_PULL * radius:
+        yield (
+            f"grain.surface_energy reaches {line:.4g} J/m2 and grain.cohesion_force "
+            f"{usual_reach(grain.cohesion_force)[1]:.4g} N with grain.young_modulus down to {softest:.3g} Pa, so that "
+            f"two grains pull each other {depth:.3g} m deep; allowed: at most {DEEPEST_PULL * radius:.3g} m, a tenth "
+            "of the radius of the smallest grain; lower the cohesion (surface_energy is in J/m2), or raise Young's "
+            "modulus"
+        )
+
+
+def stiffness_problems(study: Study, name: str) -> Iterator[str]:
+    """A region, by its name, so much stiffer than [grain] that its beds, poured with that, cannot take it on."""
+    poured, stiff = median(study.grain.young_modulus), study.soil[name].grain.values().get("young_modulus")
+    highest = poured if stiff is None else usual_reach(stiff)[1]
+    if highest > STIFFER * poured:
+        yield (
+            f"soil.{name}.grain.young_modulus reaches {highest:.3g} Pa, and beds are poured with the median of "
+            f"grain.young_modulus, {poured:.3g} Pa; allowed: at most {STIFFER * poured:.3g} Pa, {STIFFER:g} times as "
+            "much, as contacts of the bed are then too deep for the stiffer law; lower it, or raise grain.young_modulus"
+        )
 
 
 def spin_problems(study: Study, radius: float) -> Iterator[str]:
@@ -223,8 +257,10 @@ def soil_problems(study: Study) -> Iterator[str]:
         yield from _region_problems(name, soil)
         if study.has_soil:
             # Problems of [grain] itself are reported already, and would be repeated for each region.
-            known = list(contact_problems(study))
-            yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
+            known, there = [*contact_problems(study), *cohesion_problems(study)], study.on_soil(name)
+            found = [*contact_problems(there), *cohesion_problems(there)]
+            yield from (f"soil.{name}: {text}" for text in found if text not in known)
+            yield from stiffness_problems(study, name)
 
 
 def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:

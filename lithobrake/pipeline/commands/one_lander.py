@@ -18,6 +18,7 @@ from lithobrake.pipeline.journeys.campaign import Journeys
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
+from lithobrake.pipeline.runs.energy_bound import energy_warning
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS
@@ -253,6 +254,13 @@ def follow_one(
         for line in [*(HEADS if len(landings) == 1 else ()), _line(journeys, lander, landings[-1])]:
             tell(line)
     return OneJourney(journeys, lander, tuple(landings))
+
+
+def energy_gained(study: Study, landings: Iterable[OneLanding]) -> str | None:
+    """What it means that landings gave a lander more energy than it came with; None where they did not."""
+    study, made = with_site_gravity(study), list(landings)
+    records = [_record(study, one, {}) for one in made]
+    return energy_warning(DrawnDesign(study), records, max(float(one.bed.surface_height) for one in made))
 
 
 def _begun(study: Study, values: Row) -> tuple[Journeys, int]:

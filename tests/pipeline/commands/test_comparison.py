@@ -233,9 +233,11 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(
     assert re.search(said, ended.stderr)
 
 
-def test_soil_is_inferred_from_first_bounces(pair: tuple[Path, Path]) -> None:
-    with pytest.raises(ValueError, match=r"infer takes a study of first bounces \(journey\.touchdowns = 1\)"):
-        InferredStudy.open(pair[0])
+def test_soil_is_inferred_with_an_emulator(pair: tuple[Path, Path], tmp_path: Path) -> None:
+    folder = shutil.copytree(pair[0], tmp_path / "unfinished")
+    (folder / "emulator.json").unlink()
+    with pytest.raises(ValueError, match=r"has no emulator\.json; finish the study there with: lithobrake run"):
+        InferredStudy.open(folder)
 
 
 def test_studies_that_cannot_be_paired_are_refused(pair: tuple[Path, Path], tmp_path: Path) -> None:
