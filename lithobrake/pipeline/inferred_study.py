@@ -145,7 +145,8 @@ class InferredStudy:
         if not all((folder / name).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
         if why := why_no_emulator(folder.read_json(EMULATOR_FILE)):
-            raise ValueError(f"{path} has no emulator of the first touchdown: {why} Raise design.run_count.")
+            said = study.as_written("Raise design.run_count.")
+            raise ValueError(f"{path} has no emulator of the first touchdown: {why} {said}")
         model = load(folder / EMULATOR_FILE)
         _refuse_unbounded(folder / EMULATOR_FILE, model)
         return cls(study, folder, model)

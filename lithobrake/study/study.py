@@ -84,10 +84,14 @@ class Study(Section):
         return study
 
     def said(self, problem: str) -> str:
-        """A problem after the name of the study file, each key as the file has it: delivery.speed for impact.speed."""
+        """A problem after the name of the study file, each key as the file has it."""
+        return f"{self._file}: {self.as_written(problem)}"
+
+    def as_written(self, text: str) -> str:
+        """A text with each key as the study file has it: delivery.speed for impact.speed."""
         for key, own in self._given_elsewhere().items():
-            problem = re.sub(rf"(?<![\w.]){re.escape(own)}(?![\w.])", key, problem)
-        return f"{self._file}: {problem}"
+            text = re.sub(rf"(?<![\w.]){re.escape(own)}(?![\w.])", key, text)
+        return text
 
     def _given_elsewhere(self) -> dict[str, str]:
         """The keys that stand for others, with these; not those that are given in both places and contradict."""

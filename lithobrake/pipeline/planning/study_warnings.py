@@ -73,10 +73,14 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
     body, landing = soil.landings[0]
     width, depth = smallest_bed(body, landing.grain, soil.diameter, landing.speed)
     here = min(soil.recipe.width)
+    # A wider bed of as many grains is shallower.
+    wide, deep = max(here, width), max(soil.depth, depth)
+    count = math.ceil(soil.recipe.grain_count * deep / soil.depth * (wide / here) ** 2)
     if here < width or soil.depth < depth:
         yield (
             f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m "
-            f"deep and {width:.2g} m wide to avoid {_echo(soil)} during the first impact: add grains, or widen the bed."
+            f"deep and {width:.2g} m wide to avoid {_echo(soil)} during the first impact: set bed.grain_count = {count}"
+            f"{f', and bed.width = {wide:.2g} m' if wide > here else ''}."
         )
 
 
@@ -200,7 +204,7 @@ def _few_beds(study: Study) -> Iterator[str]:
         )
         return
     wider = t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0
-    remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
+    remedy = "set bed.bed_count" if study.bed.bed_count is not None else study.as_written("raise design.run_count")
     yield (
         f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
         f"{percent(wider)} wider than {enough} would, by Student's t alone; {remedy} to {enough} or more."
