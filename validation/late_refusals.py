@@ -27,7 +27,7 @@ from lithobrake.pipeline import plan_study
 from lithobrake.study import load_tables
 
 ROOT = Path(__file__).parents[1]
-STUDIES = ("quick", "release", "aim", "milani", "juventas", "first_bounce", "mission")
+STUDIES = ("quick", "release", "aim", "milani", "juventas", "first_bounce")
 # What makes a study end within seconds.
 SMALL: dict[str, dict[str, Any]] = {
     "bed": {"bed_count": 4},

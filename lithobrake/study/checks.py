@@ -53,8 +53,7 @@ def _arrival_problems(study: Study) -> Iterator[str]:
 
 def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
-        yield from ground_checks.contact_problems(study)
-        yield from ground_checks.cohesion_problems(study)
+        yield from ground_checks.material_problems(study)
         yield from ground_checks.slope_problems(study)
     gravity = study.surface.gravity
     # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).

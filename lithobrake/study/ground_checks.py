@@ -52,6 +52,14 @@ def size_problems(study: Study, radius: float) -> Iterator[str]:
             )
 
 
+def material_problems(study: Study, region: str | None = None) -> Iterator[str]:
+    """What this program's own soil cannot carry, with the grains of [grain] or of a region."""
+    there = study if region is None else study.on_soil(region)
+    yield from contact_problems(there)
+    yield from cohesion_problems(there)
+    yield from stiffness_problems(there, median(study.grain.young_modulus))
+
+
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
     if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
@@ -95,15 +103,16 @@ def cohesion_problems(study: Study) -> Iterator[str]:
         )
 
 
-def stiffness_problems(study: Study, name: str) -> Iterator[str]:
-    """A region, by its name, so much stiffer than [grain] that its beds, poured with that, cannot take it on."""
-    poured, stiff = median(study.grain.young_modulus), study.soil[name].grain.values().get("young_modulus")
-    highest = poured if stiff is None else usual_reach(stiff)[1]
+def stiffness_problems(study: Study, poured: float) -> Iterator[str]:
+    """Grains so much stiffer than those that a bed is poured with, of a Young's modulus [Pa], that it cannot take them
+    on.
+    """
+    highest = usual_reach(study.grain.young_modulus)[1]
     if highest > STIFFER * poured:
         yield (
-            f"soil.{name}.grain.young_modulus reaches {highest:.3g} Pa, and beds are poured with the median of "
-            f"grain.young_modulus, {poured:.3g} Pa; allowed: at most {STIFFER * poured:.3g} Pa, {STIFFER:g} times as "
-            "much, as contacts of the bed are then too deep for the stiffer law; lower it, or raise grain.young_modulus"
+            f"grain.young_modulus reaches {highest:.3g} Pa, and beds are poured with the median of [grain], "
+            f"{poured:.3g} Pa; allowed: at most {STIFFER * poured:.3g} Pa, {STIFFER:g} times as much, as contacts of "
+            "the bed are then too deep for the stiffer law; lower it, or raise that of [grain]"
         )
 
 
@@ -257,10 +266,8 @@ def soil_problems(study: Study) -> Iterator[str]:
         yield from _region_problems(name, soil)
         if study.has_soil:
             # Problems of [grain] itself are reported already, and would be repeated for each region.
-            known, there = [*contact_problems(study), *cohesion_problems(study)], study.on_soil(name)
-            found = [*contact_problems(there), *cohesion_problems(there)]
+            known, found = list(material_problems(study)), material_problems(study, name)
             yield from (f"soil.{name}: {text}" for text in found if text not in known)
-            yield from stiffness_problems(study, name)
 
 
 def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:
