@@ -13,13 +13,11 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import angles, directions
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.body_checks import partner_warning
-from lithobrake.study.checks import settling_problems
 from lithobrake.study.delivered_states import delivery_warning
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
 from lithobrake.study.quantity import Scalar, Uncertain, median, scaled, uncertain, usual_reach
 from lithobrake.vocabulary.constants import DAY, HOUR
-from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import duration
 
 if TYPE_CHECKING:
@@ -172,7 +170,7 @@ class Site:
         return {key: np.full(shape, value) for key, value in self.medians.items()}
 
     @cached_property
-    def _frame(self) -> tuple[np.ndarray, np.ndarray]:
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Origin [m] and axes in their rows, [3, 3], at the medians."""
         origin, axes = self.frames(self.columns(1))
         return origin[0], axes[0]
@@ -180,7 +178,7 @@ class Site:
     @cached_property
     def acceleration(self) -> np.ndarray:
         """Acceleration [m/s2] of a point at rest on the ground there, at medians: along heading, left of it, out."""
-        origin, axes = self._frame
+        origin, axes = self.frame
         felt: np.ndarray = axes @ self._felt(origin)
         return felt
 
@@ -211,12 +209,12 @@ class Site:
     @cached_property
     def escape_speed(self) -> float:
         """Speed [m/s], in axes that do not turn, with which a point there escapes the body alone, at medians."""
-        return math.sqrt(2.0 * float(self.body.potential(self._frame[0])))
+        return math.sqrt(2.0 * float(self.body.potential(self.frame[0])))
 
     @cached_property
     def warning(self) -> str | None:
         """What it means that the ground there does not hold what lies on it, or hardly; None where it does."""
-        outward, pull = float(self.acceleration[2]), float(np.linalg.norm(self.body.acceleration(self._frame[0])))
+        outward, pull = float(self.acceleration[2]), float(np.linalg.norm(self.body.acceleration(self.frame[0])))
         if outward < -NEARLY_NONE * pull:
             return None
         where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
@@ -297,19 +295,30 @@ def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Sh
     return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
-def with_site_gravity(study: Study, name: str = STUDY_FILE) -> Study:
+def with_site_gravity(study: Study) -> Study:
     """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
 
-    Raises StudyError, with the name of the study file, where no bed would settle under it.
+    Raises StudyError where no bed would settle under it.
     """
     if study.surface.gravity != "site":
         return study
-    gravity = -float(Site(study).acceleration[2])
-    problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
+    site = Site(study)
+    gravity = -float(site.acceleration[2])
     if not math.isfinite(gravity):
-        problems = [
-            f"{name}: surface.gravity: the acceleration at the site is not finite; correct site.mass or its mesh"
-        ]
-    if problems:
-        raise StudyError(problems)
+        raise StudyError([study.said("the acceleration at the site is not finite; correct site.mass or its mesh")])
+    if study.bed.settle_gravity is None and gravity <= 0.0:
+        raise StudyError([study.said(_outward(site, gravity))])
     return study.under_site_gravity(gravity)
+
+
+def _outward(site: Site, gravity: float) -> str:
+    """What is wrong where the rotation throws off what lies at the site; gravity: inward [m/s2]."""
+    period = site.medians["spin_period"]
+    slower = replace(site.body, spin_period=HOUR * period)
+    remedy = "move the site, or give bed.settle_gravity an inward value, say 2e-5 m/s2"
+    if float((site.frame[1] @ slower.effective_acceleration(site.frame[0]))[2]) < 0.0 and period < HOUR:
+        remedy = f"is it in hours? write seconds, {HOUR * period:.6g}"
+    return (
+        f"the spin period (site.spin_period) is {period:.6g} s, and gravity and rotation at the site push outward by "
+        f"{-gravity:.3g} m/s2, and no bed settles under that; {remedy}"
+    )

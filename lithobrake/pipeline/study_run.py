@@ -106,11 +106,11 @@ def run_study(
     with outputs.
     """
     shown = shown or Silent()
-    study = with_site_gravity(source.study, source.name)
+    study = with_site_gravity(source.study)
     # Refuses a stage that the method does not have, before anything is made.
     stages_until(study, until)
     drawn = DrawnDesign(study)
-    Soils(drawn.site).refuse(source.name)
+    Soils(drawn.site).refuse()
     refuse_hidden_orbiter(drawn.site)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)

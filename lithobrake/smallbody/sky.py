@@ -1,6 +1,7 @@
 """What a place on the ground sees of the sky, and where Sun and Earth stand over a small body."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
-from lithobrake.vocabulary.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.
 DIRECTIONS = 144
@@ -58,7 +59,10 @@ def circle_places(radius: float, inclination_deg: float) -> NDArray[np.float64]:
     """Places on a circular orbit [m], body-fixed, [PLACES, 3]: any phase of it with any longitude of its node alike.
 
     So a long time is, over which the body turns below the orbit. radius [m]; inclination to the body's equator [deg].
+    Raises ValueError for a radius that is not above 0, and an inclination beyond 0 to 180 degrees.
     """
+    radius = finite_number("radius", radius, above=0.0)
+    inclination_deg = finite_number("inclination_deg", inclination_deg, at_least=0.0, at_most=180.0)
     phase, inclination = 2.0 * np.pi * (np.arange(PLACES) + 0.5) / PLACES, np.radians(inclination_deg)
     x, across = np.cos(phase), np.sin(phase)
     node = 2.0 * np.pi * (np.arange(PLACES) * EVEN % 1.0)
@@ -129,8 +133,12 @@ def _take_out_hidden(
                         seen[p, d] = False
 
 
-class HeliocentricOrbit(NamedTuple):
-    """Osculating elements, ecliptic and equinox of J2000: semi-major axis [AU], eccentricity, angles [deg] and date."""
+@dataclass(frozen=True)
+class HeliocentricOrbit:
+    """Osculating elements, ecliptic and equinox of J2000: semi-major axis [AU], eccentricity, angles [deg] and date.
+
+    Raises ValueError for an orbit that is not closed, numbers that are not finite, and what is no date.
+    """
 
     semi_major_axis_au: float
     eccentricity: float
@@ -139,6 +147,14 @@ class HeliocentricOrbit(NamedTuple):
     perihelion_deg: float
     mean_anomaly_deg: float
     epoch: datetime
+
+    def __post_init__(self) -> None:
+        finite_number("semi_major_axis_au", self.semi_major_axis_au, above=0.0)
+        finite_number("eccentricity", self.eccentricity, at_least=0.0, below=1.0)
+        for name in ("inclination_deg", "node_deg", "perihelion_deg", "mean_anomaly_deg"):
+            finite_number(name, getattr(self, name), at_least=-360.0, at_most=360.0)
+        if not isinstance(self.epoch, datetime):
+            raise ValueError(f"epoch is {self.epoch!r}, but must be a datetime, in UTC")
 
     def place(self, dates: Sequence[datetime]) -> Floats:
         """Heliocentric places [AU] along ICRF, [date_count, 3], by Kepler's equation as SPICE solves it.

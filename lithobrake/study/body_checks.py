@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.geometry.mesh_units import UNITS, labelled_mesh, mesh_unit
-from lithobrake.study.impact_sections import SiteSection, kernel_problems
+from lithobrake.study.impact_sections import RotationSection, SiteSection, kernel_problems
 from lithobrake.study.quantity import Scalar, median, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.constants import DAY, GRAVITATIONAL_CONSTANT
@@ -21,6 +21,8 @@ LIGHTEST, HEAVIEST = 300.0, 8000.0
 SMALLEST, LARGEST = 1.0, 1e6
 # Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
 FASTEST = 1.0
+# Angle [rad] that a body with [site.rotation] turns by beside one turn an orbit: 1e4 are integrated in half a minute.
+LONGEST_TURN = 2e4
 # Of a body, as other programs take it too.
 NAME, NAME_WORDS = r"[A-Za-z0-9][\w -]{0,39}", "1 to 40 letters, digits, blanks, _ and -"
 SYNCHRONOUS = [key for key, body in BUILT_IN_BODIES.items() if body.is_synchronous]
@@ -253,6 +255,7 @@ def rotation_problems(study: Study) -> Iterator[str]:
         return
     yield from _body_problems(site)
     yield from _time_problems(site, site.rotation.days)
+    yield from _turn_problems(site.rotation)
     if study.sky.bodies:
         yield (
             "[sky] asks what landers at rest see over a day of the body, and with [site.rotation] no day is like "
@@ -275,6 +278,17 @@ def _body_problems(site: SiteSection) -> Iterator[str]:
                 f"site.{key} is given; with [site.rotation] the body turns once an orbit in the mean, as the built-in "
                 "one does; leave one of the two out"
             )
+
+
+def _turn_problems(rotation: RotationSection) -> Iterator[str]:
+    rate = math.hypot(*rotation.spin)
+    most = LONGEST_TURN / DAY / rate if rate > 0.0 else math.inf
+    if rotation.days > most:
+        yield (
+            f"site.rotation.days is {rotation.days:g} with a site.rotation.spin of {rate:.3g} rad/s, by which the body "
+            f"turns {rate * rotation.days * DAY:.3g} rad; allowed: at most {LONGEST_TURN:g} rad, {most:.3g} days, as "
+            "all of it is integrated before the first landing; lower the days or the spin"
+        )
 
 
 def _time_problems(site: SiteSection, days: float) -> Iterator[str]:

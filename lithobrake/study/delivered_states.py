@@ -11,6 +11,7 @@ import numpy as np
 
 from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.files.oem_reader import USEABLE, MessageState, message_states, useable_time
+from lithobrake.files.reading import read_text
 from lithobrake.study.delivery_sections import LARGEST
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.state_paths import DeliveredStates, StateSegment, orbiter_path, path_warning, useable
@@ -52,7 +53,7 @@ def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str
     try:
         kind = file_kind(path)
         # Spreadsheets begin a CSV file with a byte order mark.
-        text = path.read_text(encoding="utf-8-sig") if kind in (None, FileKind.OEM) else ""
+        text = read_text(path) if kind in (None, FileKind.OEM) else ""
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise ValueError(f"{path.name} cannot be read ({why}); give the path of a CSV or OEM file in UTF-8") from error

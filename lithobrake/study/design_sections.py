@@ -1,5 +1,6 @@
 """The tables of the study file that say which runs are made, what is fitted to them, and what is asked."""
 
+import math
 import re
 from dataclasses import dataclass
 from itertools import product
@@ -173,6 +174,12 @@ class AimSection(Section):
     <, <=, > or >=."""
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
     """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
+
+    @property
+    def count(self) -> int:
+        """How many aims there are, of which none is made for that."""
+        lengths = [*map(len, self.grid.values()), *([len(self.sides)] if self.sides else [])]
+        return math.prod(lengths) if lengths else 0
 
     def aims(self) -> list[dict[str, float]]:
         """All aims, the last of the names running fastest; a side by its place among `sides`."""

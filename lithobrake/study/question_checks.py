@@ -41,7 +41,7 @@ def aim_problems(study: Study) -> Iterator[str]:
             'aim.grid has "delivery.incidence_deg", and site.roughness_deg draws the ground under each lander by its '
             "own incidence; leave one of the two out"
         )
-    axes, count = len(study.aim.names), len(study.aim.aims())
+    axes, count = len(study.aim.names), study.aim.count
     if axes > MOST_AXES or count > MOST_AIMS:
         yield (
             f"aim.grid has {axes} names, with aim.sides, and {count} aims; allowed: at most {MOST_AXES} and "
@@ -66,8 +66,8 @@ def _value_problems(
         inside = all(lower <= value <= upper for value in values)
         if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
             yield (
-                f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
-                "runs reach over; leave others out, or widen its distribution"
+                f'aim.grid."{option}" is {show(values)}; allowed: ascending values from {lower:g} to {upper:g}, '
+                "which the runs reach over; leave others out, or widen its distribution"
             )
 
 

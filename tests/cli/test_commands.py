@@ -385,6 +385,14 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
     assert ended.stderr.count("\n") == 1
 
 
+@pytest.mark.parametrize("seconds", ["nan", "0", "inf"])
+def test_a_film_without_a_length_is_refused_before_the_landing(seconds: str, tmp_path: Path) -> None:
+    words = ["film", str(tmp_path), "--journey", "1", "--out", str(tmp_path / "x.webp"), "--seconds", seconds]
+    found = RUNNER.invoke(app, words)
+    # The folder, which is empty, is not looked at before.
+    assert (found.exit_code, "allowed: a finite time above 0 s" in found.stderr) == (2, True)
+
+
 @pytest.mark.parametrize("kind", [".h5", ".vtkhdf", ".png", ".mp4"])
 def test_a_landing_replaces_a_file_only_when_told_to(tmp_path: Path, kind: str) -> None:
     study, path = Path(__file__).parents[2] / "scenarios" / "first_bounce.toml", tmp_path / f"landing{kind}"

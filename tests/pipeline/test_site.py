@@ -17,7 +17,7 @@ from lithobrake.pipeline.first_touchdown.flights import Starts, flight_dependenc
 from lithobrake.pipeline.first_touchdown.run_flights import FLIGHT_COUNT, run_sites
 from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.site import SITE_KEYS, Site
+from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, check_tables
@@ -157,6 +157,15 @@ def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
     assert warned({"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}, 80.0) is None
     site = changed(surface={"gravity": "site"}, bed={"settle_gravity": 2e-5}, site={"latitude_deg": 0.0})
     assert Site(site).gravity_warning is None
+
+
+def test_a_spin_period_in_hours_is_asked_back() -> None:
+    said = r"is 11\.4 s, and .* push outward by .* m/s2.*is it in hours\? write seconds, 41040"
+    with pytest.raises(StudyError, match=said):
+        with_site_gravity(changed(surface={"gravity": "site"}, site={"body": "dimorphos", "spin_period": 11.4}))
+    # At the equator of Didymos, which turns so fast that it throws off what lies there.
+    with pytest.raises(StudyError, match=r"push outward by 1\.39e-05 m/s2.*move the site, or give bed\.settle_gravity"):
+        with_site_gravity(changed(surface={"gravity": "site"}, site={"latitude_deg": 0.0}))
 
 
 def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:

@@ -18,6 +18,7 @@ from lithobrake.pipeline.journeys.campaign import Journeys
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
+from lithobrake.pipeline.runs.energy_bound import energy_warning
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
 from lithobrake.results.journey_track import HEADS, descent_time
@@ -93,13 +94,17 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     design = DrawnDesign(study)
-    Soils(design.site).refuse("the study")
+    Soils(design.site).refuse()
     values = _values(design, number)
     own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
-    changed = dict(_changed(change, free) for change in changes)
+    changed: dict[str, float] = {}
+    for key, value in (_changed(change, free) for change in changes):
+        if key in changed:
+            raise ValueError(f"--set has {key} twice; give each key once")
+        changed[key] = value
     if not changed:
         return values
     if design.is_flown:
@@ -125,7 +130,7 @@ def land_one(study: Study, values: Row, progress: Progress = silent) -> OneLandi
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
     another soil that is landed on, and not another bed.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
 
 
@@ -239,7 +244,7 @@ def follow_one(
     tell: called with a line for each touchdown as soon as it is known how it ended, heads before the first. The bits
     are those of that journey in the study.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     journeys, lander = _begun(study, values)
     bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
     row: Row | None = values
@@ -249,6 +254,13 @@ def follow_one(
         for line in [*(HEADS if len(landings) == 1 else ()), _line(journeys, lander, landings[-1])]:
             tell(line)
     return OneJourney(journeys, lander, tuple(landings))
+
+
+def energy_gained(study: Study, landings: Iterable[OneLanding]) -> str | None:
+    """What it means that landings gave a lander more energy than it came with; None where they did not."""
+    study, made = with_site_gravity(study), list(landings)
+    records = [_record(study, one, {}) for one in made]
+    return energy_warning(DrawnDesign(study), records, max(float(one.bed.surface_height) for one in made))
 
 
 def _begun(study: Study, values: Row) -> tuple[Journeys, int]:

@@ -60,7 +60,7 @@ def rare_failure(
     run_study(source, out, until="bed", worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     folder = StudyFolder(out)
     with folder.alone(), DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor:
-        study = with_site_gravity(source.study, source.name)
+        study = with_site_gravity(source.study)
         design = grown(DrawnDesign(study), folder)
         landings = Landings(Job(design, source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:

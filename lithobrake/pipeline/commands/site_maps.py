@@ -56,7 +56,7 @@ def map_sites(
     # Before the journeys of the study are made.
     _refuse(source.study, cell_count, lander_count)
     run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
-    study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
+    study, folder = with_site_gravity(source.study), StudyFolder(out)
     why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")

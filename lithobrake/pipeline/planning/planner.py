@@ -48,10 +48,10 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     that is none.
     """
     source = StudySource.read(path)
-    study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+    study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
     design = DrawnDesign(study)
-    Soils(design.site).refuse(source.name)
+    Soils(design.site).refuse()
     refuse_hidden_orbiter(design.site)
     plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan

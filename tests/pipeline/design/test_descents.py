@@ -327,8 +327,19 @@ def test_a_state_within_the_partner_is_refused_with_its_line(tmp_path: Path) -> 
 
 
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
-    with pytest.raises(StudyError, match=r"impact\.speed reaches"):
+    said = r"study\.toml: delivery\.release: the release of journey \d comes down at 20 m/s .*lower its velocity"
+    with pytest.raises(StudyError, match=said):
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
+
+
+@pytest.mark.parametrize(("rate", "words"), [(1e300, "at most 1000 m/s"), (1e3, "m deep")])
+def test_rates_that_no_contact_carries_are_refused_with_their_line(rate: float, words: str, tmp_path: Path) -> None:
+    table = np.hstack([some_states(3), np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (3, 1))])
+    table[1, -1] = rate
+    titles = f"{TITLES},q_w,q_x,q_y,q_z,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s"
+    path = write_table(tmp_path / "states.csv", table, titles)
+    with pytest.raises(StudyError, match=rf"states\.csv, line 3: its rates are 1(000|e\+300) rad/s, .*{words}"):
+        _ = DrawnDesign(study(delivery={"states": path}, journey={"count": 3}))._descents(0, np.full((3, 6), 0.5))
 
 
 QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {}, "journey": {"touchdowns": 1}}
