@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.reading import hashed_seed
+from lithobrake.files.reading import file_stamp, hashed_seed
 from lithobrake.geometry.attitude import angles, directions
+from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.checks import settling_problems
 from lithobrake.study.delivery_checks import drawn_together
@@ -227,7 +228,9 @@ def _body(study: Study) -> "Body":
 
     if study.site.body in BUILT_IN_BODIES:
         return _built_in(study.site.body, study.site.partner, study.site.extents)
-    shape = _read_shape(Path(study.site.body), study.site.unit, study.site.gravity_facets)
+    mesh = labelled_mesh(Path(study.site.body))
+    # A mesh, or its label, that has changed since is read again.
+    shape = _read_shape(mesh, mesh_unit(mesh, study.site.unit), study.site.gravity_facets, file_stamp(mesh))
     return Body(shape, mass=1.0, spin_period=1.0)
 
 
@@ -255,7 +258,7 @@ def _longest_stay(study: Study) -> float:
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Shape":
+def _read_shape(path: Path, unit: str, gravity_facets: int | None, _stamp: tuple[int, ...] | None) -> "Shape":
     from lithobrake.smallbody import Shape
 
     return Shape.read(path, unit, gravity_facets=gravity_facets)

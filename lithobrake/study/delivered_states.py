@@ -2,10 +2,8 @@
 
 import csv
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +12,9 @@ import numpy as np
 from lithobrake.files.oem_reader import MessageState, is_message, message_states
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.units import conversion
+from lithobrake.vocabulary.clock import Epoch, named_system
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
-from lithobrake.vocabulary.plain_text import closest, show
+from lithobrake.vocabulary.plain_text import closest, program_name, show
 
 if TYPE_CHECKING:
     from lithobrake.study.study import Study
@@ -55,15 +54,6 @@ class DeliveredStates:
         part = slice(first, first + count)
         own = (None if one is None else one[part] for one in (self.attitude, self.rates))
         return DeliveredStates(self.source[part], self.time[part], self.position[part], self.velocity[part], *own)
-
-
-def parsed_time(text: str) -> datetime:
-    """A date and time of a study file. Raises ValueError for another text."""
-    try:
-        found = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise ValueError(f"is {show(text)}; allowed: a date and time such as 2027-04-20T12:00:00") from error
-    return found if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
 
 
 def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str]) -> DeliveredStates:
@@ -110,7 +100,7 @@ def orbiter_states(study: "Study") -> DeliveredStates:
 def _names(site: SiteSection) -> list[str]:
     """Names of the body as a message may have them."""
     own = site.body if site.body in BUILT_IN_BODIES else site.name
-    return [re.sub(r"\W+", "_", name).upper() for name in (own, site.kernel_body) if name]
+    return [program_name(name) for name in (own, site.kernel_body) if name]
 
 
 def _of_message(
@@ -120,10 +110,7 @@ def _of_message(
         raise ValueError(f"{name} has no states; give a file with one line a lander")
     for state in states:
         _refuse_segment(state, name, frame, centres)
-    systems = {state.segment["TIME_SYSTEM"] for state in states}
-    if len(systems) > 1:
-        raise ValueError(f"{name} has the time systems {', '.join(sorted(systems))}; allowed: one in all its segments")
-    start = min(state.epoch for state in states) if epoch is None else parsed_time(epoch)
+    start = min(state.epoch for state in states) if epoch is None else _start(epoch, states)
     # An OEM is in km and km/s [CCSDS-2009].
     numbers = 1e3 * np.array([state.numbers for state in states])
     if not np.isfinite(numbers).all():
@@ -131,10 +118,22 @@ def _of_message(
         raise ValueError(f"{name}, line {line}: a number is not finite; mend the line")
     return DeliveredStates(
         [f"{name}, line {state.line}" for state in states],
-        np.array([(state.epoch - start).total_seconds() for state in states]),
+        np.array([state.epoch.since(start) for state in states]),
         numbers[:, :3],
         numbers[:, 3:],
     )
+
+
+def _start(epoch: str, states: list[MessageState]) -> Epoch:
+    """When the time is 0. Raises ValueError where that may be meant in the time system of the message, not in UTC."""
+    systems = sorted({state.segment["TIME_SYSTEM"].upper() for state in states} - {"UTC"})
+    start = Epoch.of(epoch)
+    if systems and named_system(epoch) is None:
+        raise ValueError(
+            f"delivery.epoch is {epoch}, and the states count in {systems[0]}; say in which time system it is: write "
+            f'"{epoch} {systems[0]}" or "{epoch} UTC"'
+        )
+    return start
 
 
 def _refuse_segment(state: MessageState, name: str, frame: str, centres: Sequence[str]) -> None:
@@ -152,7 +151,7 @@ def _refuse_segment(state: MessageState, name: str, frame: str, centres: Sequenc
             f'{where}: REF_FRAME is {given}, which does not turn, and delivery.frame "body_fixed"; convert the states, '
             'or write delivery.frame = "icrf" for axes of that'
         )
-    if centres and re.sub(r"\W+", "_", centre) not in centres:
+    if centres and program_name(centre) not in centres:
         raise ValueError(
             f"{where}: CENTER_NAME is {centre}; allowed: {' or '.join(centres)}, as states count from the centre of "
             "the study's body; convert them"

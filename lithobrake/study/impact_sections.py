@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field, Strict
 
 from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 
 if TYPE_CHECKING:
@@ -272,6 +273,11 @@ def _key_problems(site: SiteSection) -> Iterator[str]:
     for path in site.kernels:
         if not os.path.isfile(path):
             yield f'site.kernels has "{path}"; no such file; give its path from the study file'
+    try:
+        if site.epoch is not None:
+            Epoch.of(site.epoch)
+    except ValueError as error:
+        yield f"site.epoch {error}"
     built_in = site.body in BUILT_IN_BODIES
     if not built_in and site.kernel_body is None:
         yield 'site.kernel_body is missing; kernels know a mesh by the name of its body, say "bennu", or its number'
