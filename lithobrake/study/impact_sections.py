@@ -162,7 +162,7 @@ class SiteSection(Section):
     days."""
     kernels: list[str] = Field(default=[])
     """Kernels of SPICE, relative to the study file, from which the spin is read: text constants (PCK); with an epoch
-    also leap seconds (LSK) and an ephemeris of body and partner (SPK)."""
+    also an ephemeris of body and partner (SPK). A meta-kernel counts with the kernels that it names."""
     kernel_body: str | None = None
     """Name of the body in the kernels, or its number as text; absent: that of the built-in body."""
     epoch: str | None = None

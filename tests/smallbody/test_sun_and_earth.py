@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lithobrake.geometry.naif_kernels import kernel_files
 from lithobrake.smallbody import HeliocentricOrbit, latitudes_over, read_partner, read_spin
 from lithobrake.smallbody.sky import earth_place
 from lithobrake.study.design_sections import OrbitSection
@@ -44,6 +45,29 @@ def test_the_partner_stands_where_its_orbit_has_it(kernels: list[Path]) -> None:
     assert math.remainder(place.longitude_deg - longitude, 360.0) == pytest.approx(0.0, abs=1e-5)
 
 
+META = r"""KPL/MK
+\begindata
+PATH_VALUES = ( '%s'
+                '/nowhere' )
+PATH_SYMBOLS = ( 'A', 'AB' )
+KERNELS_TO_LOAD = ( '$A/did+'
+                    'ymos.tpc' )
+KERNELS_TO_LOAD += '$A/leap.tls'
+\begintext
+KERNELS_TO_LOAD = ( 'of a text' )
+"""
+
+
+def test_a_kernel_that_a_meta_kernel_names_is_read_again_when_it_changes(kernels: list[Path]) -> None:
+    meta = kernels[0].with_name("all.tm")
+    meta.write_text(META % meta.parent)
+    assert kernel_files([str(meta)]) == [str(meta), *map(str, kernels[:2])]
+    assert kernel_files([str(kernels[2]), "absent.tm"]) == [str(kernels[2]), "absent.tm"]
+    before = read_spin([meta], "didymos").period
+    kernels[0].write_text(kernels[0].read_text().replace("3823.0", "1911.5"))
+    assert read_spin([meta], "didymos").period == pytest.approx(2.0 * before, rel=1e-15)
+
+
 def test_what_the_kernels_do_not_say_is_refused(kernels: list[Path]) -> None:
     with pytest.raises(ValueError, match="no BODY2101955_POLE_RA"):
         read_spin(kernels[:1], 2101955)
@@ -53,6 +77,8 @@ def test_what_the_kernels_do_not_say_is_refused(kernels: list[Path]) -> None:
         read_partner(kernels[:2], "didymos", "dimorphos", "2026-11-22T12:00:00")
     with pytest.warns(UserWarning, match="920065803"), pytest.raises(ValueError, match="BODY2065803_POLE_RA"):
         read_spin(kernels[:1], 2065803)
+    with pytest.raises(ValueError, match=r'epoch is "2027-366", and 2027 has the days 001 to 365'):
+        read_partner(kernels, "didymos", "dimorphos", "2027-366")
     # Nothing of it stays loaded.
     assert spice.ktotal("ALL") == 0
 
