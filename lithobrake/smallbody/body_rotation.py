@@ -27,6 +27,8 @@ STEP_ANGLE = 0.02
 TOLERANCE = 1e-10
 # Of a step of the integration [rad]; longer ones would make rounding grow where the body hardly moves.
 LONGEST_ANGLE = 0.5
+# Of a history [s], thirty years: of a body that turns in two hours it has a million and a half attitudes a year.
+LONGEST = 1e9
 
 
 def rotation_history(
@@ -51,7 +53,7 @@ def rotation_history(
     """
     from scipy.integrate import solve_ivp
 
-    duration = finite_number("duration", duration, above=0.0)
+    duration = finite_number("duration", duration, above=0.0, at_most=LONGEST)
     angles = [
         math.radians(finite_number(name, angle, at_least=-360.0, at_most=360.0))
         for name, angle in (("yaw_deg", yaw_deg), ("pitch_deg", pitch_deg), ("roll_deg", roll_deg))

@@ -22,6 +22,7 @@ from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_nu
 
 CHUNK = 1024  # flights that a thread takes at a time
 FARTHEST = 1e20  # of a start, in m and in m/s
+LATEST = 1e12  # of a start [s]: its last digit is 1e-4 s, in which a body hardly turns
 SPEED_OF_LIGHT = 299_792_458.0  # m/s
 
 
@@ -69,6 +70,8 @@ def fly(
     """
     starts = _starts(position, velocity)
     begin = _one_each("start_time", start_time, len(starts))
+    if not (np.abs(begin) <= LATEST).all():
+        raise ValueError(f"start_time is {start_time!r} s; allowed: up to {LATEST:g} s, before or after 0.")
     times = _one_each("duration", duration, len(starts))
     if not (times > 0.0).all():
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
