@@ -13,7 +13,8 @@ from typing import Self
 
 from lithobrake.vocabulary.plain_text import show
 
-# TAI - UTC [s] from the beginning of each of these days on; the last second of the day before is 23:59:60.
+# TAI - UTC [s] from the beginning of each of these days on; the last second of the day before is 23:59:60. Valid until
+# 28 June 2027, by Bulletin C 72 of July 2026; later dates count without a further one, as in SPICE.
 LEAP_SECONDS = {
     "1972-01-01": 10, "1972-07-01": 11, "1973-01-01": 12, "1974-01-01": 13, "1975-01-01": 14, "1976-01-01": 15,
     "1977-01-01": 16, "1978-01-01": 17, "1979-01-01": 18, "1980-01-01": 19, "1981-07-01": 20, "1982-07-01": 21,
@@ -21,8 +22,6 @@ LEAP_SECONDS = {
     "1993-07-01": 28, "1994-07-01": 29, "1996-01-01": 30, "1997-07-01": 31, "1999-01-01": 32, "2006-01-01": 33,
     "2009-01-01": 34, "2012-07-01": 35, "2015-07-01": 36, "2017-01-01": 37,
 }  # fmt: skip
-# By Bulletin C 72 of the IERS there is no further one before this day; later dates count without one, as in SPICE.
-NO_FURTHER_BEFORE = "2027-06-28"
 # TAI - UTC before 1972 [s], as SPICE counts it: UTC had no whole leap seconds then.
 EARLIEST_OFFSET = 9
 # Time systems of texts, and what is taken off their count to have TAI [s]; TDB is near TT.
@@ -35,9 +34,10 @@ K, EB, M0, M1 = 1.657e-3, 1.671e-2, 6.239996, 1.99096871e-7
 _FORM = re.compile(
     r"(?P<year>\d{4})-(?:(?P<month>\d\d)-(?P<day>\d\d)|(?P<number>\d{3}))"
     r"(?:[T ](?P<hour>\d\d):(?P<minute>\d\d)(?::(?P<second>\d\d)(?:[.,](?P<part>\d+))?)?"
-    r"(?P<zone>Z|(?P<sign>[+-])(?P<hours>\d\d):(?P<minutes>\d\d))?)?(?: (?P<system>[A-Z][A-Z0-9]*))?",
+    r"(?P<zone>Z|(?P<sign>[+-])(?P<hours>\d\d):?(?P<minutes>\d\d))?)?(?: (?P<system>[A-Z][A-Z0-9]*))?",
     re.ASCII,
 )
+_PARTS = ("year", "month", "day", "number", "hour", "minute", "second", "hours", "minutes")
 _PICO = 10**12
 _DAY = 86_400
 # Noon of the first day of 2000, from which TAI counts.
@@ -66,10 +66,10 @@ class Epoch:
         one. Raises ValueError, with what is wrong after the name of the text, for a day, hour or second that there is
         not, and for years out of range.
         """
-        found = _FORM.fullmatch(text)
+        found = _FORM.fullmatch(text) if isinstance(text, str) else None
         if found is None:
             raise ValueError(f"is {show(text)}; allowed: {ALLOWED}")
-        parts = {name: int(value) for name, value in found.groupdict().items() if value and value.isdecimal()}
+        parts = {name: int(found[name]) for name in _PARTS if found[name]}
         system = found["system"] or system
         if system not in SYSTEMS:
             raise ValueError(f"is {show(text)}, in the time system {system}; allowed: {', '.join(SYSTEMS)}")

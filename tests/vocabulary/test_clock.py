@@ -37,6 +37,7 @@ def test_what_is_stored_is_what_spice_gives_by_the_leap_seconds_of_erfa() -> Non
     ("2027-04-20T12:01:09.184 TT", "2027-04-20T12:00:00.000000"),
     ("2027-04-20T12:00:37 TAI", "2027-04-20T12:00:00.000000"),
     ("2027-04-20T12:00:18 GPS", "2027-04-20T12:00:00.000000"),
+    ("2027-04-20T00:30:00.1234567890123456789+0100", "2027-04-19T23:30:00.123457"),
     ("2027-04-20T00:30:00+01:00", "2027-04-19T23:30:00.000000"),
     ("2027-04-20", "2027-04-20T00:00:00.000000"),
     ("2027-110 12:00", "2027-04-20T12:00:00.000000"),
@@ -72,6 +73,7 @@ def test_a_leap_second_lasts_a_second() -> None:
     ("2027-04-20T12:00:00 UT1", "in the time system UT1; allowed: UTC, TAI, GPS, TT, TDB"),
     ("0001-01-01T00:00:00+05:00", "the year is 1; allowed: a date and time of the years 1900 to 2999"),
     ("٢٠٢٧-04-20", "allowed: a date and time"),
+    (None, "is None; allowed: a date and time"),
     ("noon", "such as 2026-11-22T12:00:00 or 2026-326T12:00:00"),
 ])  # fmt: skip
 def test_what_no_calendar_has_is_refused(text: str, words: str) -> None:
