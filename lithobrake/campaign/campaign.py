@@ -13,6 +13,7 @@ from lithobrake.campaign.executors import LocalExecutor
 from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.record import Record, RunStatus, Tally
 from lithobrake.campaign.single_run import Limits, Model, run_key, run_seed
+from lithobrake.vocabulary.quantities import Row
 
 if TYPE_CHECKING:
     import numpy as np
@@ -100,7 +101,7 @@ def _callable(model: Model) -> Model:
     return model
 
 
-def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[dict[str, float]]:
+def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[Row]:
     """The inputs of each row by name. Raises ValueError for rows that do not fit the names or are not finite."""
     import numpy as np
 
@@ -173,7 +174,7 @@ class _Chains:
         self.state.total += len(pending)
         return pending
 
-    def _pending(self, key: str, row: dict[str, float], attempts: int) -> PendingRun:
+    def _pending(self, key: str, row: Row, attempts: int) -> PendingRun:
         options = self.options
         log = options.log_folder and options.log_folder / f"{key}.log"
         return PendingRun(_callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts)

@@ -14,6 +14,7 @@ from lithobrake.campaign.ledger import Ledger
 from lithobrake.campaign.record import RunStatus, Tally, common_reasons
 from lithobrake.campaign.single_run import Limits, Model, run_model
 from lithobrake.campaign.worker import MainModuleError
+from lithobrake.vocabulary.quantities import Row
 
 # Runs handed out for each worker: enough that none waits for the coordinator.
 _SUBMITTED_PER_WORKER = 2
@@ -32,7 +33,7 @@ class PendingRun:
     """A run that is to be made; attempts: how often it was tried in earlier campaigns."""
 
     model: Model
-    inputs: dict[str, float]
+    inputs: Row
     seed: int
     log: Path | None
     attempts: int

@@ -23,6 +23,7 @@ from lithobrake.campaign.single_run import CappedLog, last_words, run_key
 from lithobrake.files.reading import content_hash
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.quantities import Row
 
 ANSWER = "outputs.json"
 # How long to wait for the last of what a program printed, where something that it left running may print on [s].
@@ -141,7 +142,7 @@ class Command:
     templates: tuple[Path, ...] = ()
     answer: str = ANSWER
 
-    def __call__(self, inputs: dict[str, float], seed: int) -> dict[str, Any]:
+    def __call__(self, inputs: Row, seed: int) -> dict[str, Any]:
         """Make one run.
 
         Raises RuntimeError for an exit code other than 0, ValueError for outputs that are missing or not finite.

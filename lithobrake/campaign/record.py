@@ -18,6 +18,7 @@ from typing import Any
 from lithobrake.files.atomic import lock_holder
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, reading
 from lithobrake.vocabulary.number_words import duration as duration_words
+from lithobrake.vocabulary.quantities import Row
 
 log = logging.getLogger(__name__)
 # What the hash of a row, in the column CHECKSUM, is of; how often a failed run was tried may be reset.
@@ -55,7 +56,7 @@ class Record:
     key: str
     status: RunStatus
     outcome: str | None
-    inputs: dict[str, float]
+    inputs: Row
     outputs: dict[str, float]
     draws: dict[str, Any]
     seed: int

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign.record import RunStatus, utc_now
+from lithobrake.vocabulary.quantities import Row
 
 # Bytes kept of the beginning, and at least of the end; the end may be twice as long until its first half is dropped.
 # A program that repeats a warning at every step would fill the disk; what it read stands at the beginning, and why it
@@ -24,7 +25,7 @@ from lithobrake.campaign.record import RunStatus, utc_now
 KEPT = 1 << 20
 # A model takes its inputs by name and a seed. It gives its outputs by name, or {"outcome": text, "outputs": numbers by
 # name, "draws": JSON values}; an output that is NaN has no value.
-Model = Callable[[dict[str, float], int], Mapping[str, Any]]
+Model = Callable[[Row, int], Mapping[str, Any]]
 
 
 class CappedLog(io.RawIOBase):
@@ -78,7 +79,7 @@ def last_words(path: Path) -> str:
     return next((line.strip()[-200:] for line in reversed(lines) if line.strip()), "it printed nothing")
 
 
-def run_model(model: Model, inputs: dict[str, float], seed: int, log: Path | None = None) -> dict[str, Any]:
+def run_model(model: Model, inputs: Row, seed: int, log: Path | None = None) -> dict[str, Any]:
     """Make one run; what it raises becomes the reason of a failed run.
 
     log: file that takes what the model prints, and where in it an error arose.

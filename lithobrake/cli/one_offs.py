@@ -10,6 +10,7 @@ import typer
 from lithobrake.cli import arguments
 from lithobrake.cli.studies import study_command
 from lithobrake.vocabulary.plain_text import plain
+from lithobrake.vocabulary.quantities import Row
 
 if TYPE_CHECKING:
     from lithobrake.study import Study
@@ -109,7 +110,7 @@ def doctor(
 
 
 def _landed(
-    study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
+    study: "Study", values: Row, out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     from lithobrake.pipeline import land_one
     from lithobrake.view import refuse_other_kinds, show, write_motion
@@ -132,7 +133,7 @@ def _landed(
 
 
 def _followed(
-    study: "Study", values: dict[str, float], out: Path | None, shown: bool, force: bool, json: bool
+    study: "Study", values: Row, out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
     from lithobrake.cli.results import refuse_journey_file, show_touchdowns

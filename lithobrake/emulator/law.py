@@ -1,6 +1,6 @@
 """The law of the coordinates at given inputs: location, scale, scatter, and chances of outcomes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -240,24 +240,36 @@ def fit_classes(
 
     A class that no run met has the chance 0.5 / (run_count + 1) everywhere. Source: [Heinze-2002].
     """
+    return next(_classes_by_penalty(matrix, factors, outcome, class_count, (inverse_penalty,), weights))
+
+
+def _classes_by_penalty(
+    matrix: Array, factors: Array, outcome: NDArray[np.int64], class_count: int, inverse_penalties: Sequence[float],
+    weights: Array,
+) -> Iterator[OutcomeClasses]:  # fmt: skip
+    """The fit of fit_classes at each inverse penalty; each search begins at the slopes of the one before."""
     counts = np.bincount(outcome, minlength=class_count)
     met, total = np.nonzero(counts)[0], weights.sum()
     never = np.where(counts > 0, 0.0, HALF_EVENT / (total + 1.0))
     intercepts, slopes = np.zeros(class_count), np.zeros((class_count, matrix.shape[1]))
-    if len(met) > 1:
-        from sklearn.linear_model import LogisticRegression
+    if len(met) < 2:
+        yield from (OutcomeClasses(intercepts, slopes, never) for _ in inverse_penalties)
+        return
+    from sklearn.linear_model import LogisticRegression
 
-        kept = np.nonzero(factors)[0]
-        # Half events where all terms are 0 pull on the chances, and on no slope.
-        points = np.vstack([matrix[:, kept] * factors[kept], np.zeros((len(met), len(kept)))])
-        counted = np.append(weights, np.full(len(met), HALF_EVENT))
-        regression = LogisticRegression(C=inverse_penalty, max_iter=1000, tol=1e-6)
-        regression.fit(points, np.append(outcome, met), sample_weight=counted)
-        # Of two classes scikit-learn gives the logit of the second alone.
-        first = 1 if len(met) == 2 else 0
-        intercepts[met[first:]] = regression.intercept_
-        slopes[np.ix_(met[first:], kept)] = regression.coef_ * factors[kept]
-    return OutcomeClasses(intercepts, slopes, never)
+    kept = np.nonzero(factors)[0]
+    # Half events where all terms are 0 pull on the chances, and on no slope.
+    points = np.vstack([matrix[:, kept] * factors[kept], np.zeros((len(met), len(kept)))])
+    labels, counted = np.append(outcome, met), np.append(weights, np.full(len(met), HALF_EVENT))
+    regression = LogisticRegression(max_iter=1000, tol=1e-6, warm_start=True)
+    # Of two classes scikit-learn gives the logit of the second alone.
+    first = 1 if len(met) == 2 else 0
+    for inverse_penalty in inverse_penalties:
+        regression.set_params(C=inverse_penalty).fit(points, labels, sample_weight=counted)
+        own, bent = intercepts.copy(), slopes.copy()
+        own[met[first:]] = regression.intercept_
+        bent[np.ix_(met[first:], kept)] = regression.coef_ * factors[kept]
+        yield OutcomeClasses(own, bent, never)
 
 
 def best_class_choice(
@@ -278,8 +290,8 @@ def best_class_choice(
         for row, bends in enumerate(bent):
             rung = _rung(indices, rest, outcome[kept] == output_outcome) if bends else None
             factors = ClassChoice(0.0, rung).factors(indices)
-            for column, inverse_penalty in enumerate(INVERSE_PENALTIES):
-                classes = fit_classes(rest, factors, outcome[kept], class_count, inverse_penalty, ones)
+            found = _classes_by_penalty(rest, factors, outcome[kept], class_count, INVERSE_PENALTIES, ones)
+            for column, classes in enumerate(found):
                 own = classes.chances(test)[np.arange(len(test)), outcome[~kept]]
                 losses[row, column] -= float(np.log(own).sum())
     row, column = map(int, np.unravel_index(int(np.argmin(losses)), losses.shape))

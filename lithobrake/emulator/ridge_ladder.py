@@ -19,7 +19,7 @@ FADES_FIRST, FADES = (-0.9, -0.1), (-4.0, 0.2)
 PENALTY, FADING_PENALTIES = -5.0, (-23.0, 2.0)
 STEPS = 60
 # Change of the evidence at which a search ends.
-TOLERANCE = 1e-3
+TOLERANCE = 1e-2
 REFUSED = 1e10
 # Of a rung that walks: the deviation of a square beside that of a linear term. Finer steps gave the same errors.
 FADE = 0.4
@@ -70,19 +70,19 @@ def _loss(vector: Array, powers: Array, sums: _Sums) -> tuple[float, Array]:
     """Negative evidence and its gradient; the deviation of the scatter is that of most evidence."""
     factors, ridge = np.exp(powers @ vector[:-1]), sums.count * np.exp(vector[-1])
     scaled = factors[:, None] * sums.gram * factors
-    scaled[np.diag_indices_from(scaled)] += ridge
-    try:
-        lower = linalg.cholesky(scaled, lower=True, check_finite=False)
-    except linalg.LinAlgError:
+    scaled.flat[:: len(scaled) + 1] += ridge
+    # LAPACK itself: what SciPy checks around it takes as long as the matrix, and the search asks thousands of times.
+    lower, failed = linalg.lapack.dpotrf(scaled, lower=1)
+    if failed:
         # The search steps back from parameters for which rounding makes the matrix indefinite.
         return REFUSED, np.zeros_like(vector)
     weighted = factors * sums.moments
-    slopes = linalg.cho_solve((lower, True), weighted, check_finite=False)
+    slopes = linalg.lapack.dpotrs(lower, weighted, lower=1)[0]
     # Rounding may leave nothing, or less, of outputs without scatter.
     unexplained = max(1.0 - float(weighted @ slopes) / sums.total, 1e-12)
     value = 0.5 * (sums.count - 1.0) * np.log(unexplained)
-    value += np.log(np.diag(lower)).sum() - 0.5 * len(factors) * np.log(ridge)
-    diagonal = np.diag(linalg.lapack.dpotri(lower, lower=1)[0])
+    value += np.log(lower.diagonal()).sum() - 0.5 * len(factors) * np.log(ridge)
+    diagonal = linalg.lapack.dpotri(lower, lower=1)[0].diagonal()
     by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (sums.count - 1.0) / (unexplained * sums.total)
     # The penalty is one over the square of a factor that all terms have.
     return float(value), np.append(powers.T @ by_factor, -0.5 * by_factor.sum())

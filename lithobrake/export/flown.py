@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
 from lithobrake.smallbody import Body, Shape, fly
+from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
@@ -227,7 +228,9 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
         partner = smallbody.built_in_body(site["body"], partner=site["partner"]).partner
     # A study of before this key has none.
     shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
-    return Body(shape, mass, spin_period, name, partner)
+    body = Body(shape, mass, spin_period, name, partner)
+    given = site.get("partner_body")
+    return body if given is None else replace(body, partner=ball_partner(body, **given))
 
 
 def refuse_rotation(results: StudyResults) -> None:

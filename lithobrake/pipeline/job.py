@@ -5,6 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from lithobrake.campaign import Model
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
@@ -54,7 +55,7 @@ class Job:
     folder: StudyFolder
     executor: Executor
     shown: StudyProgress
-    model: Callable[[dict[str, float], int], Mapping[str, Any]] | None = None
+    model: Model | None = None
     keeps_logs: bool = False
     wanted: tuple[str, ...] = ()
     note: Callable[..., None] = note_nothing

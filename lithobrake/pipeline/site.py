@@ -13,10 +13,12 @@ from lithobrake.files.reading import file_stamp, hashed_seed
 from lithobrake.geometry.attitude import angles, directions
 from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
+from lithobrake.study.body_checks import partner_warning
 from lithobrake.study.checks import settling_problems
+from lithobrake.study.delivered_states import delivery_warning
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
-from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
+from lithobrake.study.quantity import Scalar, Uncertain, median, scaled, uncertain, usual_reach
 from lithobrake.vocabulary.constants import DAY, HOUR
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import duration
@@ -52,6 +54,8 @@ class Site:
         """
         given = {name.removeprefix("site."): value for name, value in self.study.site_values().items()}
         body = _body(self.study)
+        if "density" in given:
+            given["mass"] = scaled(given["density"], body.shape.volume)
         values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
         if body.partner is not None and body.orbit.rate != 0.0:
             values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
@@ -121,6 +125,17 @@ class Site:
             f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {duration(DAY * start.days)}."
         )
 
+    @cached_property
+    def cautions(self) -> tuple[str, ...]:
+        """What the study leaves out, and what it takes for many deliveries where it is one, in sentences."""
+        found = partner_warning(self.study.site), delivery_warning(self.study)
+        return tuple(words for words in found if words is not None)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What to know of the study before its landers fly, in sentences."""
+        return [*self.cautions, *filter(None, (self.warning, self.rotation_words))]
+
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """Times at which landers arrive [s], [count], of the partner's motion and of the body's rotation.
 
@@ -167,7 +182,20 @@ class Site:
     def acceleration(self) -> np.ndarray:
         """Acceleration [m/s2] of a point at rest on the ground there, at medians: along heading, left of it, out."""
         origin, axes = self._frame
-        felt: np.ndarray = axes @ self.body.effective_acceleration(origin)
+        felt: np.ndarray = axes @ self._felt(origin)
+        return felt
+
+    def _felt(self, place: np.ndarray) -> np.ndarray:
+        """Acceleration [m/s2], body-fixed, of a point at rest at a place [m], [3], at medians.
+
+        With the tide of a partner that the study gives, where it stands over one place. That of a built-in pair, which
+        is smaller, is left to the touchdowns, so that beds of studies from before it was known stay what they were.
+        """
+        body, given = self.body, self.study.site.partner_body
+        if given is None or body.orbit.rate != 0.0:
+            return body.effective_acceleration(place)
+        columns = self.columns(1)
+        felt: np.ndarray = body.felt(place[None], self.clock(columns), columns["mass"], columns["spin_period"])[0]
         return felt
 
     @property
@@ -177,7 +205,9 @@ class Site:
     @cached_property
     def slope_deg(self) -> float:
         """Slope of the ground there against the plumb line of gravity and rotation together, at medians [deg]."""
-        return math.degrees(float(self.body.slope(self.medians["latitude_deg"], self.medians["longitude_deg"])))
+        if self.study.site.partner_body is None:
+            return math.degrees(float(self.body.slope(self.medians["latitude_deg"], self.medians["longitude_deg"])))
+        return math.degrees(math.acos(-float(self.acceleration[2]) / float(np.linalg.norm(self.acceleration))))
 
     @cached_property
     def escape_speed(self) -> float:
@@ -223,15 +253,21 @@ class Site:
 
 
 def _body(study: Study) -> "Body":
-    """The body with its built-in mass and spin, or with 1 where it comes from a mesh, which has none."""
+    """The body with its built-in mass and spin or, where it comes from a mesh, with the medians of the study."""
     from lithobrake.smallbody import Body
+    from lithobrake.smallbody.built_in_bodies import ball_partner
 
-    if study.site.body in BUILT_IN_BODIES:
-        return _built_in(study.site.body, study.site.partner, study.site.extents)
-    mesh = labelled_mesh(Path(study.site.body))
+    site = study.site
+    if site.body in BUILT_IN_BODIES:
+        return _built_in(site.body, site.partner, site.extents)
+    mesh, given = labelled_mesh(Path(site.body)), study.site_values()
     # A mesh, or its label, that has changed since is read again.
-    shape = _read_shape(mesh, mesh_unit(mesh, study.site.unit), study.site.gravity_facets, file_stamp(mesh))
-    return Body(shape, mass=1.0, spin_period=1.0)
+    shape = _read_shape(mesh, mesh_unit(mesh, site.unit), site.gravity_facets, file_stamp(mesh))
+    mass = median(given["site.mass"]) if "site.mass" in given else shape.volume * median(given["site.density"])
+    body = Body(shape, mass=mass, spin_period=median(given["site.spin_period"]))
+    if site.partner_body is None:
+        return body
+    return replace(body, partner=ball_partner(body, **site.partner_body.model_dump()))
 
 
 @lru_cache(maxsize=4)

@@ -13,7 +13,7 @@ from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.study import Study
+from lithobrake.study import Study, StudyError
 from lithobrake.study.delivered_states import orbiter_states
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.lander_section import OUTWARD
@@ -110,11 +110,8 @@ def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     orbiter = study.sky.orbiter
     assert orbiter is not None
     if orbiter.states is not None:
-        states = orbiter_states(study)
-        # Each stands for half the time to its neighbours.
-        ends = np.concatenate([states.time[:1], 0.5 * (states.time[1:] + states.time[:-1]), states.time[-1:]])
-        weight = np.diff(ends)
-        return OrbiterPlaces(states.position, weight / weight.sum())
+        states, weight = orbiter_states(study)
+        return OrbiterPlaces(states.position, weight)
     if orbiter.kernel_name is not None:
         return OrbiterPlaces(
             _of_kernels(study, orbiter.kernel_name, sky_dates(study, PLACES)), np.full(PLACES, 1.0 / PLACES)
@@ -123,6 +120,24 @@ def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     inclination = 90.0 if orbiter.inclination_deg is None else orbiter.inclination_deg
     place = circle_places(site.body.shape.radius + orbiter.altitude, inclination)
     return OrbiterPlaces(place, np.full(PLACES, 1.0 / PLACES))
+
+
+def refuse_hidden_orbiter(site: Site) -> None:
+    """Raise StudyError for states of an orbiter that lie below the ground."""
+    orbiter, shape = site.study.sky.orbiter, site.body.shape
+    if orbiter is None or orbiter.states is None:
+        return
+    states, _ = orbiter_states(site.study)
+    near = np.flatnonzero(np.linalg.norm(states.position, axis=1) < shape.radius)
+    height = shape.height(states.position[near])
+    if (height < 0.0).any():
+        row = int(np.argmin(height))
+        raise StudyError(
+            [
+                f"sky.orbiter.states: {states.source[near[row]]} lies {-height[row]:.3g} m below the ground; allowed: "
+                "above it; is it counted from the centre of the body, in its own axes and in metres? correct it"
+            ]
+        )
 
 
 def screens(body: "Body", count: int, blocks: int) -> "Iterator[Screen | None]":

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training_data import one_thread
@@ -18,9 +18,10 @@ from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.outdated_files import make, setting
 from lithobrake.pipeline.planning.plan import brief_lines
 from lithobrake.pipeline.planning.planner import plan_of
-from lithobrake.pipeline.runs.solver import Model, function_identity
+from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sky_at_rest import refuse_hidden_orbiter
 from lithobrake.pipeline.stages import stages_until
 from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.report.plotted_study import PlottedStudy
@@ -110,6 +111,7 @@ def run_study(
     stages_until(study, until)
     drawn = DrawnDesign(study)
     Soils(drawn.site).refuse(source.name)
+    refuse_hidden_orbiter(drawn.site)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)
     folder = StudyFolder(out)

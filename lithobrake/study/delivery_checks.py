@@ -39,10 +39,14 @@ def covariance_problems(matrix: delivery_sections.Matrix) -> Iterator[str]:
 
 
 def _variance(matrix: delivery_sections.Matrix, row: int) -> str | None:
-    variance = matrix[row][row]
-    if variance >= 0.0:
+    variance, unit = matrix[row][row], "m" if row < delivery_sections.SIDE / 2 else "m/s"
+    largest = delivery_sections.LARGEST[unit] ** 2
+    if 0.0 <= variance <= largest:
         return None
-    return f"has {variance:g} as the variance in row {row + 1}; allowed: at least 0; mend it"
+    return (
+        f"has {variance:g} as the variance in row {row + 1}; allowed: 0 to {largest:g}, the square of "
+        f"{delivery_sections.LARGEST[unit]:g} {unit}; mend it"
+    )
 
 
 def _pair(matrix: delivery_sections.Matrix, row: int, column: int) -> str | None:

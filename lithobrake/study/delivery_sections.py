@@ -8,6 +8,10 @@ from pydantic_core import core_schema
 
 from lithobrake.study import quantity
 
+# Largest numbers of a state by their units: all orbits about a small body are well within the first, and speeds against
+# axes that turn with the body within the second. The resolution of a larger time is worse than 0.1 ms.
+LARGEST = {"m": 1e9, "m/s": 1e6, "s": 1e12, "rad/s": 1e3}
+FAR, FAST, LATE = (LARGEST[unit] for unit in ("m", "m/s", "s"))
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6
 Error = Annotated[quantity.Scalar, quantity.MaybeUncertain("m")]
@@ -69,17 +73,21 @@ class ReleaseSection(quantity.Section):
     is sampled from a normal distribution about it, and the lander flies to the ground. The spread is `covariance`, or
     `position_std` and `velocity_std`; without them all journeys begin in the same state."""
 
-    time: Annotated[float, quantity.Number("s")] = 0.0
+    time: Annotated[float, quantity.Number("s", at_least=-LATE, at_most=LATE)] = 0.0
     """Time of the release, counted from delivery.epoch."""
-    position: Annotated[tuple[float, ...], quantity.Numbers("m")] = Field(examples=["[0.0, -300.0, 0.0]"])
+    position: Annotated[tuple[float, ...], quantity.Numbers("m", at_least=-FAR, at_most=FAR)] = Field(
+        examples=["[0.0, -300.0, 0.0]"]
+    )
     """x, y, z from the centre of the body."""
-    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
+    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s", at_least=-FAST, at_most=FAST)] = Field(
+        examples=["[0.0, 0.03, 0.0]"]
+    )
     """Along the same axes."""
-    position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0)] | None = Field(
+    position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0, at_most=FAR)] | None = Field(
         default=None, examples=["30.0"]
     )
     """Standard deviation in every direction, or three: up, from the centre of the body; north; east."""
-    velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0)] | None = Field(
+    velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0, at_most=FAST)] | None = Field(
         default=None, examples=["0.0067"]
     )
     """The same for the velocity."""

@@ -232,7 +232,7 @@ class OrbiterSection(Section):
     with all phases of the orbit and of the body's rotation; a table of body-fixed states (`states`); or SPICE
     (`kernel_name`) from sky.date to sky.until."""
 
-    altitude: Annotated[float, Number("m", above=0)] | None = Field(default=None, examples=["2000.0"])
+    altitude: Annotated[float, Number("m", above=0, at_most=1e9)] | None = Field(default=None, examples=["2000.0"])
     """Height of the circle above the sphere around the body that touches its highest point."""
     inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] | None = Field(
         default=None, examples=["90.0"]

@@ -23,6 +23,8 @@ SMALLEST_LANDER = 1e-4
 TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
 # What the skins of lists of neighbours add to that (dem/bodies/vectors.py): of two grains, and of one and the lander.
 SKINS, SKINS_AT_LANDER = 0.5, 0.7
+# Share of the volume that the loosest bed fills.
+LEAST_SOLID = 0.4
 # Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
 LEAST_FRICTION = 0.4
 
@@ -142,8 +144,14 @@ def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iter
             f"boulders of at least {largest:g} m; raise it, or lower bed.diameter"
         )
     low, high = study.bed.boulders.cover
+    highest, deepest = 2.0 * BOULDER_REACH * upper, _most_depth(study, largest)
     if low > high:
         yield f"bed.boulders.cover is [{low:g}, {high:g}] m; allowed: the smaller first; swap them"
+    elif low < -highest or high > deepest:
+        yield (
+            f"bed.boulders.cover is [{low:g}, {high:g}] m; allowed: {-highest:.3g} m, as no boulder of {upper:g} m "
+            f"stands higher, to {deepest:.3g} m, as {study.bed.grain_count} grains fill the bed no deeper; mend it"
+        )
     width, least = min(study.bed.width), boulder_width(study, largest, lander_radius)
     if width < least:
         why = "as they lie between the walls" if study.bed.sides == "walls" else TWO_IMAGES
@@ -151,6 +159,11 @@ def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iter
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m for boulders of {upper:g} m, "
             f"{why}; widen the bed and add grains, or lower bed.boulders.diameter"
         )
+
+
+def _most_depth(study: Study, largest: float) -> float:
+    """The depth [m] to which the grains of a bed would fill it if all were as large as the largest."""
+    return study.bed.grain_count * _ball_mass(1.0, largest) / (LEAST_SOLID * math.prod(study.bed.width))
 
 
 def boulder_diameters(section: BoulderSection) -> tuple[float, float]:

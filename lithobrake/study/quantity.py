@@ -65,6 +65,21 @@ def median(value: Scalar) -> float:
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
 
 
+def scaled(value: Scalar, factor: float) -> Scalar:
+    """A factor above 0 times a number or, whatever its distribution, an uncertain one."""
+    if not isinstance(value, Uncertain):
+        return factor * value
+    changed = dict(value.parameters)
+    for name in changed:
+        if value.distribution == "log_normal":
+            changed[name] += math.log(factor) if name == "mean" else 0.0
+        elif name in ("lower", "upper", "mean", "std", "scale"):
+            changed[name] *= factor
+        elif name == "rate":
+            changed[name] /= factor
+    return Uncertain(value.distribution, changed)
+
+
 def reach(value: Scalar) -> tuple[float, float]:
     """Smallest and largest possible value; infinite where its distribution has no end."""
     return value.support() if isinstance(value, Uncertain) else (value, value)
@@ -239,4 +254,4 @@ LengthUnit = Literal["m", "km", "cm", "mm"]
 class Section(BaseModel):
     """One table of the study file; a key that it does not know is refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True, defer_build=True)

@@ -42,6 +42,9 @@ FIXED = "of the body, turning with it"
 BED = "of the bed: origin in the middle of the floor, x and y along its sides, z upward"
 HULL = "of each hull: origin at its centroid, turning with it"
 
+# All inputs of one touchdown by the dotted keys of the study file, in its units: what the ledger keeps, and what a
+# program of the user's own is given.
+Row = dict[str, float]
 VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
 # How a lander arrives at a touchdown, by the keys of the study file.
 IMPACT_SPEED, IMPACT_INCIDENCE, IMPACT_AZIMUTH = "impact.speed", "impact.incidence_deg", "impact.azimuth_deg"

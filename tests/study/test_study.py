@@ -244,6 +244,8 @@ REFUSED = [
     ("bed.boulders", {"coverage": 0.1}, ["bed.boulders.diameter is missing"]),
     ("bed.boulders", {**BOULDERS, "coverage": 0.4}, ["bed.boulders.coverage is 0.4", "above 0 and at most 0.3"]),
     ("bed.boulders", {**BOULDERS, "cover": [0.2, 0.1]}, ["bed.boulders.cover is [0.2, 0.1] m", "swap them"]),
+    ("bed.boulders", {**BOULDERS, "cover": [-10.0, 0.0]}, ["bed.boulders.cover is [-10, 0] m", "stands higher"]),
+    ("bed.boulders", {**BOULDERS, "cover": [0.0, 100.0]}, ["bed.boulders.cover is [0, 100] m", "no deeper"]),
     ("bed.boulders", {**BOULDERS, "diameter": constant(0.01)}, ["boulders.diameter reaches from 0.01 m", "at least"]),
     (
         "bed.boulders",

@@ -67,6 +67,7 @@ def site_results(site: Site) -> SiteResults:
         warning=site.warning,
         rotation=site.rotation_words,
         gravity_warning=site.gravity_warning,
+        cautions=site.cautions,
     )
 
 

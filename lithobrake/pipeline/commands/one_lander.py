@@ -29,7 +29,7 @@ from lithobrake.touchdown.touchdown_model import landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TIME_LEFT, TOUCHDOWN
+from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TIME_LEFT, TOUCHDOWN, Row
 
 if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
@@ -42,7 +42,6 @@ _NUMBER = re.compile(r"[-+]?(inf|nan|\d+(_\d+)*(\.\d+(_\d+)*)?([eE][-+]?\d+)?)",
 OF_JOURNEYS = ("journey", "touchdown", TIME_LEFT)
 # Seeds of pours are told apart by the number of the bed in so many bits.
 LAST_BED = 2**32 - 1
-Row = dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class OneLanding:
     values: every number that it read, by dotted key in the units of the study file, drawn ones included.
     """
 
-    values: dict[str, float]
+    values: Row
     bed: "Bed"
     lander: "Lander"
     landing: "Landing"
@@ -85,7 +84,7 @@ class OneLanding:
         self.outcome.save_frames(path, self.bed, self.lander, self.landing)
 
 
-def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> dict[str, float]:
+def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> Row:
     """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
 
     By dotted key, in the units of the study file; at the medians where the study draws no lander. Raises ValueError for
@@ -120,7 +119,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     return on_local_ground(design.site, [values | changed], number)[0]
 
 
-def land_one(study: Study, values: dict[str, float], progress: Progress = silent) -> OneLanding:
+def land_one(study: Study, values: Row, progress: Progress = silent) -> OneLanding:
     """Land once with all that a landing reads, see landing_inputs.
 
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
@@ -148,7 +147,7 @@ def bed_of(study: Study, number: int, progress: Progress) -> "Bed":
 
 
 def landed(
-    study: Study, values: dict[str, float], bed: "Bed", progress: Progress
+    study: Study, values: Row, bed: "Bed", progress: Progress
 ) -> OneLanding:  # fmt: skip
     """Land once with all that a landing reads on this bed; the study has the gravity of its site."""
     from lithobrake.touchdown import land
@@ -158,7 +157,7 @@ def landed(
         return OneLanding(values, bed, body, arrival, land(bed, body, arrival, FRAMES, progress))
 
 
-def _values(design: DrawnDesign, number: int) -> dict[str, float]:
+def _values(design: DrawnDesign, number: int) -> Row:
     study = design.study
     if not study.design.run_count:
         return draw(study, design.medians, study.seed, design.region)
@@ -175,7 +174,7 @@ def _refuse(study: Study, values: Mapping[str, float]) -> None:
         raise ValueError(f"--set: {'; '.join(error.problems)}") from error
 
 
-def _changed(change: str, values: dict[str, float]) -> tuple[str, float]:
+def _changed(change: str, values: Row) -> tuple[str, float]:
     """The key and the number of a change. Raises ValueError where it is none."""
     key, sign, text = (part.strip() for part in change.partition("="))
     if not sign:

@@ -14,7 +14,7 @@ from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
 from lithobrake.analysis.subset_simulation import limit_state_margin, limit_state_met
-from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
@@ -22,7 +22,6 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder

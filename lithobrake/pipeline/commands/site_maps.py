@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
-from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
@@ -15,7 +15,6 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.solver import Model
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.stages import emulates_touchdowns

@@ -17,12 +17,19 @@ from lithobrake.study.impact_sections import SiteSection
 from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.soil import grain, grain_sizes
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.quantities import GROUND, IMPACT_AZIMUTH, IMPACT_INCIDENCE, IMPACT_SPEED, ORIENTATION, SPIN
+from lithobrake.vocabulary.quantities import (
+    GROUND,
+    IMPACT_AZIMUTH,
+    IMPACT_INCIDENCE,
+    IMPACT_SPEED,
+    ORIENTATION,
+    SPIN,
+    Row,
+)
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import AttitudeHistory, Body
 
-Row = dict[str, float]
 # A lander that comes in along the ground meets it from above all the same.
 FLATTEST_DEG = 89.9
 # Angle of an impact from the normal of the shape's facet, where the ground that is met faces another way.

@@ -1,7 +1,7 @@
 """Landers on their way to their first touchdown, from states of another tool or from where they are released."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,22 +13,23 @@ from lithobrake.pipeline.design import arrivals
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
-from lithobrake.study.delivered_states import DeliveredStates, states_of
+from lithobrake.study.delivered_states import states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
 from lithobrake.study.ground_checks import contact_problems
+from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Flights
+    from lithobrake.smallbody import Flights, Shape
 
 # Coordinates of the sequence of a study beside the others.
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
 # Of a direction from the centre next to the pole, about which north is any.
 POLAR = 1e-9
-Row = dict[str, float]
 # A start so far below the ground is on it, of a millionth of the radius and at most [m].
 SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
@@ -123,7 +124,7 @@ class Descents:
         position, velocity = arrivals.turned(into_body, states.position), arrivals.turned(into_body, states.velocity)
         if _is_icrf(study):
             velocity = arrivals.against_ground(position, velocity, columns["spin_period"])
-        clock = site.clock(columns)
+        clock, uniform = site.clock(columns), position
         if (ground := site.body.rotation) is None:
             clock = clock + states.time
         else:
@@ -131,7 +132,7 @@ class Descents:
             here = ground.at(clock)
             position, velocity = here.states_out_of_frame(position, velocity)
             into_body = here.axes.transpose(0, 2, 1) @ into_body
-        _refuse_below(site, position, states.source)
+        _refuse_below(site, position, uniform, clock, columns, states.source)
         flights = fly(
             *(site.body, position, velocity, study.journey.duration),
             gravity=study.flight.gravity,
@@ -229,19 +230,39 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     return Rotation.from_matrix(into_body) * given, arrivals.turned(into_body, given.apply(states.rates))
 
 
-def _refuse_below(site: Site, position: np.ndarray, source: Sequence[str]) -> None:
-    shape, delivery = site.body.shape, site.study.delivery
-    for place, where in zip(position, source, strict=True):
-        height = float(shape.height(place))
-        if height < -min(SLACK_PART * shape.radius, MOST_SLACK):
-            key = "delivery.states" if delivery and delivery.states else "delivery.release"
-            raise StudyError(
-                [
-                    f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
-                    "from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
-                    "the spread"
-                ]
-            )
+def _refuse_below(
+    site: Site, fixed: Array, uniform: Array, clock: Array, columns: Mapping[str, Array], source: Sequence[str]
+) -> None:
+    """Raise StudyError for a state below the ground of the body or of its partner.
+
+    Places [m], [count, 3], fixed to the body, and in the axes that turn uniformly, in which the partner moves; clock:
+    time of its motion at each [s], [count].
+    """
+    body, partner = site.body, site.body.partner
+    _refuse_within(site, body.shape, fixed, source, "the ground")
+    if partner is not None:
+        orbit = body.orbit_with(GRAVITATIONAL_CONSTANT * columns["mass"], 2.0 * np.pi / columns["spin_period"])
+        there, _ = orbit.seen_from_partner(uniform, np.zeros_like(uniform), clock)
+        _refuse_within(site, partner.body.shape, there, source, f"the surface of {partner.body.name}")
+
+
+def _refuse_within(site: Site, shape: "Shape", position: np.ndarray, source: Sequence[str], what: str) -> None:
+    delivery = site.study.delivery
+    # The height of a place takes a look at every facet.
+    near = np.flatnonzero(np.linalg.norm(position, axis=1) < shape.radius)
+    height = np.full(len(position), np.inf)
+    height[near] = shape.height(position[near])
+    below = np.flatnonzero(height < -min(SLACK_PART * shape.radius, MOST_SLACK))
+    if len(below):
+        row = int(below[0])
+        key = "delivery.states" if delivery and delivery.states else "delivery.release"
+        raise StudyError(
+            [
+                f"{key}: {source[row]} lies {-height[row]:.3g} m below {what}; allowed: on it or above; is it counted "
+                "from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
+                "the spread"
+            ]
+        )
 
 
 def _refuse_fast(study: Study, speed: np.ndarray) -> None:

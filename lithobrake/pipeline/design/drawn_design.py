@@ -30,12 +30,12 @@ from lithobrake.vocabulary.quantities import (
     PLACE,
     SPIN,
     TIME_LEFT,
+    Row,
 )
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
 
-Row = dict[str, float]
 GRAIN = "grain."
 # Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
 # an azimuth that is given leaves the others as they were.
@@ -82,7 +82,7 @@ class DrawnDesign:
         return {name: value.to_chaos() for name, value in uncertain(self.study.touchdown_values()).items()}
 
     @cached_property
-    def medians(self) -> dict[str, float]:
+    def medians(self) -> Row:
         """Every scalar that the touchdown reads, uncertain ones at their median, by dotted key, in the file's units.
 
         Of landers that are flown to the ground, also the medians of what their flights tell.
@@ -128,7 +128,7 @@ class DrawnDesign:
         return beds_of_runs(self.study, self.study.design.run_count)
 
     @cached_property
-    def rows(self) -> list[dict[str, float]]:
+    def rows(self) -> list[Row]:
         """All inputs of the first touchdowns, by dotted key in the file's units, with what each drew.
 
         Of landers that are flown to the ground, of those that reach it.
@@ -137,7 +137,7 @@ class DrawnDesign:
         return self._first_touchdowns(self.rows_at(self.beds, points), 0, self.descents)
 
     @cached_property
-    def delivered_rows(self) -> list[dict[str, float]]:
+    def delivered_rows(self) -> list[Row]:
         """The same as the study draws them: an impact against the facets of the body's shape, under no acceleration of
         the place, on [grain] in whatever region.
         """
@@ -148,7 +148,7 @@ class DrawnDesign:
         """The keys of the runs in the ledger, in their order."""
         return touchdown_keys(self.study, self.rows, 0)
 
-    def row(self, run: int) -> dict[str, float]:
+    def row(self, run: int) -> Row:
         """All inputs of one run, counted from 0, of which there may be more than the study has.
 
         Raises ValueError for a lander that is flown to the ground and does not reach it.
@@ -167,7 +167,7 @@ class DrawnDesign:
         return {name: np.array([row[name] for row in rows])[runs - first] for name in names}
 
     @property
-    def shown_row(self) -> dict[str, float]:
+    def shown_row(self) -> Row:
         """All inputs of the first run; of landers that are flown to the ground, of the first that reaches it.
 
         Raises StudyError where none does.
@@ -175,7 +175,7 @@ class DrawnDesign:
         rows = (self._row(run) for run in range(len(self.beds)))
         return next((row for row in rows if row is not None), None) or self.rows[0]
 
-    def _row(self, run: int) -> dict[str, float] | None:
+    def _row(self, run: int) -> Row | None:
         """The same as `row`; None for a lander that never touches down."""
         # A point of the sequence follows from its number, so the runs before need not be made.
         points = self._points(1, skip=run)
@@ -183,7 +183,7 @@ class DrawnDesign:
         descents = self._descents(run, points) if self.is_flown else None
         return next(iter(self._first_touchdowns(rows, run, descents)), None)
 
-    def rows_of(self, design: str) -> list[dict[str, float]]:
+    def rows_of(self, design: str) -> list[Row]:
         """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
         return {"drawn": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()
 
@@ -234,7 +234,7 @@ class DrawnDesign:
 
         return sobol_sequence(self.coordinates, count, hashed_seed(self.study.seed, "sequence"), skip=skip)
 
-    def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[dict[str, float]]:
+    def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
         rows, known = [], self.study.touchdown_medians()
         # A point has the inputs first, then what a run draws, then what a release draws: each zip takes the part that
@@ -248,16 +248,14 @@ class DrawnDesign:
             rows.append(row)
         return rows
 
-    def _first_touchdowns(
-        self, rows: list[dict[str, float]], first: int, descents: Descents | None
-    ) -> list[dict[str, float]]:
+    def _first_touchdowns(self, rows: list[Row], first: int, descents: Descents | None) -> list[Row]:
         """Rows of landers, numbered from `first` on, as first touchdowns on the ground that they meet."""
         delivered = self._delivered(rows, first)
         if descents is not None:
             return descents.first_touchdowns(delivered)
         return on_local_ground(self.site, delivered, first)
 
-    def _delivered(self, rows: list[dict[str, float]], first: int) -> list[dict[str, float]]:
+    def _delivered(self, rows: list[Row], first: int) -> list[Row]:
         """Rows of landers before it is known which ground they meet."""
         begin = {"touchdown": 0.0, TIME_LEFT: self.study.journey.duration}
         numbered = [row | {"journey": float(first + number)} | begin for number, row in enumerate(rows)]
@@ -266,7 +264,7 @@ class DrawnDesign:
     def _descents(self, first: int, points: np.ndarray) -> Descents:
         return Descents.flown(self.site, first, points[:, -len(RELEASE) :])
 
-    def _soil_pairs(self) -> list[dict[str, float]]:
+    def _soil_pairs(self) -> list[Row]:
         """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.
 
         Their differences give the total effect of the soil. Source: [Jansen-1999].
@@ -279,14 +277,14 @@ class DrawnDesign:
         second = sobol_sequence(inputs, len(rows), hashed_seed(self.study.seed, "soil pairs")).tolist()
         return [row | dict(zip(inputs, soil, strict=True)) for row, soil in zip(rows, second, strict=True)]
 
-    def _twins(self) -> list[dict[str, float]]:
+    def _twins(self) -> list[Row]:
         """The first runs again at places design.twin_shift [m] beside their own: what differs then is chaos."""
         rows, shift = self.rows[:TWIN_COUNT], self.study.design.twin_shift
         turns = np.random.Generator(np.random.PCG64(hashed_seed(self.study.seed, "twins"))).random(len(rows))
         return [row | _beside(row, shift, 2.0 * math.pi * turn) for row, turn in zip(rows, turns, strict=True)]
 
 
-def _arrival(study: Study, uniform: dict[str, float]) -> dict[str, float]:
+def _arrival(study: Study, uniform: Row) -> Row:
     """Azimuth and attitude of a run, as far as the study has them drawn or given, not uncertain by another law."""
     first, second, third = (uniform[name] for name in DRAWN[3:])
     drawn = study.impact.orientation == "random"
@@ -317,7 +315,7 @@ def _in_blocks(seed: int, bed_count: int, count: int) -> list[int]:
     return [int(bed) for order in (range(bed_count), *orders) for bed in order][: max(count, 0)]
 
 
-def _beside(row: dict[str, float], shift: float, direction: float) -> dict[str, float]:
+def _beside(row: Row, shift: float, direction: float) -> Row:
     """A place beside that of a run, toward the middle of the bed: no twin may stand outside of it."""
     step = shift * math.cos(direction), shift * math.sin(direction)
     outward = math.fsum(row[name] * way for name, way in zip(PLACE, step, strict=True)) > 0.0

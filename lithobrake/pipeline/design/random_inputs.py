@@ -7,14 +7,12 @@ import numpy as np
 
 from lithobrake.geometry.attitude import pointed
 from lithobrake.study import Study
-from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, PLACE
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, ORIENTATION, PLACE, Row
 
 Interval = tuple[float, float]
 
 
-def draw(
-    study: Study, values: Mapping[str, float], seed: int, region: tuple[Interval, Interval] | None
-) -> dict[str, float]:
+def draw(study: Study, values: Mapping[str, float], seed: int, region: tuple[Interval, Interval] | None) -> Row:
     """The values of a run with what it draws by chance, or is given in its place.
 
     region: ends of x and y between which impact points are drawn [m]; None: the point is given.

@@ -13,13 +13,12 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import StudyError
 from lithobrake.study.ground_sections import facet_numbers
 from lithobrake.study.quantity import Scalar, uncertain
-from lithobrake.vocabulary.quantities import ELSEWHERE
+from lithobrake.vocabulary.quantities import ELSEWHERE, Row
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
     from lithobrake.smallbody import Shape
 
-Row = dict[str, float]
 # Parts of a facet along each edge, and how many parts there are at most, by which the areas of regions are summed.
 EDGE_PARTS, MOST_PARTS = 8, 200_000
 

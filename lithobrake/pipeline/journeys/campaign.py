@@ -173,9 +173,8 @@ def flight_row(journey: int, flights: "Flights", place: int, begin: float) -> di
 
 
 def make_journeys(job: Job) -> None:
-    for words in (job.site.warning, job.site.rotation_words):
-        if words:
-            job.say(words)
+    for words in job.site.remarks:
+        job.say(words)
     if job.design.descents is not None:
         job.say(descents_in_words(job.design.descents))
     journeys, rows = Journeys.begun(job.design), job.design.rows

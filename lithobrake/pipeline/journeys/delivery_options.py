@@ -21,7 +21,7 @@ from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END, Row
 
 SITE = "site."
 
@@ -89,7 +89,7 @@ def option_arrivals(design: DrawnDesign) -> Arrivals:
     return Arrivals.of(place, numbers, rows, site, refit)
 
 
-def _attitudes(study: Study, side: str, landers: Arrivals) -> list[dict[str, float]]:
+def _attitudes(study: Study, side: str, landers: Arrivals) -> list[Row]:
     random = np.random.default_rng(hashed_seed(study.seed, "attitudes of options"))
     directions, count = np.array(directions_of_sides(study.lander)[side]), len(landers.rows)
     down = directions[random.integers(len(directions), size=count)]

@@ -11,9 +11,7 @@ from lithobrake.pipeline.design.descents import Descents
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.site import Site
 from lithobrake.vocabulary.constants import REFIT_COUNT
-from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, SPIN
-
-Row = dict[str, float]
+from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, SPIN, Row
 
 
 @dataclass(frozen=True)

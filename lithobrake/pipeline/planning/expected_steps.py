@@ -18,7 +18,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.file_names import SCREENING_FILE
-from lithobrake.vocabulary.quantities import PAPER_DESIGNS
+from lithobrake.vocabulary.quantities import PAPER_DESIGNS, Row
 
 if TYPE_CHECKING:
     from lithobrake.dem import ConvexHull
@@ -100,7 +100,7 @@ def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known
     return [found[0].beside(of_landers[0]), found[-1].beside(of_landers[-1])]
 
 
-def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[dict[str, float]]:
+def planned_rows(drawn: DrawnDesign, kept_count: int, most: int) -> list[Row]:
     """All inputs of up to `most` of the touchdowns, drawn by chance."""
     study = drawn.study
     if study.design.run_count:

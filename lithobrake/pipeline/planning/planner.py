@@ -29,6 +29,7 @@ from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sky_at_rest import refuse_hidden_orbiter
 from lithobrake.pipeline.stages import EMULATOR, STAGES
 from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
@@ -50,6 +51,7 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     refuse_others_folder(source, out)
     design = DrawnDesign(study)
     Soils(design.site).refuse(source.name)
+    refuse_hidden_orbiter(design.site)
     plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
 

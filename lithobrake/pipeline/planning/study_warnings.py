@@ -33,7 +33,7 @@ RUNS_A_TERM = 1.5
 
 def study_warnings(design: DrawnDesign, soil: ExpectedSoil | None) -> list[str]:
     study, site = design.study, design.site
-    ground = [warning for warning in (site.warning, site.gravity_warning) if warning]
+    ground = [*site.cautions, *filter(None, (site.warning, site.gravity_warning))]
     touchdown = (
         [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
     )

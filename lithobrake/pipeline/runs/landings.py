@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake import campaign
+from lithobrake.campaign import Model
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.external_model import PREFIX
 from lithobrake.pipeline.design import dependencies
@@ -17,7 +18,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.beds import compile_kernels
 from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.solver import FunctionModel, Model, ServerModel, SolverModel
+from lithobrake.pipeline.runs.solver import FunctionModel, ServerModel, SolverModel
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.quantity import uncertain
@@ -27,13 +28,13 @@ from lithobrake.touchdown.study_keys import by_study_keys
 from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.file_names import LANDING_FILE, RUNS_FILE, TELLING_LANDING_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.quantities import OUTPUTS, Row
 
 SNAPSHOT_FRAMES = 120
 FIRST, TELLING = LANDING_FILE, TELLING_LANDING_FILE
 
 
-def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[dict[str, float]]:
+def drawn_rows(design: DrawnDesign, x: np.ndarray, replicate: int) -> list[Row]:
     """All inputs of the runs at these uncertain inputs, [run_count, input_count], with what each draws by chance.
 
     replicate: another number gives the same rows other draws.
@@ -80,7 +81,7 @@ def campaign_setting(job: Job, replicate: int = 0) -> dict[str, Any]:
     }
 
 
-def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> dict[str, float]:
+def _drawn(design: DrawnDesign, row: Sequence[float], replicate: int) -> Row:
     study, values = design.study, design.medians | dict(zip(design.inputs, row, strict=True))
     drawn = draw(study, values, campaign.run_seed(values, study.seed, replicate), design.region)
     return {name: float(value) for name, value in drawn.items()}
@@ -171,7 +172,7 @@ def landing_dependencies(study: Study) -> dict[str, Any]:
     return {"touchdown": dependencies.touchdown_dependencies(study), "values": landing_values(DrawnDesign(study))}
 
 
-def landing_values(design: DrawnDesign) -> dict[str, float]:
+def landing_values(design: DrawnDesign) -> Row:
     """All inputs of the landing to look at: the first drawn run, or that at the medians of all inputs."""
     if not design.study.design.run_count:
         # Without a lander that is drawn the landing is that of the medians.
@@ -210,7 +211,7 @@ def telling_run(runs: DesignRuns) -> int:
     return next(row for row, outcome in enumerate(runs.outcomes) if outcome in list(TouchdownOutcome))
 
 
-def _land(job: Job, values: dict[str, float], file: str, **notes: str) -> str:
+def _land(job: Job, values: Row, file: str, **notes: str) -> str:
     from lithobrake.touchdown import land
 
     bed = touchdown_model.stored_bed(job.folder / dependencies.bed_files(job.study)[round(values["bed"])])

@@ -3,22 +3,19 @@
 import hashlib
 import math
 import reprlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.campaign import Command, ModelServer
+from lithobrake.campaign import Command, Model, ModelServer
 from lithobrake.campaign.worker import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
-from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT
+from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT, Row
 
 # A landing as a vector: the outcome as its place among TouchdownOutcome, and the outputs.
 LANDING = ("outcome", *OUTPUTS)
 # What speed and elevation may be off their components: numbers printed with six digits, as C and C++ do, agree so far.
 PRINTED = 2e-5
-
-
-Model = Callable[[dict[str, float], int], Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
@@ -28,7 +25,7 @@ class SolverModel:
     command: Command
     setting: Mapping[str, Any]
 
-    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+    def __call__(self, values: Row, seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an outcome or outputs that a study cannot use."""
         return checked(self.command.answer, self.command.ask({"inputs": values, "seed": seed, "setting": self.setting}))
 
@@ -44,7 +41,7 @@ class ServerModel:
     names: tuple[str, ...]
     setting: Mapping[str, Any]
 
-    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+    def __call__(self, values: Row, seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an answer that a study cannot use."""
         config = {"seed": seed, "inputs": values, "setting": self.setting}
         vectors = self.server.evaluate([[values[name] for name in self.names]], config)
@@ -65,7 +62,7 @@ class ServerModel:
 class FunctionModel:
     function: Model
 
-    def __call__(self, values: dict[str, float], seed: int) -> dict[str, Any]:
+    def __call__(self, values: Row, seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an answer that a study cannot use."""
         answer = self.function(values, seed)
         if not isinstance(answer, Mapping) or not isinstance(answer.get("outputs", {}), Mapping):

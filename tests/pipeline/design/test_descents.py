@@ -21,6 +21,7 @@ from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
@@ -302,6 +303,27 @@ def test_a_state_below_the_ground_is_refused_with_its_line(tmp_path: Path) -> No
         _ = DrawnDesign(study(delivery={"states": path})).descents
     with pytest.raises(StudyError, match=r"delivery\.release: the release of journey 0 lies"):
         _ = DrawnDesign(study(delivery=released(position=[0.0, 60.0, 0.0]))).descents
+
+
+def test_states_along_one_path_are_warned_of_in_plan_and_run(tmp_path: Path) -> None:
+    """A fall at constant speed: eight states a second apart."""
+    fall = np.column_stack([np.arange(8.0), np.array([*POSITION, *VELOCITY]) + np.zeros((8, 6))])
+    fall[:, 1:4] += fall[:, :1] * VELOCITY
+    design = DrawnDesign(study(delivery={"states": write_table(tmp_path / "states.csv", fall, TITLES)}))
+    (words,) = design.site.cautions
+    assert "The 8 states of delivery.states lie on one path (states.csv, line 2 to states.csv, line 9)" in words
+    assert words in study_warnings(design, None)
+    assert design.site.remarks[0] == words
+    assert Site(study(delivery={"states": write_table(tmp_path / "other.csv", some_states(), TITLES)})).cautions == ()
+
+
+def test_a_state_within_the_partner_is_refused_with_its_line(tmp_path: Path) -> None:
+    """Didymos stands 1157 m from Dimorphos, over longitude 0, and reaches 425 m."""
+    states = some_states()
+    states[2, 1:4] = [1180.0, 0.0, 0.0]
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    with pytest.raises(StudyError, match=r"states\.csv, line 4 lies 30\d m below the surface of didymos; allowed"):
+        _ = DrawnDesign(study(delivery={"states": path}, site={"partner": True})).descents
 
 
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:

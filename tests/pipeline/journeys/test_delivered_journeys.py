@@ -22,7 +22,7 @@ from lithobrake.pipeline.planning.expected_width import law_before
 from lithobrake.pipeline.planning.plan import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sky_at_rest import Days, rows_of, sky_dependencies, where_it_stands
+from lithobrake.pipeline.sky_at_rest import Days, refuse_hidden_orbiter, rows_of, sky_dependencies, where_it_stands
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly
@@ -395,9 +395,13 @@ def test_an_orbiter_on_a_circle_or_in_a_table_is_seen_from_below_it(tmp_path: Pa
     study, site = sky_study(sky={"orbiter": {"states": str(table)}})
     (row,) = rows_of(BALL, [lander(100.0)], "orbiter", where_it_stands(study, site, "orbiter"), 0.0, 90.0)
     assert row[3] == pytest.approx((50.0 + 150.0) / 400.0)
+    refuse_hidden_orbiter(site)
     before = sky_dependencies(study)
     table.write_text(table.read_text().replace("400,", "500,"))
     assert sky_dependencies(study) != before
+    table.write_text(table.read_text().replace("500,1,0.1,", "500,0.01,0.01,"))
+    with pytest.raises(StudyError, match=r"orbiter\.csv, line 4 lies .* m below the ground; allowed: above it"):
+        refuse_hidden_orbiter(Site(study))
 
 
 def write_sky_kernel(path: Path) -> dict[int, np.ndarray]:
@@ -452,6 +456,7 @@ def test_kernels_tell_where_sun_earth_and_orbiter_stand(tmp_path: Path) -> None:
     ({"orbiter": {"altitude": 1.0, "kernel_name": "HERA"}}, "sky.orbiter.altitude and sky.orbiter.kernel_name"),
     ({"orbiter": {"kernel_name": "HERA"}}, "site.kernels is missing"),
     ({"orbiter": {"states": "nowhere.csv"}}, "cannot be read"),
+    ({"orbiter": {"states": str(Path(__file__))}}, "sky.orbiter.states: test_delivered_journeys.py, line 1"),
     ({"orbiter": {"states": "x", "inclination_deg": 3.0}}, "is that of a circle"),
     ({"sun_latitude_deg": 3.0, "beam_deg": 30.0}, "sky.beam_deg is of Earth and the orbiter"),
     ({"earth_latitude_deg": 3.0, "beam_deg": 91.0}, "above 0 and at most 90"),
