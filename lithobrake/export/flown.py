@@ -3,7 +3,6 @@
 A flight is one arc of a journey: the first, from the touchdown to the next impact, or one between later impacts.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.plain_text import program_name
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
@@ -251,9 +251,4 @@ def refuse_rotation(results: StudyResults) -> None:
 def body_name(results: StudyResults) -> str:
     """The name of the body as other programs take it: capitals, digits and underscores."""
     site = results.study["site"]
-    return plain_name(site.get("name") or Path(site["body"]).stem)
-
-
-def plain_name(name: str) -> str:
-    """A name as other programs take it: capitals, digits and underscores."""
-    return re.sub(r"\W+", "_", name, flags=re.ASCII).upper()
+    return program_name(site.get("name") or Path(site["body"]).stem)

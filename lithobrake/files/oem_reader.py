@@ -5,8 +5,9 @@ Source: [CCSDS-2009], section 5 (keyword = value text)
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
+
+from lithobrake.vocabulary.clock import Epoch
 
 # What each segment has to say of its states.
 NEEDED = ("CENTER_NAME", "REF_FRAME", "TIME_SYSTEM")
@@ -19,13 +20,13 @@ class MessageState:
     """One line of a message with states.
 
     line       of the file, from 1
-    epoch      in the time system of its segment
+    epoch      an instant; its text is in the time system of its segment
     numbers    x, y, z [km] and their rates [km/s]
     segment    what its segment says, by keyword; all states of a segment have the same object
     """
 
     line: int
-    epoch: datetime
+    epoch: Epoch
     numbers: tuple[float, ...]
     segment: dict[str, str]
 
@@ -79,15 +80,19 @@ def _refuse_lacking(path: Path, number: int, segment: dict[str, str]) -> None:
         try:
             useable_time(segment, key)
         except ValueError as error:
-            raise ValueError(f"{path}, line {number}: {key} is {segment[key]} ({error}); write a date") from error
+            raise ValueError(f"{path}, line {number}: {key} {error}; mend it") from error
 
 
-def useable_time(segment: dict[str, str], key: str) -> datetime | None:
+def useable_time(segment: dict[str, str], key: str) -> Epoch | None:
     """An end of the time in which the states of a segment count, out of USEABLE; None where it has none.
 
     States beyond stand for interpolation alone. Source: [CCSDS-2009], section 5.2.3
     """
-    return _epoch(segment[key]) if segment.get(key) else None
+    return _epoch(segment[key], segment) if segment.get(key) else None
+
+
+def _epoch(text: str, segment: dict[str, str]) -> Epoch:
+    return Epoch.of(text, segment["TIME_SYSTEM"].upper())
 
 
 def _state(path: Path, number: int, words: list[str], segment: dict[str, str] | None) -> MessageState:
@@ -101,19 +106,10 @@ def _state(path: Path, number: int, words: list[str], segment: dict[str, str] | 
             "km/s; mend the line"
         )
     try:
-        return MessageState(number, _epoch(words[0]), tuple(float(word) for word in words[1:7]), segment)
+        epoch = _epoch(words[0], segment)
     except ValueError as error:
-        raise ValueError(
-            f"{where}: {error}; allowed: an epoch such as 2027-04-20T12:00:00 or 2027-110T12:00:00, and numbers; mend "
-            "the line"
-        ) from error
-
-
-def _epoch(text: str) -> datetime:
-    """A date with month and day, or with the day of the year."""
-    date, _, time = text.partition("T")
-    if date.count("-") == 1:
-        found = datetime.strptime(date, "%Y-%j").replace(tzinfo=None)
-        date = found.date().isoformat()
-    found = datetime.fromisoformat(f"{date}T{time}")
-    return found if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
+        raise ValueError(f"{where}: the epoch {error}; mend the line") from error
+    try:
+        return MessageState(number, epoch, tuple(float(word) for word in words[1:7]), segment)
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}; allowed: an epoch and numbers; mend the line") from error

@@ -154,6 +154,16 @@ def _finite(text: str) -> float:
     return value
 
 
+def file_stamp(path: str | PathLike[str]) -> tuple[int, int, int] | None:
+    """What of a file changes when its content does; None where there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    # The inode too, as a file may be replaced by one of the same size within a tick of the clock.
+    return found.st_ino, found.st_size, found.st_mtime_ns
+
+
 def content_hash(path: Path) -> str:
     """Hash of a file's bytes."""
     with path.open("rb") as file:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.reading import hashed_seed
+from lithobrake.files.reading import file_stamp, hashed_seed
 from lithobrake.geometry.attitude import angles, directions
+from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
 from lithobrake.study.body_checks import partner_warning
 from lithobrake.study.delivered_states import delivery_warning
@@ -257,7 +258,9 @@ def _body(study: Study) -> "Body":
     site = study.site
     if site.body in BUILT_IN_BODIES:
         return _built_in(site.body, site.partner, site.extents)
-    shape, given = _read_shape(Path(site.body), site.unit, site.gravity_facets), study.site_values()
+    mesh, given = labelled_mesh(Path(site.body)), study.site_values()
+    # A mesh, or its label, that has changed since is read again.
+    shape = _read_shape(mesh, mesh_unit(mesh, site.unit), site.gravity_facets, file_stamp(mesh))
     mass = median(given["site.mass"]) if "site.mass" in given else shape.volume * median(given["site.density"])
     body = Body(shape, mass=mass, spin_period=median(given["site.spin_period"]))
     if site.partner_body is None:
@@ -289,7 +292,7 @@ def _longest_stay(study: Study) -> float:
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Shape":
+def _read_shape(path: Path, unit: str, gravity_facets: int | None, _stamp: tuple[int, ...] | None) -> "Shape":
     from lithobrake.smallbody import Shape
 
     return Shape.read(path, unit, gravity_facets=gravity_facets)

@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +15,9 @@ from lithobrake.study.delivery_sections import LARGEST
 from lithobrake.study.impact_sections import SiteSection
 from lithobrake.study.state_paths import DeliveredStates, StateSegment, orbiter_path, path_warning, useable
 from lithobrake.study.state_tables import table_states
+from lithobrake.vocabulary.clock import Epoch, named_system
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
-from lithobrake.vocabulary.plain_text import show
+from lithobrake.vocabulary.plain_text import program_name
 
 if TYPE_CHECKING:
     from lithobrake.study.study import Study
@@ -32,15 +32,6 @@ REMEDIES = {
     FileKind.OPM: "write its state as [delivery.release], or as a row of a table",
     FileKind.UTF16: "save it in UTF-8",
 }
-
-
-def parsed_time(text: str) -> datetime:
-    """A date and time of a study file. Raises ValueError for another text."""
-    try:
-        found = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise ValueError(f"is {show(text)}; allowed: a date and time such as 2027-04-20T12:00:00") from error
-    return found if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
 
 
 def read_states(path: Path, frame: str, epoch: str | None, centres: Sequence[str]) -> DeliveredStates:
@@ -108,7 +99,7 @@ def names_of_body(site: SiteSection) -> list[str]:
 
 def _plain(name: str) -> str:
     """A name as a message writes it: capitals, digits and underscores, without the number of a minor planet before."""
-    return re.sub(r"^_*\d+_+(?=[A-Z])", "", re.sub(r"\W+", "_", name.strip()).upper()).strip("_")
+    return re.sub(r"^_*\d+_+(?=[A-Z])", "", program_name(name.strip())).strip("_")
 
 
 def _of_message(
@@ -118,11 +109,8 @@ def _of_message(
         raise ValueError(f"{name} has no states; give a file with one line a lander")
     for state in states:
         _refuse_segment(state, name, frame, centres)
-    systems = {state.segment["TIME_SYSTEM"] for state in states}
-    if len(systems) > 1:
-        raise ValueError(f"{name} has the time systems {', '.join(sorted(systems))}; allowed: one in all its segments")
-    start = min(state.epoch for state in states) if epoch is None else parsed_time(epoch)
-    time = np.array([(state.epoch - start).total_seconds() for state in states])
+    start = min(state.epoch for state in states) if epoch is None else _start(epoch, states)
+    time = np.array([state.epoch.since(start) for state in states])
     # An OEM is in km and km/s [CCSDS-2009].
     given, largest = np.array([state.numbers for state in states]), [1e-3 * LARGEST[unit] for unit in ("m", "m/s")]
     sizes = np.column_stack([np.abs(time), np.abs(given)])
@@ -144,15 +132,27 @@ def _of_message(
     )
 
 
-def _segment(given: dict[str, str], start: datetime) -> StateSegment:
+def _segment(given: dict[str, str], start: Epoch) -> StateSegment:
     """What a segment says of its states; start: when their time is 0."""
     begin, end = (useable_time(given, key) for key in USEABLE)
     return StateSegment(
         given.get("OBJECT_NAME", ""),
         "INTERPOLATION" in given,
-        -math.inf if begin is None else (begin - start).total_seconds(),
-        math.inf if end is None else (end - start).total_seconds(),
+        -math.inf if begin is None else begin.since(start),
+        math.inf if end is None else end.since(start),
     )
+
+
+def _start(epoch: str, states: list[MessageState]) -> Epoch:
+    """When the time is 0. Raises ValueError where that may be meant in the time system of the message, not in UTC."""
+    systems = sorted({state.segment["TIME_SYSTEM"].upper() for state in states} - {"UTC"})
+    start = Epoch.of(epoch)
+    if systems and named_system(epoch) is None:
+        raise ValueError(
+            f"delivery.epoch is {epoch}, and the states count in {systems[0]}; say in which time system it is: write "
+            f'"{epoch} {systems[0]}" or "{epoch} UTC"'
+        )
+    return start
 
 
 def _refuse_segment(state: MessageState, name: str, frame: str, centres: Sequence[str]) -> None:

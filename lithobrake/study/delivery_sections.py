@@ -137,8 +137,8 @@ class DeliverySection(quantity.Section):
     not rotate; site.pole_right_ascension_deg, site.pole_declination_deg and site.meridian_deg give the attitude of the
     body. Both have the origin of the body's shape."""
     epoch: str | None = Field(default=None, examples=['"2027-04-20T12:00:00"'])
-    """Date and time at which the time of the states is 0, in the time system of an ephemeris message, otherwise in UTC.
-    Absent: that of the earliest state of the message."""
+    """Date and time at which the time of the states is 0: in UTC, or in the time system that it ends with, as in
+    "2027-04-20T12:00:00 TDB" (UTC, TAI, GPS, TT, TDB). Absent: that of the earliest state of the message."""
     states: str | None = Field(default=None, examples=['"states.csv"'])
     """File of states from another tool, relative to the study file, one state per journey in the order of the file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""

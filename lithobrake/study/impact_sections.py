@@ -9,6 +9,7 @@ from pydantic import Field, Strict
 
 from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 
 if TYPE_CHECKING:
@@ -185,7 +186,7 @@ class SiteSection(Section):
     days."""
     kernels: list[str] = Field(default=[])
     """Kernels of SPICE, relative to the study file, from which the spin is read: text constants (PCK); with an epoch
-    also leap seconds (LSK) and an ephemeris of body and partner (SPK)."""
+    also an ephemeris of body and partner (SPK). A meta-kernel counts with the kernels that it names."""
     kernel_body: str | None = None
     """Name of the body in the kernels, or its number as text; absent: that of the built-in body."""
     epoch: str | None = None
@@ -299,6 +300,11 @@ def _key_problems(site: SiteSection) -> Iterator[str]:
         elif (kind := file_kind(Path(path))) not in (None, FileKind.TEXT_KERNEL, FileKind.BINARY_KERNEL):
             remedy = "give it as site.body" if kind is FileKind.SHAPE_KERNEL else "leave it out"
             yield f'site.kernels has "{path}", which is {kind}; allowed: PCK, LSK, SPK and meta-kernels; {remedy}'
+    try:
+        if site.epoch is not None:
+            Epoch.of(site.epoch)
+    except ValueError as error:
+        yield f"site.epoch {error}"
     built_in = site.body in BUILT_IN_BODIES
     if not built_in and site.kernel_body is None:
         yield 'site.kernel_body is missing; kernels know a mesh by the name of its body, say "bennu", or its number'

@@ -1,6 +1,7 @@
 """The site: where an error of delivery leads, accelerations there, and the flights of single runs from it."""
 
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -202,6 +203,11 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     assert flight_dependencies(found) == before[0]
     assert summary_dependencies(found) != before[1]
     assert site_results(Site(changed())).product_id is None
+    # A mesh or a label that is edited is read again in the same process.
+    path.write_text("\n".join(re.sub("^(v.*)1", r"\g<1>3", line) for line in path.read_text().splitlines()))
+    assert site_results(Site(given)).extents_m == (6e3, 6e3, 6e3)
+    label.write_text(label.read_text().replace("<unit>km", "<unit>m"))
+    assert site_results(Site(given)).extents_m == (6.0, 6.0, 6.0)
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
         changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})

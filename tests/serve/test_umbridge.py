@@ -139,6 +139,7 @@ def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
     ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
     ({"mass": "5e11"}, 'site.mass is "5e11"; allowed: above 0 .kg.; write a finite number without quotes'),
     ({"latitude_deg": 91}, "site.latitude_deg is 91; allowed: at least -90 and at most 90 .deg."),
+    ({"rotation_time": 5.0}, "site.rotation_time is a time in .site.rotation., and there is none; add it, or leave"),
     ({"heading_deg": True}, "site.heading_deg is true; allowed"),
     ({"heading_deg": {"distribution": "uniform", "lower": 0, "upper": 9}}, "allowed: one number"),
 ])  # fmt: skip

@@ -213,7 +213,7 @@ META_STOP
     (("REF_FRAME", "TIME_SYSTEM = UTC\nREF_FRAME"), "icrf", "line 7: TIME_SYSTEM stands twice in its segment"),
     (("META_STOP\n", "META_STOP\nCOVARIANCE_START\n"), "icrf", "COVARIANCE_START has no COVARIANCE_STOP"),
     (("0 0.2 0 0 -5e-5 0\n2027", "0 1e308 0 0 -5e-5 0\n2027"), "icrf", "line 8: a number is not finite or too large"),
-    (("META_STOP", "USEABLE_START_TIME = noon\nMETA_STOP"), "icrf", "line 8: USEABLE_START_TIME is noon"),
+    (("META_STOP", "USEABLE_START_TIME = noon\nMETA_STOP"), "icrf", 'line 8: USEABLE_START_TIME is "noon"'),
 ])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path
@@ -231,6 +231,46 @@ def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
     found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
     assert (found.time.tolist(), found.position[0].tolist()) == ([0.5, 10.0], [0.0, 200.0, 0.0])
     assert read_states(path, "icrf", None, ("DIMORPHOS",)).time.tolist() == [0.0, 9.5]
+
+
+@pytest.mark.parametrize(("system", "epochs", "epoch", "times"), [
+    ("UTC", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), None, [0.0, 21.0]),
+    ("UTC", ("2016-366T23:59:60.5", "2017-001T01:00:00Z"), "2016-12-31T23:59:60", [0.5, 3601.0]),
+    ("UTC", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), "2017-01-01T01:00:00+01:00", [-11.0, 10.0]),
+    ("TAI", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), None, [0.0, 20.0]),
+    ("TAI", ("2027-04-20T12:00:37", "2027-04-20T12:01:37"), "2027-04-20T12:00:00 UTC", [0.0, 60.0]),
+    ("GPS", ("2027-04-20T12:00:18", "2027-04-20T12:01:18"), "2027-04-20T12:00:00Z", [0.0, 60.0]),
+    ("TT", ("2027-04-20T12:00:00", "2027-04-20T12:01:00"), "2027-04-20T12:00:00 TT", [0.0, 60.0]),
+    ("tdb", ("2027-04-20T12:00:00", "2027-04-20T12:01:00"), "2027-04-20T12:00:00 TDB", [0.0, 60.0]),
+])  # fmt: skip
+def test_times_of_a_message_are_seconds_in_any_time_system(
+    system: str, epochs: tuple[str, str], epoch: str | None, times: list[float], tmp_path: Path
+) -> None:
+    read = read_states(timed(tmp_path, system, *epochs), "icrf", epoch, ("DIMORPHOS",))
+    assert read.time.tolist() == pytest.approx(times, abs=1e-7)
+
+
+@pytest.mark.parametrize(("system", "epoch", "words"), [
+    ("UTC", "2027-366T00:00:00", 'line 8: the epoch is "2027-366T00:00:00", and 2027 has the days 001 to 365'),
+    ("UTC", "2027-1T00:00:00", 'line 8: the epoch is "2027-1T00:00:00"; allowed: '),
+    ("UTC", "0001-01-01T00:00:00+05:00", "and the year is 1; allowed: a date and time of the years 1900 to 2999"),
+    ("MET", "2027-04-20T12:00:00", "in the time system MET; allowed: UTC, TAI, GPS, TT, TDB; mend the line"),
+    ("TDB", "2027-04-20T12:00:00", 'write "2027-04-20T12:00:00 TDB" or "2027-04-20T12:00:00 UTC"'),
+])  # fmt: skip
+def test_epochs_that_are_none_or_of_an_open_time_system_are_refused(
+    system: str, epoch: str, words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=r"states\.oem|delivery\.epoch is") as error:
+        read_states(timed(tmp_path, system, epoch, epoch), "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
+    assert words in str(error.value)
+
+
+def timed(folder: Path, system: str, *epochs: str) -> Path:
+    """A message whose states are at these epochs of a time system."""
+    path, (head, *_) = folder / "states.oem", OEM.partition("2027")
+    rows = "".join(f"{epoch} 0 0.2 0 0 -5e-5 0\n" for epoch in epochs)
+    path.write_text(head.replace("UTC", system) + rows)
+    return path
 
 
 BOOM = {"shape": "box", "edges": [1.5, 0.01, 0.02], "centre": [0.93, 0.0, 0.01], "mass": 0.05}

@@ -173,7 +173,9 @@ class ServedStudy:
             raise ValueError(f"input of model flight is {show(point)}; allowed: below {FARTHEST:g} m/s each")
         body, numbers = self.design.site.body, self.design.site.medians | dict(config)
         if config:
-            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
+            # What neither the study nor the client gives is no number of a study file.
+            given = {*self.study.site_values(), *(f"site.{key}" for key in config)}
+            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items() if f"site.{key}" in given})
         site = {key: np.array([float(value)]) for key, value in numbers.items()}
         origin, axes = self.design.site.frames(site)
         flown = fly(
