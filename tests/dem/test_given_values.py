@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import pytest
 from lithobrake import dem
 from lithobrake.export import Push
 from lithobrake.smallbody import HeliocentricOrbit, circle_places
+from lithobrake.vocabulary.clock import Epoch
 
 ROCK = {"young_modulus": 1e6, "poisson_ratio": 0.25, "restitution": 0.5, "friction": 0.5, "density": 2500.0}
 
@@ -40,8 +40,8 @@ def world(**given: Any) -> dem.World:
     (lambda: world().add_body(dem.Sphere(0.1), None, (0, 0, 0)), "add_body material is None; allowed is a Material"),
     (lambda: world().add_body(dem.Sphere(0.1), dem.Material(**ROCK), ("a", 0, 0)), "add_body position is ('a', 0, 0)"),
     (lambda: circle_places(-5.0, 90.0), "radius is -5.0, but must be a finite number above 0"),
-    (lambda: HeliocentricOrbit(1.0, 1.0, 0, 0, 0, 0, datetime(2027, 1, 1)), "eccentricity is 1.0, but must be"),
-    (lambda: HeliocentricOrbit(1.0, 0.5, 0, 0, 0, 0, 0), "epoch is 0, but must be a datetime"),
+    (lambda: HeliocentricOrbit(1.0, 1.0, 0, 0, 0, 0, Epoch.of("2027-01-01")), "eccentricity is 1.0, but must be"),
+    (lambda: HeliocentricOrbit(1.0, 0.5, 0, 0, 0, 0, 0), "epoch is 0, but must be an Epoch"),
     (lambda: Push(0.04, 45.0, speed_std=1e308), "speed_std is 1e+308, but must be a finite number of at least 0 and "
      "of at most 1e+100 in size"),
 ])  # fmt: skip
