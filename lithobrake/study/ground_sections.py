@@ -164,7 +164,9 @@ def with_properties(
         shown = known.example if needed else examples.get(name)
         field = Field(default=default, description=words(known), examples=None if shown is None else [shown])
         fields[name] = (kind if needed else kind | None, field)
-    return create_model(base.__name__, __base__=base, __module__=__name__, **fields)
+    # Nothing stands in a source that pydantic could look for, which it does through all modules.
+    sourceless: Any = {"use_attribute_docstrings": False}
+    return create_model(base.__name__, __base__=base, __module__=__name__, __cls_kwargs__=sourceless, **fields)
 
 
 _GrainProperties: Any = with_properties(Section, ALL_PROPERTIES, needed=True)
