@@ -192,11 +192,7 @@ class World(Observables):
 
     @thread_count.setter
     def thread_count(self, value: int) -> None:
-        allowed = f"is a whole number from 1 to {MOST_THREADS}"
-        count = field_number("World.thread_count", value, allowed)
-        if count % 1.0 != 0.0 or not 1.0 <= count <= MOST_THREADS:
-            raise FieldError("World.thread_count", value, allowed)
-        self._state.use_threads(int(count))
+        self._state.use_threads(checked_count(value, "World.thread_count", 1, MOST_THREADS))
 
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.

@@ -79,6 +79,8 @@ def make_folder(path: Path, remedy: str = "choose another folder with --out") ->
 
     Raises ValueError, with the remedy, where that cannot be, or no file can be made in it.
     """
+    if path.exists() and not path.is_dir():
+        raise ValueError(f"{path} is no folder and cannot become one; {remedy}")
     try:
         path.mkdir(parents=True, exist_ok=True)
         # Of a name that nothing else has, if it gets one at all.

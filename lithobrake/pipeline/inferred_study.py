@@ -20,6 +20,7 @@ from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder, StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.units import conversion, input_units, run_units
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
@@ -137,6 +138,8 @@ class InferredStudy:
         from lithobrake.emulator import load
 
         folder = FinishedFolder(path)
+        if not (path / STUDY_FILE).is_file():
+            raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
         source = folder.source()
         if not (folder / EMULATOR_FILE).is_file():
             raise ValueError(_without_emulator(path, source.study))

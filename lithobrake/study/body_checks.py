@@ -286,8 +286,9 @@ def _turn_problems(rotation: RotationSection) -> Iterator[str]:
     if rotation.days > most:
         yield (
             f"site.rotation.days is {rotation.days:g} with a site.rotation.spin of {rate:.3g} rad/s, by which the body "
-            f"turns {rate * rotation.days * DAY:.3g} rad; allowed: at most {LONGEST_TURN:g} rad, {most:.3g} days, as "
-            "all of it is integrated before the first landing; lower the days or the spin"
+            f"turns {rate * rotation.days * DAY:.3g} rad; allowed: at most {LONGEST_TURN:g} rad, "
+            f"site.rotation.days = {most:.3g}, as all of it is integrated before the first landing; lower the days or "
+            "the spin"
         )
 
 

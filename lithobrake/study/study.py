@@ -90,7 +90,8 @@ class Study(Section):
     def as_written(self, text: str) -> str:
         """A text with each key as the study file has it: delivery.speed for impact.speed."""
         for key, own in self._given_elsewhere().items():
-            text = re.sub(rf"(?<![\w.]){re.escape(own)}(?![\w.])", key, text)
+            # What stands in quotation marks is a value of the file.
+            text = re.sub(rf'(?<![\w."]){re.escape(own)}(?![\w."])', key, text)
         return text
 
     def _given_elsewhere(self) -> dict[str, str]:

@@ -36,12 +36,12 @@ def checked_step(time_step: float, allowed: str = "is a finite value above 0") -
     return field_number("World.time_step", time_step, allowed, "s", above=0.0)
 
 
-def checked_count(steps: float) -> int:
-    """Return a number of steps. Raises ValueError for one that is not whole, or below 0."""
-    allowed = f"is a whole number from 0 to {MOST_STEPS:g}"
-    number = field_number("World.run steps", steps, allowed)
-    if number % 1.0 != 0.0 or not 0.0 <= number <= MOST_STEPS:
-        raise FieldError("World.run steps", steps, allowed)
+def checked_count(count: float, name: str = "World.run steps", least: int = 0, most: float = MOST_STEPS) -> int:
+    """Return a number of steps, or of another name. Raises ValueError for one that is not whole, or out of range."""
+    allowed = f"is a whole number from {least} to {most:g}"
+    number = field_number(name, count, allowed)
+    if number % 1.0 != 0.0 or not least <= number <= most:
+        raise FieldError(name, count, allowed)
     return int(number)
 
 

@@ -14,7 +14,8 @@ from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
 from lithobrake.analysis.subset_simulation import limit_state_margin, limit_state_met
-from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.single_run import Model
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
-from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits

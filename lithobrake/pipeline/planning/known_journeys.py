@@ -3,13 +3,16 @@
 import tomllib
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lithobrake.campaign import Record, read_records
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.study_files import TOUCHDOWNS
 from lithobrake.vocabulary.file_names import RUNS_FILE, STUDY_FILE
+
+if TYPE_CHECKING:
+    from lithobrake.pipeline.design.drawn_design import DrawnDesign
 
 NUMBER, TOUCHDOWN = "journey", "touchdown"
 # What stays the same over the touchdowns of a journey: its lander, its bed, and its soil where regions have none of
@@ -19,7 +22,7 @@ SOIL, KEPT = "grain.", ("lander.", "solver.")
 _LATER = "~"
 
 
-def journeys_under_way(design: DrawnDesign, folder: StudyFolder, known: Collection[str]) -> int:
+def journeys_under_way(design: "DrawnDesign", folder: StudyFolder, known: Collection[str]) -> int:
     """How many journeys have touchdowns that have ended, and a later one that waits in the ledger.
 
     known: keys of all runs that have ended.

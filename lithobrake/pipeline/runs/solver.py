@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.campaign import Command, Model, ModelServer
-from lithobrake.campaign.single_run import output_number
+from lithobrake.campaign import Command, ModelServer
+from lithobrake.campaign.single_run import Model, output_number
 from lithobrake.campaign.worker import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT, Row

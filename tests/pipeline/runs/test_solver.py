@@ -214,7 +214,9 @@ def test_a_study_of_a_lander_with_parts_has_their_numbers_among_its_inputs(tmp_p
     text = few_grains(30, 0.8, 0.05, "0.6").replace("[surface]", PARTS + "[surface]")
     text = text.replace('restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }', "restitution = 0.7")
     path = tmp_path / "study.toml"
-    path.write_text(f"seed = 5\n{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 3\n")
+    path.write_text(
+        f"seed = 5\n{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 3\n[monte_carlo]\nsample_count = 0\n"
+    )
     run_study(StudySource.read(path), tmp_path / "out", until="runs", worker_count=1)
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path / "out"), "drawn")
     assert runs.run_count == 3
