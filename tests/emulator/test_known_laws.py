@@ -1,5 +1,6 @@
 """What an emulator makes of laws that bend, branch or scatter as they like; its mean law, and its ridges."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,13 +12,23 @@ from lithobrake.chaos import Normal, Uniform, latin_hypercube, sobol_sequence
 from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, found_inputs, terms_up_to
 from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
 
+from ..quick_studies import quick_studies
+
 COUNT = 300
+
+
+@pytest.fixture
+def quick() -> Iterator[None]:
+    """For what looks at laws that are chosen without any doubt, however few beds are left out at a time."""
+    with quick_studies():
+        yield
 
 
 def inputs_of(count: int) -> dict[str, Uniform]:
     return {f"x{k}": Uniform(-1.0, 1.0) for k in range(count)}
 
 
+@pytest.mark.usefixtures("quick")
 def test_the_odds_of_two_branches_are_followed() -> None:
     inputs, random = inputs_of(3), np.random.default_rng(0)
     x = latin_hypercube(inputs, COUNT, seed=0)
@@ -31,6 +42,7 @@ def test_the_odds_of_two_branches_are_followed() -> None:
     assert (np.abs(drawn) < 0.5).mean() < 0.1
 
 
+@pytest.mark.usefixtures("quick")
 def test_a_bump_of_the_scatter_is_followed() -> None:
     inputs, random = inputs_of(3), np.random.default_rng(0)
     x = latin_hypercube(inputs, COUNT, seed=1)
@@ -42,6 +54,7 @@ def test_a_bump_of_the_scatter_is_followed() -> None:
     assert 0.10 < far < 0.25
 
 
+@pytest.mark.usefixtures("quick")
 def test_two_of_twelve_inputs_are_followed() -> None:
     inputs, random = inputs_of(12), np.random.default_rng(0)
     x, fresh = latin_hypercube(inputs, COUNT, seed=2), latin_hypercube(inputs, 200, seed=3)
@@ -55,6 +68,7 @@ def test_two_of_twelve_inputs_are_followed() -> None:
     assert np.sqrt(np.mean(error**2)) < 0.08
 
 
+@pytest.mark.usefixtures("quick")
 def test_a_smooth_solver_without_scatter_is_reproduced() -> None:
     inputs = inputs_of(3)
     x, fresh = latin_hypercube(inputs, COUNT, seed=4), latin_hypercube(inputs, 200, seed=5)
@@ -66,6 +80,7 @@ def test_a_smooth_solver_without_scatter_is_reproduced() -> None:
     assert np.sqrt(np.mean((drawn - law(fresh)[:, None]) ** 2)) < 1e-3 * law(fresh).std()
 
 
+@pytest.mark.usefixtures("quick")
 def test_branches_that_cross_are_as_near_as_a_published_expansion_makes_them() -> None:
     """The bimodal case of [Zhu-2023], 400 runs: the published expansion of degree 5 has 0.020 (0.010 to 0.038)."""
     inputs = {"x": Uniform(0.0, 1.0)}
@@ -98,6 +113,7 @@ def test_a_bound_that_is_far_bends_nothing(centre: float, distant: tuple[int, ..
     assert (model.sample(x, 2000) > 0.0).all()
 
 
+@pytest.mark.usefixtures("quick")
 def test_an_emulator_does_not_lose_to_its_runs() -> None:
     """On laws without inputs that count, chosen laws hardly pass the gate, and those that do cost little."""
     inputs, passed = inputs_of(4), 0
@@ -136,6 +152,7 @@ def test_the_share_of_the_inputs_is_freed_of_noise(explained: float) -> None:
     assert abs(np.mean(shares) - explained) < 2.0 * 0.05 / np.sqrt(10.0)
 
 
+@pytest.mark.usefixtures("quick")
 def test_inputs_are_found_where_they_count() -> None:
     assert fitted(slope=1.0, noise=1.0, count=200, seed=1).found_inputs() == {"a": True, "b": True, "c": False}
 
