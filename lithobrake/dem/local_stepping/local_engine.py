@@ -41,9 +41,10 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     never = np.full((n, 3), np.nan)
     stamp = np.full(len(mass) + len(engine.planes.offset), -1)
     return Flight(
-        np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
-        held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
-        fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
+        time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
+        force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
+        touching=np.zeros(n, np.int64), turning=turning, mass=mass, head=np.full(n, -1), stamp=stamp,
+        held=np.zeros(n, np.bool_), resolved_speed=np.zeros(1),
     )  # fmt: skip
 
 
@@ -84,6 +85,8 @@ class LocalEngine:
         self.plans: Plans
         self.agenda: Agenda
         engine.list_neighbours()
+        # Contacts push from their first look on.
+        engine.bodies.force[:], engine.bodies.torque[:] = 0.0, 0.0
         count = len(engine.pairs.first)
         self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
         self._enter(np.concatenate([np.full(len(bodies), -np.inf), np.full(count, time)]))
@@ -154,8 +157,8 @@ class LocalEngine:
         """Hold what is slower than a limit [m/s] and beyond a reach [m] of the watched body, and let go the rest."""
         if limit > 0.0 or self.flight.held.any():
             hold_what_is_slow(
-                self.engine.bodies, self.pairs, self.reactions, self.flight, self.plans, self.agenda,
-                self.setting.watched, limit, reach, self.time, self.rules,
+                self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched,
+                limit, reach, self.time, self.rules,
             )  # fmt: skip
 
     def give_back(self) -> None:
