@@ -34,6 +34,7 @@ class Flight(NamedTuple):
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
     held: Flags  # [body_count], see holding.py
+    fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
     resolved_speed: Floats  # [1], m/s, of collisions that take all steps; slower ones take fewer
 
 
@@ -109,7 +110,7 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     if flight.held[body]:
         return
     before, spin = row(bodies.velocity, body), spin_bound(bodies, flight, body)
-    after = fall(bodies, body, before, time, acceleration_of(bodies, flight, body, rules), rules)
+    after = fall(bodies, body, before, time, acceleration_of(bodies, flight, body, rules), rules.drag)
     # Under a steady torque the angular momentum moves on a straight line, as the velocity does.
     half = scaled(0.5 * time, row(bodies.torque, body))
     add(bodies.angular_momentum, body, 1.0, half)
@@ -125,26 +126,26 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
 
 
 @kernel
-def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, rules: Rules) -> Vector:
-    """Move a body for a time [s] under an acceleration [m/s2] and drag, exactly; return its velocity then.
+def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, drag: float) -> Vector:
+    """Move a body for a time [s] under an acceleration [m/s2] and a drag [1/s], exactly; return its velocity then.
 
     Writes to bodies.
     """
-    if rules.drag == 0.0:
+    if drag == 0.0:
         after = plus(before, scaled(time, along))
         add(bodies.position, body, time, plus(before, scaled(0.5 * time, along)))
     else:
-        kept = np.exp(-rules.drag * time)
+        kept = np.exp(-drag * time)
         # What drag and gravity come to in the end.
-        last = scaled(1.0 / rules.drag, along)
+        last = scaled(1.0 / drag, along)
         after = plus(last, scaled(kept, minus(before, last)))
-        way = plus(scaled(time, last), scaled((1.0 - kept) / rules.drag, minus(before, last)))
+        way = plus(scaled(time, last), scaled((1.0 - kept) / drag, minus(before, last)))
         add(bodies.position, body, 1.0, way)
         momentum = row(bodies.angular_momentum, body)
         # The motion is exact; the ledger takes the mean of the losses at both ends.
         turning = dot(momentum, spin_of(bodies, body)) * (1.0 + kept * kept)
         moving = bodies.mass[body] * (dot(before, before) + dot(after, after))
-        bodies.dragged[body] += 0.5 * rules.drag * time * (moving + turning)
+        bodies.dragged[body] += 0.5 * drag * time * (moving + turning)
         put(bodies.angular_momentum, body, scaled(kept, momentum))
     put(bodies.velocity, body, after)
     return after
@@ -174,9 +175,10 @@ def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules
         return row(bodies.position, body)
     time = now - flight.time[body]
     way, drop = time, 0.5 * time * time
-    if rules.drag > 0.0:
-        way = (1.0 - np.exp(-rules.drag * time)) / rules.drag
-        drop = (time - way) / rules.drag
+    drag = rules.drag
+    if drag > 0.0:
+        way = (1.0 - np.exp(-drag * time)) / drag
+        drop = (time - way) / drag
     moved = plus(scaled(way, row(bodies.velocity, body)), scaled(drop, acceleration_of(bodies, flight, body, rules)))
     return plus(row(bodies.position, body), moved)
 

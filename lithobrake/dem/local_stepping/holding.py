@@ -11,12 +11,16 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
 from lithobrake.dem.bodies.vectors import dot, minus, put, row, times, way_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
-from lithobrake.dem.local_stepping.free_motion import Flight, Rules, surface_speed, weight
+from lithobrake.dem.local_stepping.free_motion import (
+    Flight,
+    Rules,
+    surface_speed,
+)
 
 # A body is held when it is slower than this part of the speed that counts as slow.
 CALM = 0.5
-# Change of the force on a held body that lets it go, in its weight.
-STIRRED = 0.1
+# Part of its weight that its contacts carry of a body that is held, and less than which lets it go.
+CARRIED, DROPPED = 0.5, 0.3
 
 
 @kernel
@@ -59,12 +63,26 @@ def let_go(
 
 
 @kernel
-def is_stirred(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> bool:
-    """Tell whether what pushes a held body has changed so much that it moves."""
+def carries(bodies: Bodies, body: int, rules: Rules, part: float) -> bool:
+    """Tell whether contacts carry more than a part of the weight of a body."""
+    against = dot(row(bodies.force, body), rules.gravity) * bodies.inverse_mass[body]
+    return against < -part * dot(rules.gravity, rules.gravity)
+
+
+@kernel
+def is_stirred(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, body: int, rules: Rules) -> bool:
+    """Tell whether a contact that was looked at moves a held body, or what carries the body has gone.
+
+    A spring with a force that changes at once swings by that change over the rate of the contact.
+    """
+    if not carries(bodies, body, rules, DROPPED):
+        return True
     force, torque = minus(row(bodies.force, body), row(flight.force, body)), row(flight.torque, body)
-    torque = minus(row(bodies.torque, body), torque)
+    torque, overlap = minus(row(bodies.torque, body), torque), pairs.overlap[pair]
     turning = bodies.turning_radius[body] * flight.turning[body] * dot(torque, torque) ** 0.5
-    return bodies.inverse_mass[body] * dot(force, force) ** 0.5 + turning > STIRRED * weight(rules)
+    change = bodies.inverse_mass[body] * dot(force, force) ** 0.5 + turning
+    square = 1.5 * pairs.elastic_force[pair] * plans.inverse_mass[pair]
+    return overlap > 0.0 and change * change * overlap > square * flight.fastest_held[0] ** 2
 
 
 @large_kernel
@@ -77,6 +95,7 @@ def hold_what_is_slow(
     Slow: its surface, below CALM times a limit [m/s]. What comes near is let go; with a limit of 0, all.
     All must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
     """
+    flight.fastest_held[0] = limit
     for body in range(len(bodies.mass)):
         between = way_between(bodies, watched, body)
         far = limit > 0.0 and dot(between, between) > reach * reach
@@ -85,5 +104,8 @@ def hold_what_is_slow(
                 flight.time[body] = now
                 let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
         # What touches nothing flies, however slowly, and held it would hang above the ground.
-        elif far and surface_speed(bodies, flight, body) < CALM * limit and touches(pairs, flight, plans, body):
+        elif (
+            far and surface_speed(bodies, flight, body) < CALM * limit
+            and touches(pairs, flight, plans, body) and carries(bodies, body, rules, CARRIED)
+        ):  # fmt: skip
             hold(bodies, pairs, flight, plans, agenda, body, now, rules)

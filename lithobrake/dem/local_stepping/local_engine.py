@@ -44,7 +44,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
         time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
         touching=np.zeros(n, np.int64), turning=turning, mass=mass, head=np.full(n, -1), stamp=stamp,
-        held=np.zeros(n, np.bool_), resolved_speed=np.zeros(1),
+        held=np.zeros(n, np.bool_), fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
     )  # fmt: skip
 
 

@@ -242,7 +242,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
         if member < 0:
             continue
         if flight.held[member]:
-            if is_stirred(bodies, flight, member, rules):
+            if is_stirred(pair, bodies, pairs, flight, plans, member, rules):
                 let_go(bodies, pairs, flight, plans, agenda, member, now, rules)
                 # It turns from now on, as the next look at this pair has to know.
                 note_motion(pair, bodies, pairs, plans)
