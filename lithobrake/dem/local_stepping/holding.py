@@ -73,7 +73,7 @@ def carries(bodies: Bodies, body: int, rules: Rules, part: float) -> bool:
 def is_stirred(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, body: int, rules: Rules) -> bool:
     """Tell whether a contact that was looked at moves a held body, or what carries the body has gone.
 
-    A spring with a force that changes at once swings by that change over the rate of the contact.
+    A blow is a half sine of the contact's rate: it leaves a body with twice its greatest force over mass and rate.
     """
     if not carries(bodies, body, rules, DROPPED):
         return True
@@ -82,7 +82,7 @@ def is_stirred(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: P
     turning = bodies.turning_radius[body] * flight.turning[body] * dot(torque, torque) ** 0.5
     change = bodies.inverse_mass[body] * dot(force, force) ** 0.5 + turning
     square = 1.5 * pairs.elastic_force[pair] * plans.inverse_mass[pair]
-    return overlap > 0.0 and change * change * overlap > square * flight.fastest_held[0] ** 2
+    return overlap > 0.0 and 4.0 * change * change * overlap > square * flight.fastest_held[0] ** 2
 
 
 @large_kernel

@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
+from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules
@@ -148,6 +149,28 @@ class LocalEngine:
         if not self.summed:
             sum_forces(self.engine.bodies, self.pairs, self.reactions)
             self.summed = True
+
+    def work_since_looks(self) -> float:
+        """Return what contacts have done to their bodies since they were last looked at [J], as steady forces."""
+        bodies, pairs, plans, reactions = self.engine.bodies, self.pairs, self.plans, self.reactions
+        pair = np.flatnonzero((pairs.first >= 0) & (pairs.overlap > 0.0))
+        time = self.time - plans.last[pair]
+        first, second = pairs.first[pair], pairs.second[pair]
+        is_body = (second >= 0)[:, None]
+        apart = np.where(is_body, bodies.position[second], 0.0) - bodies.position[first]
+        # Bodies move by less than half a period between two looks, whichever image the last one took.
+        moved = folded(apart - plans.apart[pair], bodies.period)
+        spins = np.einsum("bij,bj->bi", bodies.inverse_inertia, bodies.angular_momentum)
+        work = (reactions.force[pair] * moved).sum(axis=1)
+        for torque, at, body, sign in (
+            (reactions.first_torque, 0, first, -1.0), (reactions.second_torque, 1, second, 1.0),
+        ):  # fmt: skip
+            mean = 0.5 * (plans.spin[pair, at] + spins[body])
+            turned = np.where(is_body | (at == 0), mean, 0.0) * time[:, None]
+            work += sign * (torque[pair] * turned).sum(axis=1)
+        # What waits has not moved, however long ago it was looked at.
+        waits = np.isinf(self.agenda.due[len(self.flight.time) + pair])
+        return float(work[~waits].sum())
 
     def slow_down(self, resolved_speed: float) -> None:
         """Take all steps of collisions at this speed [m/s] and above; of slower ones fewer, in proportion."""
