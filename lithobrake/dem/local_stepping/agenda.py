@@ -127,7 +127,7 @@ class Plans(NamedTuple):
     longest: Floats  # [pair_capacity], s, step at which sliding, tilting and damping are followed stably
     duration: Floats  # [pair_capacity], s (m/s)^(1/5), duration of a collision times the fifth root of its speed
     apart: Floats  # [pair_capacity, 3], m, from the first's centroid to the second's, at the last look
-    spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last kick
+    spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last look
     link: Integers  # [2 pair_capacity], next entry in the list of the first's, and of the second's pairs; -1: none
     free: Integers  # [pair_capacity], slots that are free
     free_count: Integers  # [1]
@@ -276,7 +276,7 @@ def touches(pairs: Pairs, flight: Flight, plans: Plans, body: int) -> bool:
 def replan(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
-    """Plan the pairs of a body anew after a kick. Writes to flight and agenda."""
+    """Plan the pairs of a body anew after a change of its motion. Writes to flight and agenda."""
     put(flight.velocity, body, row(bodies.velocity, body))
     put(flight.momentum, body, row(bodies.angular_momentum, body))
     put(flight.force, body, row(bodies.force, body))

@@ -1,4 +1,4 @@
-"""Bodies in free motion between two kicks, and when two of them could touch."""
+"""Bodies in motion under steady forces between two looks, and when two of them could touch."""
 
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ LARGEST_TURN = 0.2
 
 
 class Flight(NamedTuple):
-    """Per body, between its kicks."""
+    """Per body, between looks at its contacts."""
 
     time: Floats  # [body_count], s, to which it was last moved
     planned: Floats  # [body_count], s, when its pairs were planned
@@ -102,7 +102,7 @@ def relative_surge(bodies: Bodies, flight: Flight, first: int, second: int, rule
 
 @kernel
 def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> None:
-    """Move a body in free flight to an instant [s]. Writes to bodies and flight."""
+    """Move a body under the steady forces of its contacts to an instant [s]. Writes to bodies and flight."""
     time = now - flight.time[body]
     if time <= 0.0:
         return
@@ -170,7 +170,7 @@ def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None
 
 @kernel
 def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> Vector:
-    """Return where a body will be at an instant [s] unless it is kicked before [m]."""
+    """Return where a body will be at an instant [s] unless its forces change before [m]."""
     if flight.held[body]:
         return row(bodies.position, body)
     time = now - flight.time[body]

@@ -1,11 +1,12 @@
-"""Every contact at steps of its own: bodies fly freely between the instants at which contacts of theirs are due.
+"""Every contact at steps of its own: bodies move under steady forces between the instants at which contacts are due.
 
-A contact kicks its two bodies at its own instants, each time by its force over half the interval before and half the
-one after: momentum is kept to the last bit, and one contact alone is stepped as by the leapfrog of motion.py. Its
-intervals follow from its own collision, so that a slow one takes few steps while a fast one takes many beside it; what
-cannot touch yet is not looked at.
+A contact is looked at at its own instants, and its force is steady in between. At a look the force changes, and half of
+the change is counted for the time since the last one, so that one contact alone is stepped by velocity Verlet, which is
+the leapfrog of motion.py, and what is at rest stays at rest. Momentum is kept to the last bit. Intervals follow from
+the collision of each contact, so that a slow one takes few steps while a fast one takes many beside it; what cannot
+touch yet is not looked at.
 
-Source: [Lew-2003], asynchronous variational integrators.
+Source: [Lew-2003] for contacts at instants of their own.
 """
 
 from lithobrake.compilation.compiled import kernel, large_kernel
@@ -46,7 +47,7 @@ from lithobrake.vocabulary.array_types import Floats, Vector
 NO_ROOM = 3
 # Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
-# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
+# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py: several may push one body.
 STABLE_PART = 0.6
 
 
@@ -101,9 +102,9 @@ def predict(bodies: Bodies, body: int) -> None:
 
 @kernel
 def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
-    """Compute the contact force after a step in which others may have kicked the members; return its rate.
+    """Compute the contact force after a step in which others may have moved the members; return its rate.
 
-    A contact slips by the way of its bodies since the last look, whoever kicked them: taken from the velocities at hand
+    A contact slips by the way of its bodies since the last look, whatever moved them: taken from the velocities at hand
     alone, it would gain energy. Writes to system.
     """
     bodies, pairs = system.bodies, system.pairs
@@ -147,7 +148,7 @@ def next_step(
 
 @kernel
 def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: Rules) -> float:
-    """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
+    """Compute a contact, push its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
     passed: since the last look [s]. Writes to system and schedule.
     """
