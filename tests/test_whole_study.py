@@ -23,7 +23,7 @@ from .few_grains import EXPANSION, ONE_IMPACT, few_grains
 STUDY = f"""title = "A few grains"
 monte_carlo = {{ sample_count = 500 }}
 site = {{ mass = {{ distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }} }}
-flight = {{ gravity = "exact", flight_count = 10, duration = 20000.0 }}
+flight = {{ flight_count = 10, duration = 20000.0 }}
 hard_ground = {{ count = 20 }}
 {few_grains(45, width=0.5, lander_diameter=0.14, sides="walls")}{ONE_IMPACT}{EXPANSION}screening_level = 1
 screening_degree = 1

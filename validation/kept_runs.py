@@ -74,7 +74,7 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     given = parser.parse_args()
     source = given.kept / "study.toml"
-    study = with_site_gravity(read_study(source), source.name)
+    study = with_site_gravity(read_study(source))
     # The lock and the copy of the study file make the folder one of this study.
     with StudyFolder(given.out).alone(), Ledger(given.out / "runs.sqlite") as ledger:
         shutil.copy(source, given.out / "study.toml")

@@ -17,6 +17,8 @@ from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 _BLOCK = 65_536
 # More units than any study has; a float holds their number.
 MOST_UNITS = 2**53
+# An event that fewer runs are expected to have met is as one that none has met.
+HALF_RUN = 0.5
 
 
 class OutcomeModel:
@@ -118,13 +120,15 @@ def unseen_limit(bed: ArrayLike) -> float:
     return upper_limit(len(np.unique(beds)), LEVEL)
 
 
-def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Estimate:
+def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: int | None = None) -> Estimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
     counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
     beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of
     the fit. An event that no draw or every draw has met is bounded by what so many beds can say (`unseen_limit`), and
-    one that few have met has no wider bounds than that, or than its error on the plain scale.
+    one that few have met has no wider bounds than that, or than its error on the plain scale. run_count: runs that the
+    emulator was fitted to. An event that less than half of a run is expected to have met has the bounds of one that
+    none has met at least: refits of so few runs do not scatter by what these have not shown. None: it is not known.
     Raises ValueError for fewer than two refits or beds, for a refit with fewer than two draws, and for counts that are
     no part of their totals.
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
@@ -150,7 +154,10 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int) -> Esti
     error = math.sqrt(between * bed_count / (bed_count - 1) + share * (1.0 - share) / total)
     half = t_quantile(bed_count - 1) * error
     lower, upper = share_interval(share, half)
+    is_unseen = run_count is not None and min(share, 1.0 - share) * run_count < HALF_RUN
     # On the logit scale a few draws with the event could pass for anything.
     if share < 0.5:
-        return Estimate(share, lower, min(upper, max(share + half, limit)))
-    return Estimate(share, max(lower, min(share - half, 1.0 - limit)), upper)
+        upper = min(upper, max(share + half, limit))
+        return Estimate(share, lower, max(upper, limit) if is_unseen else upper)
+    lower = max(lower, min(share - half, 1.0 - limit))
+    return Estimate(share, min(lower, 1.0 - limit) if is_unseen else lower, upper)

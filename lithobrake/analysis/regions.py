@@ -1,7 +1,7 @@
 """Regions of the ground that hold shares of the places: ellipses, and the smallest regions."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,13 +126,15 @@ class DensityRegion:
     share             that it holds, of 1
     area_m2           of the sphere of the local radius that it covers
     largest_extent_m  largest distance between two of its points, straight through the body
-    outlines          latitude and east longitude in (-180, 180] [deg] along its edge, [count, 2] each; an edge that
-                      crosses the date line is cut there
+    island_extents_m  the same of each of its separate parts, the one of the largest area first
+    outlines          latitude and east longitude in (-180, 180] [deg] along its edge, [count, 2] each, all of them
+                      closed: an edge that crosses the date line goes on from 180 at -180
     """
 
     share: float
     area_m2: float
     largest_extent_m: float
+    island_extents_m: tuple[float, ...]
     outlines: tuple[Array, ...]
 
 
@@ -240,14 +242,16 @@ def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -
     level = density.level(share)
     # Lines keep the higher side on their left, so the areas of holes are negative.
     lines = [np.asarray(line, dtype=float) for line in contour_generator(x, y, values.T).lines(level)]
-    area = sum(_enclosed(line) for line in lines) * float(np.prod(density.bandwidth))
+    areas = np.array([_enclosed(line) for line in lines])
     edges = [density.map.directions(density.places(line)) for line in lines]
     inside = np.argwhere(values >= level)
     inside = inside[:: math.ceil(len(inside) / EXTENT_CELLS)]
     cells = density.map.directions(density.places(np.column_stack([x[inside[:, 0]], y[inside[:, 1]]])))
     extent = _extent(np.concatenate([*edges, cells])) * density.map.radius
-    outlines = tuple(part for edge in edges for part in _cut(latitude_longitude(edge)))
-    return DensityRegion(share, area, extent, outlines)
+    largest_first = [edges[one] for one in np.argsort(-areas, kind="stable") if areas[one] > 0.0]
+    islands = tuple(_extent(edge) * density.map.radius for edge in largest_first)
+    area = float(areas.sum()) * float(np.prod(density.bandwidth))
+    return DensityRegion(share, area, extent, islands, tuple(map(latitude_longitude, edges)))
 
 
 def _enclosed(line: Array) -> float:
@@ -260,9 +264,3 @@ def _extent(directions: Array) -> float:
     """Largest distance between two of some points of a unit sphere [count, 3]."""
     few = directions[:: math.ceil(len(directions) / EXTENT_POINTS)]
     return float(distance.pdist(few).max(initial=0.0))
-
-
-def _cut(places: Array) -> Iterator[Array]:
-    """Parts of a line of latitudes and longitudes [count, 2] between crossings of the date line."""
-    jumps = np.flatnonzero(np.abs(np.diff(places[:, 1])) > 180.0) + 1
-    yield from np.split(places, jumps)

@@ -22,6 +22,5 @@ from .record import ledger_tally as ledger_tally
 from .record import per_time as per_time
 from .record import read_records as read_records
 from .single_run import Limits as Limits
-from .single_run import Model as Model
 from .single_run import run_key as run_key
 from .single_run import run_seed as run_seed

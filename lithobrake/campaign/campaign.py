@@ -82,7 +82,8 @@ def run(
     A run that raises, or whose process dies, is recorded as failed with its reason, and the campaign goes on.
     Raises ValueError for a model that is none, and when the first ten of more than ten new runs all fail.
     """
-    rows, chains = _inputs_of(x, names), _Chains(model, _ends_at_once, ledger, context or {}, options or RunOptions())
+    rows, chosen = _inputs_of(x, names), options or RunOptions()
+    chains = _Chains(model, _ends_at_once, ledger, context or {}, chosen, in_order=False)
     keys = [chains.key(row) for row in rows]
     distinct = dict(zip(keys, rows, strict=True))
     made = chains.compute(list(distinct.values()), executor, limits, progress)
@@ -119,13 +120,17 @@ def _inputs_of(x: "np.ndarray", names: Sequence[str]) -> list[Row]:
 
 @dataclass
 class _Chains:
-    """Chains of runs under way: records of each so far, and the number of the chain of each run that is to be made."""
+    """Chains of runs under way: records of each so far, and the number of the chain of each run that is to be made.
+
+    in_order: whether chains are ended in the order of their numbers, as far as there are workers.
+    """
 
     model: Model
     then: Next
     ledger: Ledger
     context: Mapping[str, Any]
     options: RunOptions
+    in_order: bool
     records: list[list[Record]] = field(default_factory=list)
     state: Tally = field(default_factory=lambda: Tally(0))
     chains: dict[str, int] = field(default_factory=dict)
@@ -170,14 +175,17 @@ class _Chains:
                     rows |= self._after(chain, entry)
                 else:
                     self.chains[key] = chain
-                    pending[key] = self._pending(key, dict(row), 0 if entry is None else entry.attempts)
+                    rank, attempts = chain if self.in_order else 0, 0 if entry is None else entry.attempts
+                    pending[key] = self._pending(key, dict(row), attempts, rank)
         self.state.total += len(pending)
         return pending
 
-    def _pending(self, key: str, row: Row, attempts: int) -> PendingRun:
+    def _pending(self, key: str, row: Row, attempts: int, rank: int) -> PendingRun:
         options = self.options
         log = options.log_folder and options.log_folder / f"{key}.log"
-        return PendingRun(_callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts)
+        return PendingRun(
+            _callable(self.model), row, run_seed(row, options.seed, options.replicate), log, attempts, rank
+        )
 
     def _queue(self, pending: Mapping[str, PendingRun], *, adds: bool) -> None:
         """Enter runs that are to be made into the ledger; adds: beside those that were queued before."""
@@ -223,9 +231,10 @@ def run_chains(
     """Run a model along chains, and give the records of each; read runs that the ledger has from it.
 
     first: inputs of the first run of each. then: called in this process each time that a run has ended, failed ones
-    included; it must give the same inputs for the same records. All else is as of `run`.
+    included; it must give the same inputs for the same records. A chain that has begun goes on before another begins:
+    those that have ended at any time are then the first ones, and not the shortest. All else is as of `run`.
     Raises ValueError where two chains ask for the same run, and as `run` does.
     """
-    return _Chains(model, then, ledger, context or {}, options or RunOptions()).compute(
+    return _Chains(model, then, ledger, context or {}, options or RunOptions(), in_order=True).compute(
         first, executor, limits, progress
     )

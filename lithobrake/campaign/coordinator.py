@@ -2,10 +2,10 @@
 
 import queue
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass
+from heapq import heappop, heappush
 from pathlib import Path
 from typing import Any
 
@@ -24,19 +24,26 @@ _UNKNOWN_COUNT = 32
 # the runs good, that would happen in one campaign of 1024; were 19 of 20 good, as they must be for a fit unless the
 # study allows fewer, in one of 1e13. A smaller number would save little: what fails at once is cheap.
 _TRIAL_RUNS = 10
+# Turns of the runs that wait.
+AT_ONCE, FIRST_TRY, LAST = range(3)
 # Progress is shown at least this often, and which runs are under way is looked at [s].
 _POLL_INTERVAL = 0.5
 
 
 @dataclass(frozen=True)
 class PendingRun:
-    """A run that is to be made; attempts: how often it was tried in earlier campaigns."""
+    """A run that is to be made.
+
+    attempts: how often it was tried in earlier campaigns. rank: runs of a lower one are made first, those of one rank
+    in the order of their keys, which are hashes.
+    """
 
     model: Model
     inputs: Row
     seed: int
     log: Path | None
     attempts: int
+    rank: int = 0
 
 
 @dataclass
@@ -57,12 +64,13 @@ class Coordinator:
     follow: Callable[[str], Mapping[str, PendingRun]]
 
     def __post_init__(self) -> None:
-        # Keys are hashes: in their order the first runs are a random part of all, wherever in the design each stands.
-        self.waiting = deque(sorted(self.pending))
+        # By turn, rank and key: in the order of their hashes the first runs are a random part of all, wherever in the
+        # design each stands.
+        self.waiting = sorted((FIRST_TRY, run.rank, key) for key, run in self.pending.items())
         self.attempts = {key: run.attempts for key, run in self.pending.items()}
         # Runs that have failed before are no random part of the design: they likely fail again. Of ten runs or fewer
         # there is nothing to save by giving up.
-        fresh = [key for key in self.waiting if not self.attempts[key]]
+        fresh = [key for _, _, key in self.waiting if not self.attempts[key]]
         self._trial = set(fresh[:_TRIAL_RUNS]) if len(fresh) > _TRIAL_RUNS else set()
         self._failed: set[str] = set()
         self.submitted: dict[Future[Any], str] = {}
@@ -93,7 +101,7 @@ class Coordinator:
     def _submit(self) -> None:
         window = _SUBMITTED_PER_WORKER * getattr(self.executor, "capacity", _UNKNOWN_COUNT)
         while self.waiting and len(self.submitted) < window:
-            key = self.waiting.popleft()
+            key = heappop(self.waiting)[-1]
             run = self.pending[key]
             future = submit_limited(self.executor, self.limits, run_model, run.model, run.inputs, run.seed, run.log)
             self.submitted[future] = key
@@ -123,7 +131,7 @@ class Coordinator:
         self.attempts[key] += 1
         if result["status"] == RunStatus.FAILED and self.attempts[key] <= self.retry_count:
             # Until something succeeds, its next try shows whether anything does.
-            (self.waiting.appendleft if self._trial else self.waiting.append)(key)
+            heappush(self.waiting, (AT_ONCE if self._trial else LAST, self.pending[key].rank, key))
             return
         self.ledger.finish(key, {**result, "attempts": self.attempts[key]})
         self.state.add(result["status"], result.get("outputs", {}))
@@ -134,7 +142,7 @@ class Coordinator:
             self._trial.clear()
         for one, run in self.follow(key).items():
             self.pending[one], self.attempts[one] = run, run.attempts
-            self.waiting.append(one)
+            heappush(self.waiting, (FIRST_TRY, run.rank, one))
 
     def _end_what_never_works(self) -> None:
         """Give up when the trial runs have all failed, their tries used up, and no other run has succeeded.

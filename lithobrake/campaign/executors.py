@@ -15,7 +15,8 @@ from functools import cache
 from multiprocessing.connection import Pipe, wait
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.campaign.single_run import Limits, memory_by_session
+from lithobrake.campaign.processes import memory_of_workers
+from lithobrake.campaign.single_run import Limits
 from lithobrake.campaign.worker import BEGUN, Call, Worker, pickled
 
 if TYPE_CHECKING:
@@ -220,7 +221,7 @@ class LocalExecutor(Executor):
     def _end_those_over_their_limits(self) -> None:
         begun = [(worker, worker.call.limits, worker.begun) for worker in self._workers if worker.call and worker.begun]
         measured = any(limits.memory_bytes < math.inf for _, limits, _ in begun)
-        memory = memory_by_session() if measured else {}
+        memory = memory_of_workers({worker.number: worker.mark for worker in self._workers}) if measured else {}
         for worker, limits, since in begun:
             reason = limits.exceeded(time.monotonic() - since, memory.get(worker.number, 0))
             if reason:

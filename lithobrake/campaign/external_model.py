@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import re
+import reprlib
 import shlex
 import shutil
 import subprocess
@@ -15,12 +16,13 @@ import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from lithobrake.campaign.single_run import CappedLog, last_words, run_key
-from lithobrake.files.reading import content_hash
+from lithobrake.files.reading import content_hash, unique
 from lithobrake.vocabulary.extra_library import extra_library
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import Row
@@ -54,17 +56,21 @@ def read_answer(path: Path) -> dict[str, Any]:
     outputs = answer.setdefault("outputs", {})
     for name, value in outputs.items():
         if not _is_number(value):
-            raise ValueError(f"{path.name} has {value!r} for {name}; allowed: a finite number; leave out what has none")
+            raise ValueError(
+                f"{path.name} has {reprlib.repr(value)} for {name}; allowed: a finite number; leave out what has none"
+            )
     for name, kind, words in (("outcome", str, "a word"), ("draws", dict, "a JSON object")):
         if not isinstance(answer.get(name, kind()), kind):
-            raise ValueError(f"{path.name} has {answer[name]!r} for {name}; allowed: {words}; mend it or leave it out")
+            raise ValueError(
+                f"{path.name} has {reprlib.repr(answer[name])} for {name}; allowed: {words}; mend it or leave it out"
+            )
     return answer
 
 
 def _json(path: Path) -> Any:
     try:
         # Some editors and languages begin a text with a mark of its encoding.
-        return json.loads(path.read_text(encoding="utf-8-sig"))
+        return json.loads(path.read_text(encoding="utf-8-sig"), object_pairs_hook=unique)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path.name} is not JSON ({error}); the program has to write one JSON object") from error
 
@@ -74,7 +80,7 @@ def _csv(path: Path) -> dict[str, Any]:
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             names, *rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
-        last = {name.strip(): cell.strip() for name, cell in zip(names, rows[-1], strict=True)}
+        last = unique((name.strip(), cell.strip()) for name, cell in zip(names, rows[-1], strict=True))
         outcome = {"outcome": last.pop("outcome")} if "outcome" in last else {}
         outputs = {name: float(cell) for name, cell in last.items() if cell}
     except (ValueError, IndexError, csv.Error) as error:
@@ -87,10 +93,21 @@ def _csv(path: Path) -> dict[str, Any]:
 def _yaml(path: Path) -> Any:
     yaml = extra_library("yaml", f"PyYAML, which reads {path.name},", "yaml")
     try:
-        return yaml.safe_load(path.read_text(encoding="utf-8-sig"))
+        text = path.read_text(encoding="utf-8-sig")
+        top = yaml.compose(text, yaml.SafeLoader)
+        # Of a name that stands twice PyYAML keeps the last. What lies deeper is no answer.
+        tables = [node for node in (top, *_values(top)) if isinstance(node, yaml.MappingNode)]
+        for table in tables:
+            unique((key.value, None) for key, _ in table.value)
+        return yaml.safe_load(text)
     except (ValueError, yaml.YAMLError) as error:
         words = " ".join(str(error).split())
         raise ValueError(f"{path.name} is not YAML ({words}); the program has to write names with numbers") from error
+
+
+def _values(node: Any) -> list[Any]:
+    """The values of a table of YAML; none of another node."""
+    return [pair[1] for pair in getattr(node, "value", ()) if isinstance(pair, tuple)]
 
 
 def _hdf5(path: Path) -> dict[str, Any]:
@@ -300,8 +317,10 @@ class ModelServer:
             raise ValueError(f"{words!r} is no model of a server; allowed: {FORM}")
         return cls(f"{parts.scheme}://{parts.netloc}", name)
 
-    def evaluate(self, inputs: Sequence[Sequence[float]], config: Mapping[str, Any]) -> list[list[float]]:
-        """The outputs at these vectors of inputs.
+    def evaluate(
+        self, inputs: Sequence[Sequence[float]], config: Mapping[str, Any], names: Sequence[str] = ()
+    ) -> list[list[float]]:
+        """The outputs at these vectors of inputs; names: of the numbers of a vector, for messages.
 
         Raises RuntimeError for what the server refuses, ConnectionError where none answers, ValueError for an answer
         that is no list of lists of numbers.
@@ -311,6 +330,13 @@ class ModelServer:
         output = answer.get("output")
         if not isinstance(output, list) or not all(isinstance(vector, list) for vector in output):
             raise ValueError(f"{self.address} answered {str(answer)[:200]}; allowed: an output of lists of numbers")
+        for vector in output:
+            for name, number in zip_longest(names[: len(vector)], vector, fillvalue="an output"):
+                if isinstance(number, bool) or not isinstance(number, int | float):
+                    raise ValueError(
+                        f"{self.address} answered {json.dumps(number)[:200]} for {name}; allowed: a number; mend the "
+                        "model of the server"
+                    )
         return [[float(number) for number in vector] for vector in output]
 
     def _post(self, verb: str, content: Mapping[str, Any]) -> dict[str, Any]:
@@ -331,7 +357,7 @@ class ModelServer:
                 f"{self.address} does not answer ({error}); start its server, then try again"
             ) from error
         try:
-            answer = json.loads(text)
+            answer = json.loads(text, object_pairs_hook=unique)
         except ValueError as error:
             raise ValueError(f"{self.address} answered no JSON ({error}); is it a server of UM-Bridge?") from error
         if not isinstance(answer, dict):

@@ -10,7 +10,6 @@ import platform
 import reprlib
 import time
 import traceback
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,7 +101,8 @@ def run_model(model: Model, inputs: Row, seed: int, log: Path | None = None) -> 
 def _checked(answer: Mapping[str, Any]) -> dict[str, Any]:
     """What a model gave, as the ledger keeps it. Raises FloatingPointError for infinite outputs."""
     whole = answer if "outputs" in answer else {"outputs": answer}
-    outputs = {name: float(value) for name, value in whole["outputs"].items() if not math.isnan(value)}
+    given = {name: output_number(name, value) for name, value in whole["outputs"].items()}
+    outputs = {name: value for name, value in given.items() if not math.isnan(value)}
     infinite = [name for name, value in outputs.items() if math.isinf(value)]
     if infinite:
         raise FloatingPointError(f"the outputs {', '.join(infinite)} are infinite")
@@ -113,6 +113,17 @@ def _checked(answer: Mapping[str, Any]) -> dict[str, Any]:
     except (TypeError, ValueError) as error:
         raise ValueError(f"the draws are {reprlib.repr(draws)}; allowed: finite numbers and texts by name") from error
     return {"status": RunStatus.DONE, "outcome": outcome, "outputs": outputs, "draws": draws}
+
+
+def output_number(name: str, value: Any) -> float:
+    """An output of a model as a float. Raises ValueError for text, true and false, and what is no number."""
+    truth = isinstance(value, bool) or str(getattr(value, "dtype", "")) == "bool"
+    try:
+        if not truth and not isinstance(value, str | bytes):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError(f"the model gave {reprlib.repr(value)} for {name}; allowed: a number, NaN where it has none")
 
 
 def _cpu_time() -> float:
@@ -165,22 +176,6 @@ class Limits:
         if memory_bytes > self.memory_bytes:
             return f"it held {memory_bytes:.3g} bytes of memory, more than its limit of {self.memory_bytes:.3g}"
         return None
-
-
-def memory_by_session() -> Counter[int]:
-    """Resident memory of all processes [bytes], by the session that they belong to."""
-    page = os.sysconf("SC_PAGE_SIZE")
-    # A worker leads a session of its own, so what its run has started is counted with it.
-    memory: Counter[int] = Counter()
-    for path in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            # The name of a program may hold blanks and brackets; what follows it holds neither.
-            fields = path.read_text(errors="replace").rpartition(")")[2].split()
-        except (FileNotFoundError, ProcessLookupError):
-            continue  # it ended while the list was read
-        # Fields 6 (session) and 24 (rss [pages]) of proc(5), of which two stand before the bracket.
-        memory[int(fields[3])] += page * int(fields[21])
-    return memory
 
 
 def run_key(inputs: Mapping[str, float], seed: int, replicate: int, context: Mapping[str, Any]) -> str:

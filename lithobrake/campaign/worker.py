@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe, wait
 from typing import Any
 
+from lithobrake.campaign.processes import end_marked, new_mark
 from lithobrake.campaign.single_run import Limits
 
 MAIN = "__main__"
@@ -39,9 +40,9 @@ _START = """
 import sys
 from multiprocessing.connection import Connection
 calls, life = map(Connection, map(int, sys.argv[1:]))
-sys.path[:], sys.argv, main = calls.recv()
+sys.path[:], sys.argv, main, mark = calls.recv()
 from lithobrake.campaign.worker import serve
-serve(calls, life, main)
+serve(calls, life, main, mark)
 """
 
 
@@ -146,12 +147,13 @@ class Worker:
         ends = [calls.fileno(), life.fileno()]
         # Options of this interpreter, as for warnings, are those of the process too.
         options = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]
+        self.mark = new_mark()
         # It leads a session of its own: Ctrl-C is the coordinator's, which keeps what is finished and then ends it.
         self._process = subprocess.Popen(
             [sys.executable, *options, "-c", _START, *map(str, ends)],
             stdin=subprocess.DEVNULL,
             pass_fds=ends,
-            env=os.environ | dict.fromkeys(_THREAD_COUNTS, "1"),
+            env=os.environ | dict.fromkeys((*_THREAD_COUNTS, self.mark), "1"),
             start_new_session=True,
         )
         # With the only other end in the process itself, the pipe closes when the process dies.
@@ -162,7 +164,7 @@ class Worker:
         self.begun: float | None = None
         # One that has died already is found dead by its first call.
         with contextlib.suppress(OSError):
-            self.connection.send((sys.path, sys.argv, main_source()))
+            self.connection.send((sys.path, sys.argv, main_source(), self.mark))
 
     def take(self, call: Call) -> bool:
         """Send a call; False when the process is dead."""
@@ -178,6 +180,8 @@ class Worker:
             # The worker leads its session, so a program that its model has started ends with it.
             os.killpg(self.number, signal.SIGKILL)
         self._process.kill()
+        # So does one that has left the session.
+        end_marked(self.mark)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=5)
 
@@ -195,9 +199,12 @@ class Worker:
         return f"signal {-code}" if code is not None and code < 0 else f"exit code {code}"
 
 
-def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main: Source | None) -> None:
-    """Take calls until the coordinator closes the pipe or ends, which `life` tells; main: how its script is found."""
-    threading.Thread(target=_end_with_the_coordinator, args=(life,), daemon=True).start()
+def serve(connection: "Connection[Any, Any]", life: "Connection[Any, Any]", main: Source | None, mark: str) -> None:
+    """Take calls until the coordinator closes the pipe or ends, which `life` tells.
+
+    main: how its script is found; mark: of this process and all that it starts.
+    """
+    threading.Thread(target=_end_with_the_coordinator, args=(life, mark), daemon=True).start()
     # A model that starts processes of its own does so beside the thread above, which no fork has.
     multiprocessing.set_start_method("spawn")
     script = MainModule(main)
@@ -245,6 +252,7 @@ def _answer(call: bytes, connection: "Connection[Any, Any]", script: MainModule)
         return answer
 
 
-def _end_with_the_coordinator(life: "Connection[Any, Any]") -> None:
+def _end_with_the_coordinator(life: "Connection[Any, Any]", mark: str) -> None:
     wait([life])
+    end_marked(mark)
     os.killpg(os.getpid(), signal.SIGKILL)

@@ -187,7 +187,7 @@ def main(
 
 def study_folder(study: Path, out: str | None) -> Path:
     """The folder of a study: the one that is given, or runs/<study name>; a file in its place is refused."""
-    folder = Path("runs") / study.stem if out is None else given_folder(out)
+    folder = Path("runs") / study.stem if out is None else given_folder(out, "runs/<study name>")
     # The nearest path that exists decides: below a file no folder can be made.
     there = next((path for path in (folder, *folder.parents) if path.exists()), None)
     if there is not None and not there.is_dir():
@@ -195,20 +195,22 @@ def study_folder(study: Path, out: str | None) -> Path:
     return folder
 
 
-def given_folder(out: str) -> Path:
-    """The folder that --out names; an empty one is refused."""
+def given_folder(out: str, default: str) -> Path:
+    """The folder that --out names; an empty one is refused. default: in words, what is used where it is omitted."""
     if not out.strip():
         raise ValueError(
             "--out is empty (an unset variable?) and would mean the current folder; "
-            "name a folder, or omit --out to use runs/<study name>"
+            f"name a folder, or omit --out to use {default}"
         )
     return Path(out)
 
 
 def refuse_written(path: Path, force: bool) -> None:
-    from lithobrake.files.atomic import refuse_existing
+    """Refuse a file that exists, and one that no folder is there for, before it is made."""
+    from lithobrake.files.atomic import refuse_existing, refuse_no_folder
 
     refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
+    refuse_no_folder(path)
 
 
 def run_of(text: str) -> str | int:

@@ -61,7 +61,7 @@ def export(
     json: arguments.Json = False,
 ) -> None:
     """Write results of a study in the formats of other programs: flights, attitudes, shape, map, motions."""
-    place = folder / "export" if out is None else arguments.given_folder(out)
+    place = folder / "export" if out is None else arguments.given_folder(out, f"{folder}/export")
     from lithobrake.results import open_study
 
     # A folder that is no study is refused before numbers are loaded.

@@ -112,14 +112,13 @@ def doctor(
 def _landed(
     study: "Study", values: Row, out: Path | None, shown: bool, force: bool, json: bool
 ) -> tuple[dict[str, Any], list[str]]:
-    from lithobrake.pipeline import land_one
-    from lithobrake.view import refuse_other_kinds, show, write_motion
+    from lithobrake.cli.results import refuse_motion_file
+    from lithobrake.pipeline import energy_gained, land_one
+    from lithobrake.view import show, write_motion
 
     if out is not None:
         # Refused before the landing, which may need a bed to be poured first.
-        if out.suffix != ".h5":
-            refuse_other_kinds(out)
-        arguments.refuse_written(out, force)
+        refuse_motion_file(out, force, also=(".h5",))
     with arguments.shown_progress("landing") as progress:
         found = land_one(study, values, progress)
     # The file of a landing needs no library of the extra [view].
@@ -129,7 +128,8 @@ def _landed(
         write_motion(found.bodies(), out)
     if shown:
         show(found.bodies())
-    return found.to_json(), [*found.lines(), *_motion_lines([] if out is None else [out])]
+    gained = energy_gained(study, [found])
+    return found.to_json(), [*found.lines(), *_warned(gained), *_motion_lines([] if out is None else [out])]
 
 
 def _followed(
@@ -137,7 +137,7 @@ def _followed(
 ) -> tuple[dict[str, Any], list[str]]:
     """Follow a lander to its end, with lines as it goes; give the same as JSON values, and what is left to say."""
     from lithobrake.cli.results import refuse_journey_file, show_touchdowns
-    from lithobrake.pipeline import follow_one
+    from lithobrake.pipeline import energy_gained, follow_one
     from lithobrake.view.motion_files import touchdown_paths, write_journey
 
     def tell(line: str) -> None:
@@ -156,7 +156,11 @@ def _followed(
             paths = write_journey(found.motion(), out, progress=progress)
     if shown:
         show_touchdowns(found.motion())
-    return found.to_json(), _motion_lines(paths)
+    return found.to_json(), [*_warned(energy_gained(study, found.landings)), *_motion_lines(paths)]
+
+
+def _warned(gained: str | None) -> list[str]:
+    return [] if gained is None else [f"Warning: {gained}."]
 
 
 def _motion_lines(paths: list[Path]) -> list[str]:

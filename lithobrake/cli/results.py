@@ -30,16 +30,28 @@ TOLD = {
     "impact.place.y": ("impact", "y"),
 }
 LISTED = 100
+COMPARISON = "comparison"
 
 
-def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = ()) -> None:
-    """Raise ValueError for a file of another kind, but for these, and for one that exists unless it may be replaced."""
-    from lithobrake.view import refuse_other_kinds
-    from lithobrake.view.motion_files import JOURNEY_KINDS, written_over
+def refuse_motion_file(out: Path, force: bool, seconds: float = 8.0, also: tuple[str, ...] = ()) -> None:
+    """Raise ValueError for a file of a landing that is of another kind, but for these, or exists and is not replaced,
+    and for a film of no length [s].
+    """
+    from lithobrake.view.motion_files import ALL_KINDS, refuse_film, refuse_other_kinds
+
+    refuse_other_kinds(out, (*ALL_KINDS, *also))
+    arguments.refuse_written(out, force)
+    refuse_film(out, seconds)
+
+
+def refuse_journey_file(out: Path, force: bool, also: tuple[str, ...] = (), seconds: float = 8.0) -> None:
+    """The same of a file of a journey, some of which have a file for each touchdown."""
+    from lithobrake.view.motion_files import JOURNEY_KINDS, refuse_film, refuse_other_kinds, written_over
 
     refuse_other_kinds(out, (*JOURNEY_KINDS, *also))
     for path in written_over(out):
         arguments.refuse_written(path, force)
+    refuse_film(out, seconds)
 
 
 def show_touchdowns(motion: "JourneyMotion") -> None:
@@ -142,13 +154,13 @@ def film(
     path = out or folder / ("landing.mp4" if journey is None else f"journey_{journey}.mp4")
     _refuse_both(journey, run)
     from lithobrake.results import open_study
-    from lithobrake.view import refuse_other_kinds, write_journey, write_motion
+    from lithobrake.view import write_journey, write_motion
 
+    # Before the landings, which take minutes.
     if journey is None:
-        refuse_other_kinds(path)
-        arguments.refuse_written(path, force)
+        refuse_motion_file(path, force, seconds)
     else:
-        refuse_journey_file(path, force)
+        refuse_journey_file(path, force, seconds=seconds)
     paths = [path]
     with arguments.shown_progress(what) as progress:
         results = open_study(folder)
@@ -163,15 +175,17 @@ def film(
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="The folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(metavar="B", help="The folder of the other study.", show_default=False)],
-    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = "comparison",
+    out: Annotated[str, typer.Option("--out", metavar="DIR", help="Folder of the page.")] = COMPARISON,
     json: arguments.Json = False,
     force: arguments.Force = False,
 ) -> None:
     """Compare two studies run by run: the difference of every result with its interval, as a page and as JSON."""
-    place = arguments.given_folder(out)
+    place = arguments.given_folder(out, COMPARISON)
+    from lithobrake.files.atomic import make_folder
     from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
     from lithobrake.results.study_files import json_values
 
+    make_folder(place)
     for path in comparison_files(place):
         arguments.refuse_written(path, force)
     comparison = compare_studies(first, second)

@@ -10,6 +10,7 @@ from lithobrake.cli import arguments
 
 if TYPE_CHECKING:
     from lithobrake.study.reader import Shipped
+    from lithobrake.vocabulary.known_bodies import KnownBody
 
 BODY, LANDER, AT = "Dimorphos", "2U", "10,-60"
 # Width of the column of names in the list of examples.
@@ -19,12 +20,20 @@ NAMES = 26
 @arguments.command(arguments.START, "new hera --body dimorphos --lander 6u --at 10,120")
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the study.", show_default=False)],
-    body: Annotated[str, typer.Option(help="A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...")] = BODY,
+    body: Annotated[
+        str | None,
+        typer.Option(help=f"A body by name: Dimorphos, Didymos, Bennu, Ryugu, ...; absent: {BODY}, without --shape."),
+    ] = None,
     lander: Annotated[str, typer.Option(help="A lander by name: 1U to 12U, Juventas, Milani, MASCOT.")] = LANDER,
     at: Annotated[str, typer.Option(metavar="LAT,LON", help="Aim point, latitude and longitude in degrees.")] = AT,
     shape: Annotated[
-        str | None, typer.Option(metavar="FILE", help="Mesh of the body, relative to the study file.")
+        str | None,
+        typer.Option(
+            metavar="FILE", help="Mesh of the body, relative to the study file, with --body, or --mass and --spin."
+        ),
     ] = None,
+    mass: Annotated[float | None, typer.Option(metavar="KG", help="Mass of the body of --shape.")] = None,
+    spin: Annotated[float | None, typer.Option(metavar="S", help="Spin period of the body of --shape.")] = None,
     full: Annotated[bool, typer.Option("--full", help="Also list every key of a study file.")] = False,
     first_bounce: Annotated[
         bool,
@@ -41,19 +50,40 @@ def new(
         raise ValueError(f"NAME is {name!r}; allowed: a name, or a path that ends in one; write, say, bennu")
     from lithobrake.study.template import template
 
-    given = {"--body": body != BODY, "--lander": lander != LANDER, "--at": at != AT, "--shape": shape is not None}
+    given = {"--lander": lander != LANDER, "--at": at != AT}
+    options = {"--body": body, "--shape": shape, "--mass": mass, "--spin": spin}
+    given = {**given, **{name: value is not None for name, value in options.items()}}
     # The template has no place for these options; ignored silently they would be missed only in its results.
     if first_bounce and (full or any(given.values())):
         raise ValueError(f"--first-bounce takes none of {', '.join(given)}, --full; leave one or the other out")
-    text = template() if first_bounce else _journeys(body, lander, at, shape, full)
+    text = template() if first_bounce else _journeys(_body(body, shape, mass, spin), lander, at, shape, full)
     _write_new(path, text)
     arguments.tell([f"Wrote {path}. Edit it, then: {arguments.command_line('run', path)}"])
 
 
-def _journeys(body: str, lander: str, at: str, shape: str | None, full: bool) -> str:
-    from lithobrake.study.short_study import aim_point, all_keys, known_body, known_lander, short_study
+def _body(name: str | None, shape: str | None, mass: float | None, spin: float | None) -> "KnownBody":
+    """The body of a new study. Raises ValueError where its mass and spin would be those of another."""
+    from lithobrake.study.short_study import body_of_mesh, known_body, refuse_other_body
 
-    return short_study(known_body(body), known_lander(lander), aim_point(at), shape) + (all_keys() if full else "")
+    if mass is None and spin is None and (shape is None or name is not None):
+        found = known_body(name or BODY)
+        if shape is not None:
+            refuse_other_body(found, shape)
+        return found
+    if shape is None or name is not None or mass is None or spin is None:
+        words = {"--body": name, "--shape": shape, "--mass": mass, "--spin": spin}
+        said = " and ".join(option for option, value in words.items() if value is not None)
+        raise ValueError(
+            f"{said} {'is' if ' and ' not in said else 'are'} given; allowed: --shape with --body, whose mass and spin "
+            "are known, or with both --mass and --spin; give these"
+        )
+    return body_of_mesh(shape, mass, spin)
+
+
+def _journeys(body: "KnownBody", lander: str, at: str, shape: str | None, full: bool) -> str:
+    from lithobrake.study.short_study import aim_point, all_keys, known_lander, short_study
+
+    return short_study(body, known_lander(lander), aim_point(at), shape) + (all_keys() if full else "")
 
 
 def _write_new(path: Path, text: str) -> None:

@@ -157,8 +157,9 @@ class DiskCache:
                 file.write(content)
                 file.write(self._signature(name, content))
             self._make_room()
-        except OSError as error:
-            self.keeps = False
+        except (OSError, ValueError) as error:
+            # A folder in the place of one file is no reason to keep no other.
+            self.keeps = isinstance(error, ValueError)
             self._do_without(f"{self.folder} cannot be written ({error})")
 
     def has(self, name: str) -> bool:

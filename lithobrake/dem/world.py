@@ -26,11 +26,20 @@ from lithobrake.dem.stepping.time_loop import (
     TOUCHED,
     new_record,
 )
-from lithobrake.dem.stepping.time_step_stability import Clock, checked_count, checked_step, chosen_step
+from lithobrake.dem.stepping.time_step_stability import (
+    LONGEST_RUN,
+    Clock,
+    checked_count,
+    checked_step,
+    chosen_step,
+)
 from lithobrake.dem.world_state import NOTHING_WATCHED, WorldState, read_checkpoint, write_checkpoint
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.field_errors import FieldError
+from lithobrake.vocabulary.field_errors import FieldError, field_number
 from lithobrake.vocabulary.material_properties import Material
+
+# More than any machine has cores.
+MOST_THREADS = 1024
 
 
 class StepTooLargeError(FieldError):
@@ -183,9 +192,7 @@ class World(Observables):
 
     @thread_count.setter
     def thread_count(self, value: int) -> None:
-        if value != int(value) or value < 1:
-            raise FieldError("World.thread_count", value, "is a whole number of at least 1")
-        self._state.use_threads(int(value))
+        self._state.use_threads(checked_count(value, "World.thread_count", 1, MOST_THREADS))
 
     def run(self, duration: float | None = None, *, steps: int | None = None) -> None:
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
@@ -231,10 +238,11 @@ class World(Observables):
             ("held_speed", held_speed, 0.0, "m/s"),
             ("reach", reach, 0.0, "m"),
         ):
-            if not least <= value < math.inf:
-                raise FieldError(
-                    f"World.run_locally {name}", value, f"is a finite value of at least {least:g}", unit=si
-                )
+            allowed = f"is a finite value of at least {least:g}"
+            if field_number(f"World.run_locally {name}", value, allowed, si) < least:
+                raise FieldError(f"World.run_locally {name}", value, allowed, unit=si)
+        if duration > LONGEST_RUN:
+            raise FieldError("World.run_locally duration", duration, f"is at most {LONGEST_RUN:g}", unit="s")
         if held_speed > 0.0 and self._state.watched == NOTHING_WATCHED:
             raise FieldError(
                 "World.run_locally held_speed", held_speed, "is 0 while no body is watched", "call watch first", "m/s"

@@ -241,14 +241,14 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
     multi_indices [term_count, input_count], without the constant; kernel_widths [input_count], infinite where nearness
     in an input does not count; row_inputs [row_count, input_count], standardised; location, log_scale, scale_limits,
     rows, row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root
-    [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run, infinite where
-    they bend no coordinate. Raises ValueError for no emulator.
+    [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run; distant
+    [coordinate_count], 1 where these bend no coordinate and draws are only kept inside. Raises ValueError for no
+    emulator.
     """
     if not models:
         raise ValueError("models are none, but must be at least one emulator: give those of refits")
     first, columns = models[0], list(models[0].runs.modelled)
     linear = first.terms.matrix(first.runs.x)[first.runs.has_outputs, : len(first.runs.inputs)]
-    low, high = first.runs.bending(first.runs.lower, first.runs.upper)
     smooth = [smoothing(model.law.rows, model.law.weights) for model in models]
     return {
         **input_tables(first.runs.inputs, first.terms.indices),
@@ -265,6 +265,7 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
         "class_intercepts": np.stack([model.classes.intercepts for model in models]),
         "class_slopes": np.stack([model.classes.slopes for model in models]),
         "class_never": np.stack([model.classes.never for model in models]),
-        "lower": low[0, columns],
-        "upper": high[0, columns],
+        "lower": first.runs.lower[0, columns],
+        "upper": first.runs.upper[0, columns],
+        "distant": np.isin(columns, first.runs.distant).astype(float),
     }

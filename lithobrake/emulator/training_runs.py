@@ -12,11 +12,12 @@ from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training_data import check_magnitude
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.constants import FEWEST_RUNS_OF_EMULATOR
 from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
 # Fewer residuals than this are no distribution to draw from.
-FEWEST = 8
+FEWEST = FEWEST_RUNS_OF_EMULATOR
 # What a coordinate may lose of the range of its output.
 ROUNDING = 1e-4
 # The spread of values that are one but for rounding, in parts of them.

@@ -4,31 +4,31 @@ import logging
 import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
-from lithobrake.export.flown import ExportOptions, Flown
+from lithobrake.export.flown import ExportOptions, Flown, flight_count, has_journeys
 from lithobrake.export.oem import POLE, RESOLUTION, Frame, Segment, write_oem
 from lithobrake.files.atomic import atomic_path, write_whole
 from lithobrake.geometry.naif_kernels import NUMBERS, spice
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.constants import DAY
-from lithobrake.vocabulary.extra_library import extra_library
 
 STEPS = 100
 log = logging.getLogger(__name__)
 # Fewer flights have a covariance without full rank.
 FEWEST = 7
+MEAN_FILE = "flight_mean.oem"
 # A line of text with a time and six numbers of 16 digits; six lines with the 21 of a covariance, and one with a time.
 BYTES_OF_STATE, BYTES_OF_COVARIANCE, LARGE = 170.0, 540.0, 1e8
 # Number of lander N is FIRST - N: no spacecraft has one so low. Frames of users begin at the second.
 FIRST, FRAME = -1_000_000, 1_400_000
-# Epoch of J2000 as a Julian date.
-J2000 = 2_451_545.0
+# Of the name of a body: SPICE has 32 characters for a variable, of which FRAME_ and _FIXED take twelve.
+LONGEST_NAME = 20
 
 
 def checked_step(flown: Flown, step: float | None) -> float:
@@ -92,26 +92,45 @@ def _sentence(sample: int, arc: int, count: int) -> str:
 
 
 def ephemeris_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
-    return ["flight_mean.oem", *(f"flight_{sample}.oem" for sample in chosen.samples)]
+    """Names of the files: of the mean, where it is made or nothing else is asked for, and of each chosen sample."""
+    has_mean = flight_count(results) >= FEWEST or not chosen.samples
+    return [*([MEAN_FILE] if has_mean else []), *(f"flight_{sample}.oem" for sample in chosen.samples)]
 
 
 def write_ephemerides(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write an ephemeris of the mean of all first flights, and a file for each chosen sample.
 
     The standard has one object in a file. That of a sample has a segment for each of its flights over the bounces.
-    A warning says so where the files get larger than 100 MB. Raises ValueError for a frame, an epoch, a step or a
-    sample that there is not, for ICRF without a pole, and where too few flights make a cloud.
+    A warning says so where the files get larger than 100 MB, and where too few flights make a mean. Raises ValueError
+    for a frame, an epoch, a step or a sample that there is not, for ICRF without a pole, and for a mean of too few
+    flights where no sample is chosen.
     """
     axes, flown = Frame.of(results, chosen.frame, chosen.epoch), Flown.of(results)
     flights = axes.timed(results, flown.journeys(results, chosen.samples))
     step = checked_step(flown, chosen.step)
     comments = [f"Flights of a study of lithobrake on {axes.body}. {axes.sentences}", axes.clock_sentence]
     _warn_of_size(flown, flights, step)
-    cloud = _cloud(axes.timed_together(results, flown), axes, step, chosen.progress)
+    lacking = _lacking_flights(results, len(flown.sample))
+    if lacking and not chosen.samples:
+        raise ValueError(f"{lacking}; name single flights with --flight, or {_more_flights(results)}")
+    if lacking:
+        log.warning("%s is not written: %s; %s.", MEAN_FILE, lacking, _more_flights(results))
+    clouds = [] if lacking else [[_cloud(axes.timed_together(results, flown), axes, step, chosen.progress)]]
     segments = flight_segments(flights, axes, step, chosen.progress)
-    for path, parts in zip(paths, [[cloud], *(segments[sample] for sample in chosen.samples)], strict=True):
+    for path, parts in zip(paths, [*clouds, *(segments[sample] for sample in chosen.samples)], strict=True):
         chosen.progress(1.0, f"writing {path.name}")
         write_oem(path, parts, axes.epoch, comments)
+
+
+def _lacking_flights(results: StudyResults, count: int) -> str:
+    """Why so many flights have no mean, in words; empty where they have."""
+    who = "lander" if has_journeys(results) else "sample"
+    flew = f"{count} {who} has a flight" if count == 1 else f"{count} {who}s have flights"
+    return f"{flew}, and the covariance of their mean needs {FEWEST}" if count < FEWEST else ""
+
+
+def _more_flights(results: StudyResults) -> str:
+    return f"raise {'journey.count' if has_journeys(results) else 'flight.flight_count'} for the mean"
 
 
 def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
@@ -128,10 +147,6 @@ def _warn_of_size(flown: Flown, chosen: Flown, step: float) -> None:
 
 def _cloud(flown: Flown, axes: Frame, step: float, progress: Progress) -> Segment:
     """Mean and covariance of the flights that last, as long as there are enough of them."""
-    if len(flown.sample) < FEWEST:
-        raise ValueError(
-            f"{len(flown.sample)} samples of the study fly; their covariance needs {FEWEST}: raise flight.flight_count"
-        )
     times, means, covariances, counts = [], [], [], []
     for aloft in stepped(flown, step, FEWEST, progress, "mean of all flights"):
         state = axes.states(aloft, aloft.time, aloft.position, aloft.velocity)
@@ -156,7 +171,7 @@ def write_spk(results: StudyResults, paths: Sequence[Path], chosen: ExportOption
     Segments are of type 13 (Hermite) in the axes J2000, those of ICRF within a tenth of an arc second, about the body,
     in the time of SPICE (TDB); they are named "SAMPLE N FLIGHT K". Lander N has the number -1000000 - N. The constants
     have pole, angle of longitude 0 and spin of the body, its name, and its axes as the frame NAME_FIXED.
-    Raises ValueError for a body without a number, and as write_ephemerides does; ImportError without spiceypy, pyerfa.
+    Raises ValueError for a body without a number, and as write_ephemerides does; ImportError without spiceypy.
     """
     if not chosen.samples:
         raise ValueError("no sample is chosen whose flights are passed on; name some with --flight, from 0")
@@ -164,22 +179,12 @@ def write_spk(results: StudyResults, paths: Sequence[Path], chosen: ExportOption
     # SPICE takes its own axes alone, whatever the other files are in.
     axes, flown = Frame.of(results, "icrf", chosen.epoch), Flown.of(results)
     flights = axes.timed(results, flown.journeys(results, chosen.samples))
-    start = ephemeris_time(axes.epoch)
     segments = flight_segments(flights, axes, checked_step(flown, chosen.step), chosen.progress)
     orbits, constants = paths
     with atomic_path(orbits) as draft:
-        _write_segments(draft, segments, number, start)
+        _write_segments(draft, segments, number, axes.epoch)
     period = float(np.median(flown.spin_period))
-    write_whole(constants, _constants(results, axes, number, start, period, list(segments)), "ascii")
-
-
-def ephemeris_time(epoch: datetime) -> float:
-    """Time of SPICE, TDB since J2000 [s], of a UTC epoch. Raises ImportError without pyerfa."""
-    erfa = extra_library("erfa", "pyerfa, which knows the time scales of SPICE,", "spice")
-    second = epoch.second + 1e-6 * epoch.microsecond
-    utc = erfa.dtf2d("UTC", epoch.year, epoch.month, epoch.day, epoch.hour, epoch.minute, second)
-    whole, part = erfa.taitt(*erfa.utctai(*utc))
-    return float(((whole - J2000) + part) * DAY + erfa.dtdb(whole, part, 0.0, 0.0, 0.0, 0.0))
+    write_whole(constants, _constants(results, axes, number, period, list(segments)), "ascii")
 
 
 def _number(results: StudyResults) -> int:
@@ -195,8 +200,8 @@ def _number(results: StudyResults) -> int:
         ) from None
 
 
-def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int, start: float) -> None:
-    """Write segments whose times count from a time of SPICE [s]."""
+def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int, epoch: Epoch) -> None:
+    """Write segments whose times count from an epoch."""
     library = spice()
     handle = library.spkopn(os.fspath(path), "lithobrake", 0)
     for sample, parts in segments.items():
@@ -204,8 +209,8 @@ def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int,
             # A flight that ends as it begins has no way between states.
             if part.interpolation_degree is None:
                 continue
-            times: Array = start + part.time
-            states, name = np.ascontiguousarray(part.state * 1e-3), f"SAMPLE {sample} FLIGHT {flight}"
+            times, states = _overlapping(part, epoch)
+            name = f"SAMPLE {sample} FLIGHT {flight}"
             ends, degree = (times[0], times[-1]), part.interpolation_degree
             library.spkw13(
                 handle, FIRST - sample, number, "J2000", *ends, name, degree, len(times), states.tolist(), times
@@ -213,27 +218,46 @@ def _write_segments(path: Path, segments: dict[int, list[Segment]], number: int,
     library.spkcls(handle)
 
 
-def _constants(
-    results: StudyResults, axes: Frame, number: int, start: float, spin_period: float, samples: Sequence[int]
-) -> str:
-    """Text of the constants; start: the time of SPICE at which site.meridian_deg holds [s]."""
+def _overlapping(part: Segment, epoch: Epoch) -> tuple[Array, Array]:
+    """Times of SPICE [s], [count], and states [km], [count, 6], with ends that overlap by RESOLUTION the epochs of OEM.
+
+    SPICE itself turns an epoch into a time that is known to some of its last digits, and refuses it outside of a
+    segment.
+    """
+    times = np.array([epoch.after(one).ephemeris_time for one in part.time.tolist()])
+    states = part.state * 1e-3
+    for end, sign in ((0, -1.0), (-1, 1.0)):
+        margin = sign * max(RESOLUTION, 4.0 * float(np.spacing(abs(times[end]))))
+        times[end] += margin
+        states[end, :3] += margin * states[end, 3:]
+    return times, np.ascontiguousarray(states)
+
+
+def spice_name(body: str) -> str:
+    """The name of a body as SPICE takes it: not too long, and no number, which it would take for that of another."""
+    name = body if not body.isdigit() else f"BODY_{body}"
+    return name[:LONGEST_NAME].rstrip("_")
+
+
+def _constants(results: StudyResults, axes: Frame, number: int, spin_period: float, samples: Sequence[int]) -> str:
+    """Text of the constants; site.meridian_deg holds at the epoch."""
     right_ascension, declination, meridian = (float(results.study["site"][key]) for key in POLE)
-    at_j2000 = (meridian - 360.0 * start / spin_period) % 360.0
-    frame = FRAME + abs(number) % 100_000
-    assigned = [(axes.body, number), *((f"SAMPLE_{sample}", FIRST - sample) for sample in samples)]
+    at_j2000 = (meridian - 360.0 * axes.epoch.ephemeris_time / spin_period) % 360.0
+    frame, name = FRAME + abs(number) % 100_000, spice_name(axes.body)
+    assigned = [(name, number), *((f"SAMPLE_{sample}", FIRST - sample) for sample in samples)]
     names = "".join(
-        f"NAIF_BODY_NAME += ( '{name}' )\nNAIF_BODY_CODE += ( {code} )\n" for name, code in assigned
+        f"NAIF_BODY_NAME += ( '{one}' )\nNAIF_BODY_CODE += ( {code} )\n" for one, code in assigned
     )  # fmt: skip
     return (
         "KPL/PCK\n\n"
         f"Pole, angle of longitude 0 and spin of {axes.body}, from a study of lithobrake; the spin period is the\n"
-        f"median of its samples, {spin_period!r} s. Its axes are the frame {axes.body}_FIXED.\n\n"
+        f"median of its samples, {spin_period!r} s. Its axes are the frame {name}_FIXED.\n\n"
         "\\begindata\n"
         f"BODY{number}_POLE_RA = ( {right_ascension!r} 0. 0. )\n"
         f"BODY{number}_POLE_DEC = ( {declination!r} 0. 0. )\n"
         f"BODY{number}_PM = ( {at_j2000!r} {360.0 * DAY / spin_period!r} 0. )\n"
-        f"FRAME_{axes.body}_FIXED = {frame}\n"
-        f"FRAME_{frame}_NAME = '{axes.body}_FIXED'\nFRAME_{frame}_CLASS = 2\n"
+        f"FRAME_{name}_FIXED = {frame}\n"
+        f"FRAME_{frame}_NAME = '{name}_FIXED'\nFRAME_{frame}_CLASS = 2\n"
         f"FRAME_{frame}_CLASS_ID = {number}\nFRAME_{frame}_CENTER = {number}\n"
         f"{names}\\begintext\n"
     )

@@ -3,7 +3,6 @@
 A flight is one arc of a journey: the first, from the touchdown to the next impact, or one between later impacts.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,9 +14,11 @@ from numpy.typing import NDArray
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
 from lithobrake.smallbody import Body, Shape, fly
+from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.plain_text import program_name
 
 # Arrays of Flown with an entry or row a flight.
 _EACH = (
@@ -197,6 +198,11 @@ def has_journeys(results: StudyResults) -> bool:
     return results.results.journeys > 0 and results.study["journey"]["touchdowns"] != 1
 
 
+def flight_count(results: StudyResults) -> int:
+    """Number of flights that `Flown.of` gives."""
+    return int((results.arcs["arc"] == 0.0).sum()) if has_journeys(results) else results.flights.row_count
+
+
 def _noted(arcs: Table, duration: float) -> dict[str, Any]:
     """Flights as a table has them that notes where each began; duration: of the journeys [s]."""
     position, velocity = (np.column_stack([arcs[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity"))
@@ -227,7 +233,9 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
         partner = smallbody.built_in_body(site["body"], partner=site["partner"]).partner
     # A study of before this key has none.
     shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
-    return Body(shape, mass, spin_period, name, partner)
+    body = Body(shape, mass, spin_period, name, partner)
+    given = site.get("partner_body")
+    return body if given is None else replace(body, partner=ball_partner(body, **given))
 
 
 def refuse_rotation(results: StudyResults) -> None:
@@ -243,9 +251,4 @@ def refuse_rotation(results: StudyResults) -> None:
 def body_name(results: StudyResults) -> str:
     """The name of the body as other programs take it: capitals, digits and underscores."""
     site = results.study["site"]
-    return plain_name(site.get("name") or Path(site["body"]).stem)
-
-
-def plain_name(name: str) -> str:
-    """A name as other programs take it: capitals, digits and underscores."""
-    return re.sub(r"\W+", "_", name, flags=re.ASCII).upper()
+    return program_name(site.get("name") or Path(site["body"]).stem)

@@ -11,7 +11,7 @@ from lithobrake.export.ephemerides import ephemeris_names, write_ephemerides, wr
 from lithobrake.export.flown import ExportOptions
 from lithobrake.export.maps import map_names, point_names, write_geojson, write_geotiff
 from lithobrake.export.shape_tables import write_facets, write_plates
-from lithobrake.files.atomic import refuse_existing
+from lithobrake.files.atomic import make_folder, refuse_existing
 from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
 from lithobrake.vocabulary.callbacks import Progress
@@ -82,10 +82,7 @@ def export_study(
     written = [path for of_kind in paths.values() for path in of_kind]
     if not chosen.replaces:
         refuse_existing(written, "choose another folder with --out, or replace what exists with --force")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ValueError(f"{folder} is no folder and cannot become one ({error.strerror}); choose another") from error
+    make_folder(folder)
     for kind, of_kind in paths.items():
         KINDS[kind].write(results, of_kind, chosen)
     return written

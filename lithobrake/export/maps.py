@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import ExportOptions, body_name, has_journeys, plain_name
+from lithobrake.export.flown import ExportOptions, body_name, has_journeys
 from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
 from lithobrake.results.site_results import SiteMap
 from lithobrake.vocabulary.file_names import REST_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.plain_text import program_name
 from lithobrake.vocabulary.quantities import IMPACT_SPEED
 
 if TYPE_CHECKING:
@@ -191,11 +192,11 @@ def _write_points(results: StudyResults, path: Path, what: str, table: Table, na
 
 def write_features(frame: MapFrame, path: Path, what: str, features: Sequence[Any], **more: Any) -> None:
     """Write features as GeoJSON in the frame of the body; more: members that say more of them."""
-    # The newest standard knows the Earth alone; the member of the one before says which body this is.
+    # RFC 7946 has coordinates on the Earth alone and no member for others: this one has a name of its own.
     content = {
         "type": "FeatureCollection",
         "name": f"{what} on {frame.body}",
-        "crs": {"type": "name", "properties": {"name": frame.wkt}},
+        "body_frame": frame.wkt,
         "note": NOTE,
         **more,
         "features": features,
@@ -214,7 +215,7 @@ def write_site_cells(site_map: SiteMap, place: Path) -> Path:
     Borders of sites are lines of constant latitude or longitude, as straight lines in these coordinates are.
     """
     radius = math.sqrt(site_map.area_m2 * len(site_map.cells) / (4.0 * math.pi))
-    frame, path = MapFrame(plain_name(site_map.body), radius), site_cells_file(place)
+    frame, path = MapFrame(program_name(site_map.body), radius), site_cells_file(place)
     features = []
     for number, site in enumerate(site_map.cells):
         south, north, west, east = site.bounds_deg

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -14,12 +14,11 @@ from lithobrake.files.atomic import write_whole
 from lithobrake.geometry.attitude import axes_in_icrf
 from lithobrake.results import StudyResults, Table
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.clock import Epoch
 
 VERSION = "2.0"
 # Of a line; the standard allows 254 characters.
 LINE = 100
-# Of an epoch.
-YEARS = (1900, 2999)
 FRAMES = ("inertial", "fixed", "icrf")
 # An epoch that nobody takes for that of a landing.
 NO_EPOCH = "2000-01-01T12:00:00"
@@ -49,21 +48,8 @@ class Segment:
     interpolation_degree: int | None = None
 
 
-def parsed_epoch(text: str) -> datetime:
-    """The epoch [UTC] of a text like 2026-11-22T12:00:00. Raises ValueError for another, or another time of history."""
-    allowed = f"allowed: a UTC date and time of the years {YEARS[0]} to {YEARS[1]} such as 2026-11-22T12:00:00"
-    try:
-        found = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise ValueError(f"epoch is {text!r}; {allowed}") from error
-    # Before it is moved to UTC, or a flight is added: neither has room at the ends of the calendar.
-    if not YEARS[0] <= found.year <= YEARS[1]:
-        raise ValueError(f"epoch is {text!r}; {allowed}")
-    return found.replace(tzinfo=None) if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)
-
-
-def write_oem(path: Path, segments: Iterable[Segment], epoch: datetime, comments: Sequence[str] = ()) -> None:
-    """Write segments whose times count from an epoch [UTC]; lengths in km, as the standard has them."""
+def write_oem(path: Path, segments: Iterable[Segment], epoch: Epoch, comments: Sequence[str] = ()) -> None:
+    """Write segments whose times count from an epoch; lengths in km, as the standard has them."""
     lines = header_lines(f"CCSDS_OEM_VERS = {VERSION}", comments)
     for segment in segments:
         lines += _segment_lines(segment, epoch)
@@ -75,12 +61,12 @@ def header_lines(version: str, comments: Sequence[str]) -> list[str]:
     return [version, *comment_lines(comments), f"CREATION_DATE = {made.isoformat()}", "ORIGINATOR = LITHOBRAKE", ""]
 
 
-def epoch_texts(epoch: datetime, time: Array) -> list[str]:
-    """Dates and times [UTC] so many seconds after an epoch, in whole microseconds."""
-    return [(epoch + timedelta(seconds=one)).isoformat(timespec="microseconds") for one in time.tolist()]
+def epoch_texts(epoch: Epoch, time: Array) -> list[str]:
+    """Dates and times (UTC) so many seconds after an epoch, in whole microseconds."""
+    return [epoch.after(one).text() for one in time.tolist()]
 
 
-def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
+def _segment_lines(segment: Segment, epoch: Epoch) -> Iterator[str]:
     times = epoch_texts(epoch, segment.time)
     yield "META_START"
     yield from comment_lines(segment.comments)
@@ -89,7 +75,7 @@ def _segment_lines(segment: Segment, epoch: datetime) -> Iterator[str]:
     yield f"CENTER_NAME = {segment.center_name}"
     yield f"REF_FRAME = {segment.frame}"
     if segment.frame != "ICRF":
-        yield f"REF_FRAME_EPOCH = {epoch.isoformat(timespec='microseconds')}"
+        yield f"REF_FRAME_EPOCH = {epoch.text()}"
     yield "TIME_SYSTEM = UTC"
     yield f"START_TIME = {times[0]}"
     yield f"STOP_TIME = {times[-1]}"
@@ -124,7 +110,7 @@ class Frame:
 
     kind    fixed: turn with the body; inertial: those that the body has at the epoch; icrf
     body    name of the body, as body_name gives it
-    epoch   from which times count [UTC]
+    epoch   from which times count
     clock   of the study: each lander at its own time after the epoch, that of the study; given: all first touchdowns
             are at an epoch that the user gave; none: at one that stands for no date
     axes    the body's axes at the epoch along the frame, in rows, [3, 3]
@@ -132,7 +118,7 @@ class Frame:
 
     kind: str
     body: str
-    epoch: datetime
+    epoch: Epoch
     clock: str
     axes: Array
 
@@ -144,8 +130,11 @@ class Frame:
         own = (results.study.get("delivery") or {}).get("epoch")
         clock = "given" if epoch is not None else "none" if own is None else "study"
         axes = _icrf_axes(results, clock, own) if kind == "icrf" else np.eye(3)
-        start = own if clock == "study" else epoch
-        return cls(kind, body_name(results), parsed_epoch(start or NO_EPOCH), clock, axes)
+        try:
+            start = Epoch.of((own if clock == "study" else epoch) or NO_EPOCH)
+        except ValueError as error:
+            raise ValueError(f"epoch {error}") from error
+        return cls(kind, body_name(results), start, clock, axes)
 
     @property
     def name(self) -> str:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from io import FileIO
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from lithobrake.files.reading import parsed, reading
@@ -24,11 +25,12 @@ _NOTE_LENGTH, _NOTE = 1024, {"process": int, "host": str}
 def atomic_path(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Give a temporary path beside `path`; on success it is flushed to disk and renamed onto `path`, else removed.
 
-    Raises ValueError where `path` is a folder.
+    Raises ValueError where `path` is a folder, or in none.
     """
     final = Path(path)
     if final.is_dir():
         raise ValueError(f"{final} is a folder; name a file")
+    refuse_no_folder(final)
     draft = final.with_name(f".{final.name}.{os.getpid()}.part")
     try:
         yield draft
@@ -64,6 +66,28 @@ def refuse_existing(paths: Iterable[Path], remedy: str) -> None:
     if there:
         more = f" and {len(there) - 1} more of what would be written" if len(there) > 1 else ""
         raise ValueError(f"{there[0]} exists{more}; {remedy}")
+
+
+def refuse_no_folder(path: Path) -> None:
+    """Raise ValueError for a file whose folder is not there."""
+    if not path.parent.is_dir():
+        raise ValueError(f"{path} cannot be written (there is no folder {path.parent}); make it, or choose another")
+
+
+def make_folder(path: Path, remedy: str = "choose another folder with --out") -> None:
+    """Make a folder where there is none.
+
+    Raises ValueError, with the remedy, where that cannot be, or no file can be made in it.
+    """
+    if path.exists() and not path.is_dir():
+        raise ValueError(f"{path} is no folder and cannot become one; {remedy}")
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        # Of a name that nothing else has, if it gets one at all.
+        with TemporaryFile(dir=path):
+            pass
+    except OSError as error:
+        raise ValueError(f"{path} cannot be written ({error}); {remedy}") from error
 
 
 @contextmanager

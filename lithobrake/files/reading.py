@@ -2,6 +2,7 @@
 
 import csv
 import hashlib
+import io
 import json
 import math
 import os
@@ -63,8 +64,14 @@ def open_regular(path: str | PathLike[str]) -> Iterator[BinaryIO]:
     """Open a file to read its bytes. Raises ValueError at once for a pipe or a device, OSError as `open` does."""
     with open(path, "rb", opener=lambda path, flags: os.open(path, flags | getattr(os, "O_NONBLOCK", 0))) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise ValueError(f"{path} is no regular file")
+            raise ValueError("it is no regular file")
         yield file
+
+
+def read_text(path: str | PathLike[str]) -> str:
+    """The text of a file in UTF-8, without a byte order mark. Raises ValueError and OSError as open_regular does."""
+    with open_regular(path) as file:
+        return io.TextIOWrapper(file, encoding="utf-8-sig").read()
 
 
 def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:
@@ -75,9 +82,19 @@ def read_json(path: str | PathLike[str], form: Form, remedy: str) -> Any:
 
 def parsed(text: str | bytes, form: Form) -> Any:
     """The value of a JSON text. Raises ValueError or RecursionError when it is none, or not of the form."""
-    value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite)
+    value = json.loads(text, parse_int=_whole, parse_float=_finite, parse_constant=_finite, object_pairs_hook=unique)
     check(value, form)
     return value
+
+
+def unique(pairs: Iterable[tuple[Any, Any]]) -> dict[Any, Any]:
+    """A table of pairs of a name and a value. Raises ValueError for a name that stands twice."""
+    found: dict[Any, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise ValueError(f"it has {reprlib.repr(name)} twice; write each name once")
+        found[name] = value
+    return found
 
 
 def read_rows(path: str | PathLike[str], columns: Iterable[str], remedy: str) -> list[dict[str, str]]:
@@ -135,6 +152,16 @@ def _finite(text: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{reprlib.repr(text)} is no finite number")
     return value
+
+
+def file_stamp(path: str | PathLike[str]) -> tuple[int, int, int] | None:
+    """What of a file changes when its content does; None where there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    # The inode too, as a file may be replaced by one of the same size within a tick of the clock.
+    return found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def content_hash(path: Path) -> str:

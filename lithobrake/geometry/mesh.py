@@ -14,6 +14,8 @@ Faces = NDArray[np.int64]
 
 # Height of a triangle over its longest edge, below which it has no usable normal; of a body, over its extent.
 FLATTEST = 1e-10
+# A triple product is known to this part of the lengths that it is made of.
+ROUNDING = 16.0 * 2.0**-52
 
 
 def closed_faces(vertices: Vertices, faces: Faces, where: str) -> Faces:
@@ -65,7 +67,7 @@ def mass_properties(vertices: Vertices, faces: Faces) -> tuple[float, NDArray[np
 
 
 def holds_origin(vertices: Vertices, faces: Faces) -> bool:
-    """Tell whether a closed surface goes round the origin: whether it fills more than half of the sky seen from there.
+    """Tell whether a closed surface goes round the origin, not through it: whether it fills the sky seen from there.
 
     Source: [Van-Oosterom-1983].
     """
@@ -74,7 +76,10 @@ def holds_origin(vertices: Vertices, faces: Faces) -> bool:
     triple = np.einsum("fi,fi->f", a, np.cross(b, c))
     base = length_a * length_b * length_c
     base += (a * b).sum(axis=1) * length_c + (b * c).sum(axis=1) * length_a + (c * a).sum(axis=1) * length_b
-    return bool(abs(2.0 * np.arctan2(triple, base).sum()) > 2.0 * np.pi)
+    # A facet through the origin fills no part of the sky; rounding leaves it some height over its plane.
+    through = np.abs(triple) <= ROUNDING * length_a * length_b * length_c
+    filled = np.where(through, 0.0, 2.0 * np.arctan2(triple, base))
+    return bool(abs(filled.sum()) > 3.0 * np.pi)
 
 
 def refuse_malformed(vertices: Vertices, faces: Faces, where: str) -> None:

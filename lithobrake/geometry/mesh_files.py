@@ -7,31 +7,49 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.geometry.mesh_units import UNITS, mesh_unit
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+# Of an area that is none but for the digits of its corners.
+ROUNDING = 1e-9
 
 
 def read_mesh(path: str | os.PathLike[str], unit: str | None = None) -> Mesh:
     """Vertices [m], shape [vertex_count, 3], and faces, shape [facet_count, 3], of a file whose ending READERS has.
 
-    unit: of its lengths; absent: what its header or label says, else m. Raises ValueError as mesh_unit does, and for an
-    unknown ending and a line or length that is not of the format.
+    unit: of its lengths; absent: what its header or label says, else m. Raises ValueError as mesh_unit does, and for a
+    file of another kind, an unknown ending, and a line or length that is not of the format.
     """
     path = Path(path)
-    if path.suffix.lower() not in READERS:
-        raise ValueError(f"{path}: the ending {path.suffix!r} is not read; convert to one of {', '.join(READERS)}.")
     if not path.is_file():
         raise ValueError(f"{path}: no such file.")
+    ending = path.suffix.lower()
+    _refuse_kind(path, ending)
+    if ending not in READERS:
+        raise ValueError(f"{path}: the ending {path.suffix!r} is not read; convert to one of {', '.join(READERS)}.")
     length = UNITS[mesh_unit(path, unit)]
-    vertices, faces = READERS[path.suffix.lower()](path)
+    vertices, faces = READERS[ending](path)
     return vertices * length, faces
+
+
+def _refuse_kind(path: Path, ending: str) -> None:
+    """Raise ValueError for a file whose content is not what its ending stands for."""
+    kind = file_kind(path)
+    endings = ENDINGS.get(kind, ()) if kind else READERS
+    if kind and not endings:
+        raise ValueError(
+            f"{path} is {kind}; meshes are read from OBJ, STL, PDS plates, ICQ and shape kernels: convert."
+        )
+    if kind and ending not in endings:
+        raise ValueError(f"{path} is {kind}, which its ending does not say; allowed: {', '.join(endings)}; rename it.")
 
 
 def _read_obj(path: Path) -> Mesh:
     """Wavefront OBJ: `v` and `f` lines; a polygon is cut into a fan of triangles from its first corner."""
     vertices: list[list[float]] = []
     faces: list[list[int]] = []
+    polygons: list[tuple[int, list[int]]] = []
     for number, line in enumerate(path.read_text(encoding="utf-8-sig", errors="replace").splitlines(), 1):
         words = line.split()
         if not words or words[0].lower() not in ("v", "f"):
@@ -47,10 +65,46 @@ def _read_obj(path: Path) -> Mesh:
         corners = [len(vertices) + corner if corner < 0 else corner - 1 for corner in given]
         if len(corners) < 3:
             raise ValueError(f"{path}: line {number}, {line.strip()!r} has fewer than three corners.")
+        if len(corners) > 3:
+            polygons.append((number, corners))
         faces += [[corners[0], corners[i], corners[i + 1]] for i in range(1, len(corners) - 1)]
     if any(len(vertex) != 3 for vertex in vertices):
         raise ValueError(f"{path}: a vertex has fewer than three coordinates.")
-    return np.array(vertices, dtype=np.float64).reshape(-1, 3), np.array(faces, dtype=np.int64).reshape(-1, 3)
+    found, triangles = np.array(vertices, dtype=np.float64).reshape(-1, 3), _triangles(faces)
+    _refuse_counted_from_0(path, triangles, len(found))
+    _refuse_folded(path, found, polygons)
+    return found, triangles
+
+
+def _triangles(faces: list[list[int]]) -> NDArray[np.int64]:
+    return np.array(faces, dtype=np.int64).reshape(-1, 3)
+
+
+def _refuse_counted_from_0(path: Path, faces: NDArray[np.int64], count: int) -> None:
+    """Raise ValueError for facets, made to count from 0, that did so before."""
+    if len(faces) and faces.min() == -1 and faces.max() < count - 1:
+        raise ValueError(
+            f"{path}: its facets count from 0, to {faces.max() + 1} of {count} vertices; allowed: from 1; add 1 to "
+            "each of their numbers."
+        )
+
+
+def _refuse_folded(path: Path, vertices: NDArray[np.float64], polygons: list[tuple[int, list[int]]]) -> None:
+    """Raise ValueError for a polygon of which a fan of triangles would not cover just the inside.
+
+    polygons: line and corners of each. One triangle that faces the other way than the polygon lies outside of it.
+    """
+    for number, corners in polygons:
+        if not 0 <= min(corners) <= max(corners) < len(vertices):
+            continue
+        ways = vertices[corners[1:]] - vertices[corners[0]]
+        doubled = np.cross(ways[:-1], ways[1:])
+        along = doubled @ doubled.sum(axis=0)
+        if along.min() < -ROUNDING * np.abs(along).max():
+            raise ValueError(
+                f"{path}: line {number} has a facet of {len(corners)} corners that is not convex; allowed: convex "
+                "facets, which are cut into triangles from their first corner; cut it into triangles."
+            )
 
 
 def _read_stl(path: Path) -> Mesh:
@@ -123,6 +177,7 @@ def _read_plates(path: Path) -> Mesh:
         raise ValueError(f"{path}: not a plate model, {error}; {layout}.") from error
     if (len(vertices), len(plates)) != tuple(counts[:2]) or len(rows) != next_row + counts[1]:
         raise ValueError(f"{path}: {len(rows)} lines do not fit {counts[0]} vertices and {counts[1]} plates.")
+    _refuse_counted_from_0(path, plates.reshape(-1, 3), len(vertices))
     return vertices.reshape(-1, 3), plates.reshape(-1, 3)
 
 
@@ -175,4 +230,10 @@ READERS = {
     ".stl": _read_stl,
     **dict.fromkeys((".tab", ".txt", ".icq"), _read_plates),
     **dict.fromkeys((".bds", ".dsk"), _read_kernel),
+}
+# The endings of files that are known by their content.
+ENDINGS = {
+    FileKind.OBJ: (".obj", ".tab", ".txt", ".icq"),
+    FileKind.STL: (".stl",),
+    FileKind.SHAPE_KERNEL: (".bds", ".dsk"),
 }

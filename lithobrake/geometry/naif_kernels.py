@@ -6,6 +6,7 @@ import io
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -32,12 +33,39 @@ NUMBERS = {key: body.kernel_number for key, body in KNOWN_BODIES.items() if body
 OLD_NUMBERS = dict.fromkeys((2065803, 20065803), NUMBERS["didymos"])
 PLATE_MODEL = 2  # data type of a segment
 VERTEX_SIZE, PLATE_SIZE = 24, 12  # in a kernel [bytes]
+# Of a text kernel: what stands between marks, and in it a name with the strings that it is given.
+_DATA = re.compile(rb"^\s*\\begindata\b(.*?)(?:^\s*\\begintext\b|\Z)", re.DOTALL | re.MULTILINE)
+_GIVEN = re.compile(rb"(\w+)\s*\+?=\s*(\((?:'(?:[^']|'')*'|[^')])*\)|'(?:[^']|'')*')")
+_STRING = re.compile(rb"'((?:[^']|'')*)'")
 Plates = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def spice() -> Any:
     """The package spiceypy. Raises ImportError, with how to install it, where it is absent."""
     return extra_library("spiceypy", "spiceypy, which reads the kernels of SPICE,", "spice")
+
+
+def kernel_files(kernels: Sequence[str]) -> list[str]:
+    """All files that are read when these kernels are loaded: they, and those that meta-kernels among them name."""
+    return [path for kernel in kernels for path in (kernel, *_named(kernel))]
+
+
+def _named(kernel: str) -> list[str]:
+    """The files that a meta-kernel names; none of other kernels, and of one that cannot be read."""
+    try:
+        content = Path(kernel).read_bytes()
+    except OSError:
+        return []
+    given: dict[bytes, list[str]] = {}
+    if b"KERNELS_TO_LOAD" in content:
+        for name, value in (pair for data in _DATA.findall(content) for pair in _GIVEN.findall(data)):
+            given.setdefault(name, []).extend(os.fsdecode(one.replace(b"''", b"'")) for one in _STRING.findall(value))
+    # A path that goes on in the next string ends with a plus.
+    paths = re.sub(r"\+\n", "", "\n".join(given.get(b"KERNELS_TO_LOAD", []))).split("\n")
+    symbols = zip(given.get(b"PATH_SYMBOLS", []), given.get(b"PATH_VALUES", []), strict=False)
+    for symbol, value in sorted(symbols, key=lambda pair: -len(pair[0])):
+        paths = [path.replace(f"${symbol}", value) for path in paths]
+    return [path for path in paths if path]
 
 
 class Reply(NamedTuple):
@@ -57,7 +85,7 @@ class Reply(NamedTuple):
 
 
 def read_apart(
-    function: Callable[..., Sequence[Any]], *arguments: str | int | Sequence[str], kernels: Sequence[str]
+    function: Callable[..., Sequence[Any]], *arguments: str | float | Sequence[str | float], kernels: Sequence[str]
 ) -> Reply:
     """What a function of a module gives for these arguments, called in another process.
 
@@ -130,12 +158,11 @@ def spin(kernels: Sequence[str], body: str | int) -> tuple[float, float, float, 
 
 
 def partner(
-    kernels: Sequence[str], body: str | int, partner: str | int, epoch: str
+    kernels: Sequence[str], body: str | int, partner: str | int, time: float
 ) -> tuple[float, float, float, float]:
-    """The numbers of `PartnerPlace` in its order; raises ValueError as `read_partner` does."""
+    """The numbers of `PartnerPlace` in its order at a time of SPICE [s]; raises ValueError as `read_partner` does."""
     with _loaded(kernels) as loaded:
         number, other = _number(loaded, body), _number(loaded, partner)
-        time = loaded.str2et(epoch)
         state = 1e3 * np.array(loaded.spkgeo(other, time, "J2000", number)[0])
         fixed = np.array(loaded.tipbod("J2000", number, time)) @ state[:3]
     distance = float(np.linalg.norm(state[:3]))
@@ -144,13 +171,12 @@ def partner(
     return distance, latitude, math.degrees(math.atan2(fixed[1], fixed[0])), 2.0 * math.pi / rate
 
 
-def places(kernels: Sequence[str], body: str | int, target: str, times: Sequence[str]) -> list[np.ndarray]:
-    """Body-fixed places of a target [m], [time_count, 3], at UTC times; raises ValueError as `read_places` does."""
+def places(kernels: Sequence[str], body: str | int, target: str, times: Sequence[float]) -> list[np.ndarray]:
+    """Body-fixed places of a target [m], [time_count, 3], at times of SPICE [s]; raises ValueError as `read_places`."""
     with _loaded(kernels) as loaded:
         number = _number(loaded, body)
         found = []
-        for text in times:
-            time = loaded.str2et(text)
+        for time in times:
             place = np.array(loaded.spkezp(_number(loaded, target), time, "J2000", "NONE", number)[0])
             found.append(1e3 * (np.array(loaded.tipbod("J2000", number, time)) @ place))
     return [np.array(found)]

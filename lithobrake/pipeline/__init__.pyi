@@ -4,6 +4,7 @@ from .commands.comparison import comparison_lines as comparison_lines
 from .commands.comparison import write_compared as write_compared
 from .commands.one_lander import OneJourney as OneJourney
 from .commands.one_lander import OneLanding as OneLanding
+from .commands.one_lander import energy_gained as energy_gained
 from .commands.one_lander import follow_one as follow_one
 from .commands.one_lander import land_one as land_one
 from .commands.one_lander import landing_inputs as landing_inputs

@@ -17,10 +17,10 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_touchdown.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
-from lithobrake.results.study_files import intact_file
+from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder, StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.units import conversion, input_units, run_units
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import PURE
@@ -116,6 +116,14 @@ class ExpectedInference:
         return [first, *(f"  {name}: {one.words()}" for name, one in self.inputs.items())]
 
 
+def _without_emulator(path: Path, study: Study) -> str:
+    """What is wrong with a folder that has no emulator of first bounces."""
+    lacks = f"{path} has no {EMULATOR_FILE}"
+    if not study.design.run_count:
+        return f"{lacks}, as its study draws no lander (design.run_count is 0); infer from one that draws some"
+    return f"{lacks}; finish the study there with: lithobrake run STUDY.toml --out {path}"
+
+
 @dataclass(frozen=True)
 class InferredStudy:
     """A study that ran, and its emulator."""
@@ -129,17 +137,20 @@ class InferredStudy:
         """Read a study's folder. Raises ValueError where it has no emulator, and for a file that was edited since."""
         from lithobrake.emulator import load
 
-        folder = StudyFolder.only_read(path)
-        if not (folder / EMULATOR_FILE).is_file():
+        folder = FinishedFolder(path)
+        if not (path / STUDY_FILE).is_file():
             raise ValueError(f"{path} has no {EMULATOR_FILE}; run a study there first that draws landers")
         source = folder.source()
-        study = with_site_gravity(source.study, source.name)
+        if not (folder / EMULATOR_FILE).is_file():
+            raise ValueError(_without_emulator(path, source.study))
+        study = with_site_gravity(source.study)
         # The file does not say that a Python function made the touchdowns; then there are no beds.
-        if not all(intact_file(path, name, REMEDY).is_file() for name in bed_files(study)):
+        if not all((folder / name).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
         if why := why_no_emulator(folder.read_json(EMULATOR_FILE)):
-            raise ValueError(f"{path} has no emulator of the first touchdown: {why} Raise design.run_count.")
-        model = load(intact_file(path, EMULATOR_FILE, REMEDY))
+            said = study.as_written("Raise design.run_count.")
+            raise ValueError(f"{path} has no emulator of the first touchdown: {why} {said}")
+        model = load(folder / EMULATOR_FILE)
         _refuse_unbounded(folder / EMULATOR_FILE, model)
         return cls(study, folder, model)
 

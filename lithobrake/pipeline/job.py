@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from lithobrake.campaign import Model
+from lithobrake.campaign.single_run import Model
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder

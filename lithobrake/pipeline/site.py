@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lithobrake.files.reading import hashed_seed
+from lithobrake.files.reading import file_stamp, hashed_seed
 from lithobrake.geometry.attitude import angles, directions
+from lithobrake.geometry.mesh_units import labelled_mesh, mesh_unit
 from lithobrake.study import BUILT_IN_BODIES, Study, StudyError
-from lithobrake.study.checks import settling_problems
+from lithobrake.study.body_checks import partner_warning
+from lithobrake.study.delivered_states import delivery_warning
 from lithobrake.study.delivery_checks import drawn_together
 from lithobrake.study.impact_sections import RotationSection
-from lithobrake.study.quantity import Scalar, Uncertain, median, uncertain, usual_reach
+from lithobrake.study.quantity import Scalar, Uncertain, median, scaled, uncertain, usual_reach
 from lithobrake.vocabulary.constants import DAY, HOUR
-from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.number_words import duration
 
 if TYPE_CHECKING:
@@ -51,6 +52,8 @@ class Site:
         """
         given = {name.removeprefix("site."): value for name, value in self.study.site_values().items()}
         body = _body(self.study)
+        if "density" in given:
+            given["mass"] = scaled(given["density"], body.shape.volume)
         values: dict[str, Scalar] = {"mass": body.mass, "spin_period": body.spin_period, "partner_longitude_deg": 0.0}
         if body.partner is not None and body.orbit.rate != 0.0:
             values["partner_longitude_deg"] = Uncertain("uniform", {"lower": -180.0, "upper": 180.0})
@@ -120,6 +123,17 @@ class Site:
             f"pole by up to {z:.0f} deg from synchronous rotation; landers arrive over {duration(DAY * start.days)}."
         )
 
+    @cached_property
+    def cautions(self) -> tuple[str, ...]:
+        """What the study leaves out, and what it takes for many deliveries where it is one, in sentences."""
+        found = partner_warning(self.study.site), delivery_warning(self.study)
+        return tuple(words for words in found if words is not None)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What to know of the study before its landers fly, in sentences."""
+        return [*self.cautions, *filter(None, (self.warning, self.rotation_words))]
+
     def clock(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """Times at which landers arrive [s], [count], of the partner's motion and of the body's rotation.
 
@@ -157,7 +171,7 @@ class Site:
         return {key: np.full(shape, value) for key, value in self.medians.items()}
 
     @cached_property
-    def _frame(self) -> tuple[np.ndarray, np.ndarray]:
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Origin [m] and axes in their rows, [3, 3], at the medians."""
         origin, axes = self.frames(self.columns(1))
         return origin[0], axes[0]
@@ -165,8 +179,21 @@ class Site:
     @cached_property
     def acceleration(self) -> np.ndarray:
         """Acceleration [m/s2] of a point at rest on the ground there, at medians: along heading, left of it, out."""
-        origin, axes = self._frame
-        felt: np.ndarray = axes @ self.body.effective_acceleration(origin)
+        origin, axes = self.frame
+        felt: np.ndarray = axes @ self._felt(origin)
+        return felt
+
+    def _felt(self, place: np.ndarray) -> np.ndarray:
+        """Acceleration [m/s2], body-fixed, of a point at rest at a place [m], [3], at medians.
+
+        With the tide of a partner that the study gives, where it stands over one place. That of a built-in pair, which
+        is smaller, is left to the touchdowns, so that beds of studies from before it was known stay what they were.
+        """
+        body, given = self.body, self.study.site.partner_body
+        if given is None or body.orbit.rate != 0.0:
+            return body.effective_acceleration(place)
+        columns = self.columns(1)
+        felt: np.ndarray = body.felt(place[None], self.clock(columns), columns["mass"], columns["spin_period"])[0]
         return felt
 
     @property
@@ -176,17 +203,19 @@ class Site:
     @cached_property
     def slope_deg(self) -> float:
         """Slope of the ground there against the plumb line of gravity and rotation together, at medians [deg]."""
-        return math.degrees(float(self.body.slope(self.medians["latitude_deg"], self.medians["longitude_deg"])))
+        if self.study.site.partner_body is None:
+            return math.degrees(float(self.body.slope(self.medians["latitude_deg"], self.medians["longitude_deg"])))
+        return math.degrees(math.acos(-float(self.acceleration[2]) / float(np.linalg.norm(self.acceleration))))
 
     @cached_property
     def escape_speed(self) -> float:
         """Speed [m/s], in axes that do not turn, with which a point there escapes the body alone, at medians."""
-        return math.sqrt(2.0 * float(self.body.potential(self._frame[0])))
+        return math.sqrt(2.0 * float(self.body.potential(self.frame[0])))
 
     @cached_property
     def warning(self) -> str | None:
         """What it means that the ground there does not hold what lies on it, or hardly; None where it does."""
-        outward, pull = float(self.acceleration[2]), float(np.linalg.norm(self.body.acceleration(self._frame[0])))
+        outward, pull = float(self.acceleration[2]), float(np.linalg.norm(self.body.acceleration(self.frame[0])))
         if outward < -NEARLY_NONE * pull:
             return None
         where = f"At the site gravity ({pull:.2g} m/s2) and rotation together"
@@ -222,13 +251,21 @@ class Site:
 
 
 def _body(study: Study) -> "Body":
-    """The body with its built-in mass and spin, or with 1 where it comes from a mesh, which has none."""
+    """The body with its built-in mass and spin or, where it comes from a mesh, with the medians of the study."""
     from lithobrake.smallbody import Body
+    from lithobrake.smallbody.built_in_bodies import ball_partner
 
-    if study.site.body in BUILT_IN_BODIES:
-        return _built_in(study.site.body, study.site.partner, study.site.extents)
-    shape = _read_shape(Path(study.site.body), study.site.unit, study.site.gravity_facets)
-    return Body(shape, mass=1.0, spin_period=1.0)
+    site = study.site
+    if site.body in BUILT_IN_BODIES:
+        return _built_in(site.body, site.partner, site.extents)
+    mesh, given = labelled_mesh(Path(site.body)), study.site_values()
+    # A mesh, or its label, that has changed since is read again.
+    shape = _read_shape(mesh, mesh_unit(mesh, site.unit), site.gravity_facets, file_stamp(mesh))
+    mass = median(given["site.mass"]) if "site.mass" in given else shape.volume * median(given["site.density"])
+    body = Body(shape, mass=mass, spin_period=median(given["site.spin_period"]))
+    if site.partner_body is None:
+        return body
+    return replace(body, partner=ball_partner(body, **site.partner_body.model_dump()))
 
 
 @lru_cache(maxsize=4)
@@ -255,25 +292,36 @@ def _longest_stay(study: Study) -> float:
 
 
 @lru_cache(maxsize=1)
-def _read_shape(path: Path, unit: str | None, gravity_facets: int | None) -> "Shape":
+def _read_shape(path: Path, unit: str, gravity_facets: int | None, _stamp: tuple[int, ...] | None) -> "Shape":
     from lithobrake.smallbody import Shape
 
     return Shape.read(path, unit, gravity_facets=gravity_facets)
 
 
-def with_site_gravity(study: Study, name: str = STUDY_FILE) -> Study:
+def with_site_gravity(study: Study) -> Study:
     """The study with surface.gravity = "site" replaced by the acceleration there; negative points outward.
 
-    Raises StudyError, with the name of the study file, where no bed would settle under it.
+    Raises StudyError where no bed would settle under it.
     """
     if study.surface.gravity != "site":
         return study
-    gravity = -float(Site(study).acceleration[2])
-    problems = [f"{name}: {text}" for text in settling_problems(study, gravity)]
+    site = Site(study)
+    gravity = -float(site.acceleration[2])
     if not math.isfinite(gravity):
-        problems = [
-            f"{name}: surface.gravity: the acceleration at the site is not finite; correct site.mass or its mesh"
-        ]
-    if problems:
-        raise StudyError(problems)
+        raise StudyError([study.said("the acceleration at the site is not finite; correct site.mass or its mesh")])
+    if study.bed.settle_gravity is None and gravity <= 0.0:
+        raise StudyError([study.said(_outward(site, gravity))])
     return study.under_site_gravity(gravity)
+
+
+def _outward(site: Site, gravity: float) -> str:
+    """What is wrong where the rotation throws off what lies at the site; gravity: inward [m/s2]."""
+    period = site.medians["spin_period"]
+    slower = replace(site.body, spin_period=HOUR * period)
+    remedy = "move the site, or give bed.settle_gravity an inward value, say 2e-5 m/s2"
+    if float((site.frame[1] @ slower.effective_acceleration(site.frame[0]))[2]) < 0.0 and period < HOUR:
+        remedy = f"is it in hours? write seconds, {HOUR * period:.6g}"
+    return (
+        f"the spin period (site.spin_period) is {period:.6g} s, and gravity and rotation at the site push outward by "
+        f"{-gravity:.3g} m/s2, and no bed settles under that; {remedy}"
+    )

@@ -1,24 +1,25 @@
 """What landers at rest see of the Sun, of Earth and of an orbiter, and where these stand over the body."""
 
+import os
 from collections.abc import Iterator
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from lithobrake.files.reading import content_hash, hashed_seed, read_rows
+from lithobrake.geometry.naif_kernels import kernel_files
 from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import AGAIN
-from lithobrake.study import Study
+from lithobrake.study import Study, StudyError
 from lithobrake.study.delivered_states import orbiter_states
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.lander_section import OUTWARD
 from lithobrake.study.quantity import Scalar, Uncertain
-from lithobrake.study.question_checks import utc
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.file_names import JOURNEYS_FILE, SKY_FILE
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import SIDES, SKY
@@ -56,15 +57,15 @@ def where_it_stands(study: Study, site: Site, name: SkyBody) -> Days | OrbiterPl
     return Days(np.tile(_dated(study, name, sky_dates(study, DATES)), (count, 1)))
 
 
-def sky_dates(study: Study, count: int) -> list[datetime]:
-    """The date of the study [UTC], or so many over its span."""
+def sky_dates(study: Study, count: int) -> list[Epoch]:
+    """The date of the study, or so many over its span."""
     sky = study.sky
     assert sky.date is not None
-    start = utc(sky.date)
+    start = Epoch.of(sky.date)
     if sky.until is None:
         return [start]
-    span = utc(sky.until) - start
-    return [start + span * ((number + 0.5) / count) for number in range(count)]
+    span = Epoch.of(sky.until).since(start)
+    return [start.after(span * ((number + 0.5) / count)) for number in range(count)]
 
 
 def _drawn(study: Study, name: str, latitude: Scalar) -> Floats:
@@ -79,7 +80,7 @@ def _drawn(study: Study, name: str, latitude: Scalar) -> Floats:
     return drawn
 
 
-def _dated(study: Study, name: str, dates: list[datetime]) -> Floats:
+def _dated(study: Study, name: str, dates: list[Epoch]) -> Floats:
     """Latitudes [deg] over which the Sun or Earth stands at dates, [date_count]."""
     from lithobrake.smallbody import HeliocentricOrbit, latitudes_over
 
@@ -90,15 +91,15 @@ def _dated(study: Study, name: str, dates: list[datetime]) -> Floats:
     assert given is not None
     assert site.pole_right_ascension_deg is not None
     assert site.pole_declination_deg is not None
-    orbit = HeliocentricOrbit(**given.model_dump() | {"epoch": utc(given.epoch)})
+    orbit = HeliocentricOrbit(**given.model_dump() | {"epoch": Epoch.of(given.epoch)})
     return latitudes_over(orbit, site.pole_right_ascension_deg, site.pole_declination_deg, dates)[name]
 
 
-def _of_kernels(study: Study, target: str, dates: list[datetime]) -> Floats:
+def _of_kernels(study: Study, target: str, dates: list[Epoch]) -> Floats:
     """Body-fixed places of a target by the kernels of the study [m], [date_count, 3]."""
     from lithobrake.smallbody import read_places
 
-    texts = [date.isoformat() for date in dates]
+    texts = [date.text() for date in dates]
     return read_places(study.site.kernels, study.site.kernel_body or study.site.body, target, texts)
 
 
@@ -109,11 +110,8 @@ def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     orbiter = study.sky.orbiter
     assert orbiter is not None
     if orbiter.states is not None:
-        states = orbiter_states(study)
-        # Each stands for half the time to its neighbours.
-        ends = np.concatenate([states.time[:1], 0.5 * (states.time[1:] + states.time[:-1]), states.time[-1:]])
-        weight = np.diff(ends)
-        return OrbiterPlaces(states.position, weight / weight.sum())
+        states, weight = orbiter_states(study)
+        return OrbiterPlaces(states.position, weight)
     if orbiter.kernel_name is not None:
         return OrbiterPlaces(
             _of_kernels(study, orbiter.kernel_name, sky_dates(study, PLACES)), np.full(PLACES, 1.0 / PLACES)
@@ -122,6 +120,24 @@ def _orbiter(study: Study, site: Site) -> OrbiterPlaces:
     inclination = 90.0 if orbiter.inclination_deg is None else orbiter.inclination_deg
     place = circle_places(site.body.shape.radius + orbiter.altitude, inclination)
     return OrbiterPlaces(place, np.full(PLACES, 1.0 / PLACES))
+
+
+def refuse_hidden_orbiter(site: Site) -> None:
+    """Raise StudyError for states of an orbiter that lie below the ground."""
+    orbiter, shape = site.study.sky.orbiter, site.body.shape
+    if orbiter is None or orbiter.states is None:
+        return
+    states, _ = orbiter_states(site.study)
+    near = np.flatnonzero(np.linalg.norm(states.position, axis=1) < shape.radius)
+    height = shape.height(states.position[near])
+    if (height < 0.0).any():
+        row = int(np.argmin(height))
+        raise StudyError(
+            [
+                f"sky.orbiter.states: {states.source[near[row]]} lies {-height[row]:.3g} m below the ground; allowed: "
+                "above it; is it counted from the centre of the body, in its own axes and in metres? correct it"
+            ]
+        )
 
 
 def screens(body: "Body", count: int, blocks: int) -> "Iterator[Screen | None]":
@@ -165,12 +181,15 @@ def sky_files(study: Study) -> list[str]:
 
 def sky_dependencies(study: Study) -> Any:
     sky, site = study.sky.model_dump(mode="json"), study.site
-    files = [*(site.kernels if study.sky.date else ()), *([sky["orbiter"]["states"]] if sky["orbiter"] else ())]
+    files = kernel_files(site.kernels) if study.sky.date else []
+    files += [sky["orbiter"]["states"]] if sky["orbiter"] and sky["orbiter"]["states"] else []
     pole = [site.pole_right_ascension_deg, site.pole_declination_deg, site.kernel_body]
     if sky["orbiter"]:
         # The file counts with its content, wherever it lies.
         sky["orbiter"] |= {"states": sky["orbiter"]["states"] is not None}
-    return {"sky": sky, "pole": pole, "files": [content_hash(Path(file)) for file in files if file]}
+    # One that is not there is refused where it is read.
+    hashes = [content_hash(Path(file)) if os.path.isfile(file) else None for file in files]
+    return {"sky": sky, "pole": pole, "files": hashes}
 
 
 def look_up(job: Job) -> None:

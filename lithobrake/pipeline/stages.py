@@ -61,11 +61,13 @@ RUN_PARTS = (
 FLIGHT_PARTS = (
     "pipeline/first_touchdown/flights.py", "pipeline/first_touchdown/run_flights.py",
     "pipeline/first_touchdown/samples.py", "pipeline/site.py", "pipeline/runs/run_table.py", "smallbody", "geometry",
-    "chaos", "vocabulary/constants.py", "vocabulary/known_bodies.py", "vocabulary/quantities.py",
+    "chaos", "vocabulary/clock.py", "vocabulary/constants.py", "vocabulary/known_bodies.py",
+    "vocabulary/quantities.py",
 )  # fmt: skip
 JOURNEY_PARTS = (
     "pipeline/journeys/campaign.py", "pipeline/journeys/landers.py",
-    "pipeline/journeys/first_arrivals.py", "pipeline/journeys/simulated_touchdowns.py", *RUN_PARTS, *FLIGHT_PARTS,
+    "pipeline/journeys/first_arrivals.py", "pipeline/journeys/simulated_touchdowns.py",
+    "study/delivered_states.py", "files/oem_reader.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (
     "pipeline/first_touchdown/emulator.py", "pipeline/first_touchdown/samples.py", "pipeline/runs/energy_bound.py",

@@ -8,10 +8,9 @@ from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.files.atomic import locked, write_json, write_whole
+from lithobrake.files.atomic import locked, make_folder, write_json, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, content_hash, read_json, reading
 from lithobrake.results.study_files import KEYS, LOCK, folder_of_paths, intact_file
 from lithobrake.vocabulary.file_names import STUDY_FILE
@@ -120,13 +119,7 @@ class StudyFolder:
     def __init__(self, path: Path, remedy: str = "choose another folder with --out") -> None:
         """Open or create the folder. Raises ValueError, with the remedy, when it cannot be written."""
         self.path = path
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            # Of a name that nothing else has, if it gets one at all.
-            with TemporaryFile(dir=path):
-                pass
-        except OSError as error:
-            raise ValueError(f"{path} cannot be written ({error}); {remedy}") from error
+        make_folder(path, remedy)
 
     @classmethod
     def only_read(cls, path: Path) -> "StudyFolder":
@@ -261,6 +254,17 @@ def refuse_others_folder(source: "StudySource", out: Path) -> None:
         f"{out} {whose}; {_ANOTHER}, or, if they are one study that was moved, renamed or edited, copy {study} over "
         f"{copy} and give the same command again"
     )
+
+
+class FinishedFolder(StudyFolder):
+    """A folder whose files are read as results: one that changed after it was made is refused."""
+
+    def __init__(self, path: Path) -> None:
+        """Name the folder, in which nothing is made or written."""
+        self.path = path
+
+    def __truediv__(self, name: str) -> Path:
+        return intact_file(self.path, name, REMEDY)
 
 
 def _visible(folder: Path) -> list[str]:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
+from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.external_model import PREFIX
+from lithobrake.campaign.single_run import Model
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.pipeline.answer.run_answers import ANSWERED_AFTER
@@ -21,6 +22,7 @@ from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.sequential_sampling import grow, grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sky_at_rest import refuse_hidden_orbiter
 from lithobrake.pipeline.stages import stages_until
 from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.report.plotted_study import PlottedStudy
@@ -105,11 +107,12 @@ def run_study(
     with outputs.
     """
     shown = shown or Silent()
-    study = with_site_gravity(source.study, source.name)
+    study = with_site_gravity(source.study)
     # Refuses a stage that the method does not have, before anything is made.
     stages_until(study, until)
     drawn = DrawnDesign(study)
-    Soils(drawn.site).refuse(source.name)
+    Soils(drawn.site).refuse()
+    refuse_hidden_orbiter(drawn.site)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)
     folder = StudyFolder(out)

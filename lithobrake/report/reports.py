@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lithobrake.files.atomic import write_whole
+from lithobrake.files.atomic import make_folder, write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
 from lithobrake.report.figures.site_figures import agreement_figure, sites_figure
@@ -71,7 +71,7 @@ def drawn_panels(
 
     Returns by name of the plot its panel and the names of its files, none where there is nothing to draw.
     """
-    place.mkdir(parents=True, exist_ok=True)
+    make_folder(place)
     panels: dict[str, tuple[Panel, list[str]]] = {}
     number = 0
     for done, plot in enumerate(plots):

@@ -32,7 +32,7 @@ _FAILED = "failed"
 class TouchdownFacts:
     """A touchdown of a journey in numbers.
 
-    number: in its journey, from 0. begin, end: since the first touchdown [s]. speed [m/s], incidence_deg from the
+    number: in its journey, from 0. begin, end: since delivery [s]. speed [m/s], incidence_deg from the
     surface normal: of the impact. outcome: how it ended. speed_out [m/s]: None unless the lander flies on.
     latitude_deg, longitude_deg: of the impact.
     """
@@ -48,13 +48,16 @@ class TouchdownFacts:
     longitude_deg: float
 
     @classmethod
-    def of(cls, row: Mapping[str, Any]) -> "TouchdownFacts":
-        """Those of a row of touchdowns, by the names of the table `touchdowns` of a study's results."""
+    def of(cls, row: Mapping[str, Any], descent: float) -> "TouchdownFacts":
+        """Those of a row of touchdowns, by the names of the table `touchdowns` of a study's results.
+
+        descent: time from delivery to the first touchdown [s], from which the table counts.
+        """
         left = row["outcome"] == TouchdownOutcome.CLEAR
         return cls(
             number=int(row["touchdown"]),
-            begin=float(row["begin_s"]),
-            end=float(row["end_s"]),
+            begin=descent + float(row["begin_s"]),
+            end=descent + float(row["end_s"]),
             speed=float(row[IMPACT_SPEED]),
             incidence_deg=float(row[IMPACT_INCIDENCE]),
             outcome=str(row["outcome"]) or _FAILED,
@@ -106,7 +109,8 @@ class JourneyTrack:
     """Where one lander went, in what order, and how it ended.
 
     row: of the table `journeys`, nothing where it has nothing. aim: latitude and longitude of the aim point [deg];
-    radius: of the body there [m]; vertices of the body [m], shape [vertex, 3], body-fixed.
+    radius: of the body there [m]; vertices of the body [m], shape [vertex, 3], body-fixed. descent: time from delivery
+    to the first touchdown [s].
     """
 
     row: Mapping[str, Any]
@@ -114,6 +118,7 @@ class JourneyTrack:
     aim: tuple[float, float]
     radius: float
     vertices: "NDArray[np.float64]"
+    descent: float
     __repr__ = short_repr
 
     @property
@@ -146,7 +151,7 @@ class JourneyTrack:
     def end_words(self) -> str:
         """How, when and where it ended, after how many contacts, and how the lander lies, in a sentence."""
         contacts, touchdowns = int(self.row["contacts"]), len(self.touchdowns)
-        said = f"{self.end.label.capitalize()} {duration(self.row['time_s'])} after delivery, after "
+        said = f"{self.end.label.capitalize()} {duration(self.descent + self.row['time_s'])} after delivery, after "
         said += f"{counted(contacts, 'contact')} in {counted(touchdowns, 'touchdown')}"
         if self.end_place is not None:
             latitude, longitude = self.end_place
@@ -217,12 +222,22 @@ class StudyJourney:
 
 
 def track_of(
-    row: Mapping[str, Any], touchdowns: "Table", site: "SiteResults", vertices: "NDArray[np.float64]"
+    row: Mapping[str, Any], touchdowns: "Table", arcs: "Table", site: "SiteResults", vertices: "NDArray[np.float64]"
 ) -> JourneyTrack:
-    """The track of a journey: its row of `journeys`, its touchdowns, the aim point, and the body [m], [vertex, 3]."""
+    """The track of a journey: its row of `journeys`, its touchdowns and flights, the aim point, and the body [m],
+    [vertex, 3].
+    """
     rows = [{name: touchdowns[name][one] for name in touchdowns} for one in range(touchdowns.row_count)]
-    aim = site.latitude_deg, site.longitude_deg
-    return JourneyTrack(row, tuple(map(TouchdownFacts.of, rows)), aim, math.hypot(*site.place_m), vertices)
+    descent = descent_time(arcs["begin_s"].tolist())
+    facts = tuple(TouchdownFacts.of(one, descent) for one in rows)
+    return JourneyTrack(
+        row, facts, (site.latitude_deg, site.longitude_deg), math.hypot(*site.place_m), vertices, descent
+    )
+
+
+def descent_time(begins: Sequence[float]) -> float:
+    """Time from delivery to the first touchdown [s]: begins of the flights of a journey count from that touchdown."""
+    return max(-begins[0], 0.0) if begins else 0.0
 
 
 def _part(progress: Progress, number: int, count: int) -> Progress:

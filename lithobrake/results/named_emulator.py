@@ -149,32 +149,15 @@ class NamedEmulator:
         return f"give all of: {self._shown(self.inputs)}"
 
     def _upper(self, x: np.ndarray) -> np.ndarray:
-        """Upper bounds [point_count, output_count]: what energy allows, where the runs' bounds differ with it."""
+        """Upper bounds [point_count, output_count]: what energy allows, where the runs are bounded by it."""
         runs = self.model.runs
         upper = np.tile(runs.upper[0], (len(x), 1))
-        if (runs.upper != runs.upper[0]).any():
-            columns = [self.model.output_names.index(name) for name in (SPEED, SPIN)]
-            upper[:, columns] = self._energy_bound(x)
+        columns = [self.model.output_names.index(name) for name in (SPEED, SPIN) if name in self.model.output_names]
+        if columns and np.isfinite(upper[:, columns]).all():
+            upper[:, columns] = allowed_motion(
+                self._bound(), dict(zip(self.model.runs.inputs, x.T, strict=True)), len(x)
+            )
         return upper
-
-    def _energy_bound(self, x: np.ndarray) -> np.ndarray:
-        """Largest speed [m/s] and spin [rad/s] of landers that leave, [point_count, 2].
-
-        As in the explorer of the report: energy of the impact, and what gravity adds over the bed and across it.
-        """
-        bound = self._bound()
-        known = {name: np.full(len(x), value) for name, value in bound.items()}
-        known |= dict(zip(self.model.runs.inputs, x.T, strict=True))
-
-        def ratio(name: str) -> np.ndarray:
-            return known[name] / bound[name] if bound.get(name) else np.ones(len(x))
-
-        power = ratio("lander.mass") ** bound["mass_power"] * ratio("lander.diameter") ** bound["diameter_power"]
-        spin = sum(known[f"impact.spin_{axis}"] ** 2 for axis in "xyz")
-        fall = bound["height"] + bound["across"] * np.sin(np.radians(known["surface.slope_deg"]))
-        square = known[IMPACT_SPEED] ** 2 + bound["largest"] * power * spin
-        square = square + 2.0 * np.abs(known["surface.gravity"]) * fall
-        return np.column_stack([np.sqrt(square), np.sqrt(square / (bound["smallest"] * power))])
 
     def _outputs(self, y: np.ndarray, upper: np.ndarray) -> dict[str, np.ndarray]:
         """Outputs by name [row_count] of samples [row_count, output_count] below bounds; velocity and spin follow."""
@@ -195,6 +178,27 @@ class NamedEmulator:
             axis *= (found[SPIN] / np.where(length > 0.0, length, math.inf))[:, None]
             found |= dict(zip(SPIN_OUT, axis.T, strict=True))
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
+
+
+def allowed_motion(bound: Mapping[str, float], values: Mapping[str, np.ndarray], count: int) -> np.ndarray:
+    """Largest speed [m/s] and spin [rad/s] that energy allows landers that leave, [count, 2].
+
+    bound: as of `ExplorerTables`; values: of inputs by dotted key, [count] each, in the place of its medians. As in the
+    explorer of the report: energy of the impact, and what gravity adds over the bed and along its slope.
+    """
+    known = {name: np.full(count, value) for name, value in bound.items()} | dict(values)
+
+    def ratio(name: str) -> np.ndarray:
+        return known[name] / bound[name] if bound.get(name) else np.ones(count)
+
+    power = ratio("lander.mass") ** bound["mass_power"] * ratio("lander.diameter") ** bound["diameter_power"]
+    spin = sum(known[f"impact.spin_{axis}"] ** 2 for axis in "xyz")
+    slope, gravity = np.sin(np.radians(known["surface.slope_deg"])), np.abs(known["surface.gravity"])
+    limit = bound["time_limit"]
+    downhill = known[IMPACT_SPEED] * limit + 0.5 * gravity * slope * limit**2
+    fall = bound["height"] + (bound["across"] + downhill) * slope
+    square = known[IMPACT_SPEED] ** 2 + bound["largest"] * power * spin + 2.0 * gravity * fall
+    return np.column_stack([np.sqrt(square), np.sqrt(square / (bound["smallest"] * power))])
 
 
 class NamedSurrogate:

@@ -104,6 +104,8 @@ class SiteResults:
     """how far the body turns away from uniform rotation, in a sentence; null where it turns uniformly"""
     gravity_warning: str | None
     """how touchdowns and site differ in acceleration, in a sentence; null if they agree"""
+    cautions: tuple[str, ...] = ()
+    """what the study leaves out, or takes for many where it is one, in sentences"""
     __repr__ = short_repr
 
     @property

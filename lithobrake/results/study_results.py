@@ -108,7 +108,8 @@ class StudyResults(StudyTables):
         # Journeys are numbered as their rows.
         row = {name: self.journeys[name][number] for name in self.journeys}
         touchdowns = self.touchdowns.where(self.touchdowns["journey"] == number)
-        track = track_of(row, touchdowns, self.results.site, self.body_shape[0])
+        arcs = self.arcs.where(self.arcs["sample"] == number)
+        track = track_of(row, touchdowns, arcs, self.results.site, self.body_shape[0])
         return StudyJourney(track, touchdowns, self.landing, self.landing_bodies)
 
     def bed_bodies(self, number: int = 0) -> "MovingBodies":

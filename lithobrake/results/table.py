@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 # Rows that a notebook shows.
 SHOWN = 10
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 NAMES = ("input_names", "output_names", "outcome_names")
 
 

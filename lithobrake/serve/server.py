@@ -14,6 +14,10 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
 from typing import Any
 
+from lithobrake.files.reading import unique
+
+LARGEST_FLOAT = sys.float_info.max
+
 # Requests that are read or wait for their turn; further clients are turned away.
 MOST_CLIENTS = 256
 # A client that sends or takes nothing for so long is left alone [s].
@@ -230,7 +234,9 @@ def _point(model: ServedModel, given: Any) -> list[float]:
             f"{', '.join(model.inputs)}",
         )
     numbers = given[0]
-    if not all(isinstance(one, int | float) and not isinstance(one, bool) and abs(one) < 1e300 for one in numbers):
+    if not all(
+        isinstance(one, int | float) and not isinstance(one, bool) and abs(one) <= LARGEST_FLOAT for one in numbers
+    ):
         raise RequestError("InvalidInput", f"input of model {model.name} is {numbers}; allowed: finite numbers")
     return [float(number) for number in numbers]
 
@@ -274,7 +280,7 @@ class _Handler(BaseHTTPRequestHandler):
         if len(body) < int(length):
             raise ClientGoneError
         try:
-            content = json.loads(body)
+            content = json.loads(body, object_pairs_hook=unique)
         except (ValueError, RecursionError) as error:
             raise RequestError("InvalidInput", f"the request is not JSON ({error})") from error
         if not isinstance(content, dict) or not isinstance(content.get("config", {}), dict):

@@ -9,12 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lithobrake.files.reading import file_stamp
 from lithobrake.geometry import naif_kernels
 from lithobrake.geometry.attitude import quaternion_products, rotation_matrices
 from lithobrake.geometry.naif_kernels import Reply, read_apart
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.rotation import AttitudeHistory
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 Rates = tuple[float, ...]
@@ -25,6 +27,8 @@ STEP_ANGLE = 0.02
 TOLERANCE = 1e-10
 # Of a step of the integration [rad]; longer ones would make rounding grow where the body hardly moves.
 LONGEST_ANGLE = 0.5
+# Of a history [s], thirty years: of a body that turns in two hours it has a million and a half attitudes a year.
+LONGEST = 1e9
 
 
 def rotation_history(
@@ -49,7 +53,7 @@ def rotation_history(
     """
     from scipy.integrate import solve_ivp
 
-    duration = finite_number("duration", duration, above=0.0)
+    duration = finite_number("duration", duration, above=0.0, at_most=LONGEST)
     angles = [
         math.radians(finite_number(name, angle, at_least=-360.0, at_most=360.0))
         for name, angle in (("yaw_deg", yaw_deg), ("pitch_deg", pitch_deg), ("roll_deg", roll_deg))
@@ -185,12 +189,12 @@ def read_spin(kernels: Sequence[str | os.PathLike[str]], body: str | int) -> Spi
 def read_partner(
     kernels: Sequence[str | os.PathLike[str]], body: str | int, partner: str | int, epoch: str
 ) -> PartnerPlace:
-    """Where the partner of a body stands at an epoch, a text that SPICE takes, as 2026-11-22T12:00:00 (UTC).
+    """Where the partner of a body stands at an epoch (UTC), as 2026-11-22T12:00:00.
 
-    kernels: an ephemeris (SPK) of both, constants (PCK) of the body, and leap seconds (LSK).
-    Raises ValueError where these lack what is asked for.
+    kernels: an ephemeris (SPK) of both, and constants (PCK) of the body.
+    Raises ValueError where these lack what is asked for, and for an epoch that is none.
     """
-    return PartnerPlace(*_numbers(naif_kernels.partner, kernels, body, partner, epoch))
+    return PartnerPlace(*_numbers(naif_kernels.partner, kernels, body, partner, _time_of_spice(epoch)))
 
 
 def read_places(
@@ -198,19 +202,26 @@ def read_places(
 ) -> NDArray[np.float64]:
     """Places of a target, the Sun, Earth or a spacecraft, in the axes of a body [m], [time_count, 3], at UTC times.
 
-    kernels: ephemerides (SPK) of both, constants (PCK) of the body, and leap seconds (LSK).
-    Raises ValueError where these lack what is asked for.
+    kernels: ephemerides (SPK) of both, and constants (PCK) of the body.
+    Raises ValueError where these lack what is asked for, and for a time that is none.
     """
     paths = tuple(os.fspath(kernel) for kernel in kernels)
-    reply = _reply(naif_kernels.places, paths, tuple(_stamp(path) for path in paths), body, target, tuple(times))
+    reply = _reply(naif_kernels.places, paths, _stamps(paths), body, target, tuple(map(_time_of_spice, times)))
     return np.array(reply.unpacked()[0])
 
 
+def _time_of_spice(epoch: str) -> float:
+    try:
+        return Epoch.of(epoch).ephemeris_time
+    except ValueError as error:
+        raise ValueError(f"epoch {error}") from error
+
+
 def _numbers(
-    function: Callable[..., Any], kernels: Sequence[str | os.PathLike[str]], *arguments: str | int
+    function: Callable[..., Any], kernels: Sequence[str | os.PathLike[str]], *arguments: str | float
 ) -> list[float]:
     paths = tuple(os.fspath(kernel) for kernel in kernels)
-    reply = _reply(function, paths, tuple(_stamp(path) for path in paths), *arguments)
+    reply = _reply(function, paths, _stamps(paths), *arguments)
     return [float(value) for value in reply.unpacked(stacklevel=3)]
 
 
@@ -220,17 +231,11 @@ def _reply(
     function: Callable[..., Any],
     paths: tuple[str, ...],
     _stamps: tuple[Any, ...],
-    *arguments: str | int | tuple[str, ...],
+    *arguments: str | float | tuple[float, ...],
 ) -> Reply:
     # The stamps are only part of the key: files that have changed are read again.
     return read_apart(function, paths, *arguments, kernels=paths)
 
 
-def _stamp(path: str) -> tuple[int, int, int] | None:
-    """What of a file changes when its content does; None where there is none."""
-    try:
-        found = os.stat(path)
-    except OSError:
-        return None
-    # The inode too, as a file may be replaced by one of the same size within a tick of the clock.
-    return found.st_ino, found.st_size, found.st_mtime_ns
+def _stamps(kernels: tuple[str, ...]) -> tuple[Any, ...]:
+    return tuple(map(file_stamp, naif_kernels.kernel_files(kernels)))

@@ -1,7 +1,9 @@
 """Built-in bodies, generated from published extents."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +62,35 @@ def built_in_body(name: str, *, partner: bool = True, extents: Sequence[float] |
     assert known.orbit_period is not None
     other = Partner(_alone(BUILT_IN_BODIES[known.partner]), period=known.orbit_period, longitude_deg=0.0)
     return replace(_alone(known, extents), partner=other)
+
+
+@lru_cache(maxsize=8)
+def ball_partner(
+    body: Body, name: str, mass: float, diameter: float, *, period: float | None = None, distance: float | None = None
+) -> Partner:
+    """A partner of a body: a ball of a mass [kg] and a diameter [m] on a circle, which always shows it one face.
+
+    The orbit is given by its period [s], or by the distance of the centres [m]; with neither, the body keeps one face
+    to its partner.
+    """
+    ball = Body(_ball(diameter, name), mass, body.spin_period, name)
+    if distance is not None:
+        # The orbit of Partner, the other way round.
+        flattened = 1.0 + 1.5 * (body.flattening + ball.flattening) / distance**2
+        total = body.gravitational_parameter + ball.gravitational_parameter
+        period = 2.0 * math.pi * math.sqrt(distance**3 / (total * flattened))
+    period = body.spin_period if period is None else period
+    return Partner(replace(ball, spin_period=period), period=period, longitude_deg=0.0)
+
+
+def _ball(diameter: float, name: str) -> Shape:
+    """A ball of facets whose volume and moments of inertia are those of one of a diameter [m]."""
+    round_one = top_shape((diameter,) * 3, 0.0, name=name)
+    # Rows of facets are not spread evenly over latitudes, so it is flattened by a thousandth.
+    first, second, third = np.diag(round_one.inertia_per_density)
+    stretch = math.sqrt((second + third - first) / (first + second - third))
+    size = (math.pi / 6.0 * diameter**3 / (stretch * round_one.volume)) ** (1.0 / 3.0)
+    return Shape(round_one.vertices * (size * np.array([1.0, 1.0, stretch])), round_one.faces, name=name)
 
 
 def _alone(known: KnownBody, extents: Sequence[float] | None = None) -> Body:

@@ -22,6 +22,7 @@ from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_nu
 
 CHUNK = 1024  # flights that a thread takes at a time
 FARTHEST = 1e20  # of a start, in m and in m/s
+LATEST = 1e12  # of a start [s]: its last digit is 1e-4 s, in which a body hardly turns
 SPEED_OF_LIGHT = 299_792_458.0  # m/s
 
 
@@ -68,7 +69,7 @@ def fly(
     a million steps, some 40 000 circuits near the surface at the default tolerance.
     """
     starts = _starts(position, velocity)
-    begin = _one_each("start_time", start_time, len(starts))
+    begin = _one_each("start_time", start_time, len(starts), most=LATEST)
     times = _one_each("duration", duration, len(starts))
     if not (times > 0.0).all():
         raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
@@ -159,14 +160,16 @@ def _refuse_relativistic(radius: float, mass: NDArray[np.float64], spin_period: 
 
 
 def _one_each(
-    name: str, given: ArrayLike, count: int, unit: str = "s", *, infinite: bool = False
+    name: str, given: ArrayLike, count: int, unit: str = "s", *, infinite: bool = False, most: float = np.inf
 ) -> NDArray[np.float64]:
-    """A number a flight. Raises ValueError where there is another count of them, or one is not finite."""
+    """A number a flight. Raises ValueError where there is another count of them, or one is not finite, or too large."""
     values = numbers(name, given)
     if values.shape not in ((), (1,), (count,)):
         raise ValueError(f"{name} has shape {values.shape} for {count} flights; give one number, or one a flight.")
     if not (~np.isnan(values) if infinite else np.isfinite(values)).all():
         raise ValueError(f"{name} is {given!r} {unit}; it must be finite.")
+    if (np.abs(values) > most).any():
+        raise ValueError(f"{name} is {given!r} {unit}; it must be from {-most:g} to {most:g} {unit}.")
     # A copy, since kernels would be compiled anew for an array of other strides that cannot be written.
     return np.array(np.broadcast_to(values, count))
 

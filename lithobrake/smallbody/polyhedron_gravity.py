@@ -15,6 +15,8 @@ from lithobrake.vocabulary.array_types import Floats
 # Rows of a block of points: `lane[row * LANES + j]` belongs to point j. The first three are read, the others written.
 X, Y, Z, PULL_X, PULL_Y, PULL_Z, POTENTIAL, SOLID_ANGLE = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS = 8
+# A height over the plane of a facet is known to this part of the coordinates that it is made of.
+ROUNDING = 16.0 * 2.0**-52
 
 
 class PolyhedronTerms(NamedTuple):
@@ -120,6 +122,7 @@ def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedr
         bx, by, bz = vertices[b, 0], vertices[b, 1], vertices[b, 2]
         cx, cy, cz = vertices[c, 0], vertices[c, 1], vertices[c, 2]
         nx, ny, nz, area = terms[f, 0], terms[f, 1], terms[f, 2], terms[f, 3]
+        size = abs(ax) + abs(ay) + abs(az)
         first = distance[a * LANES : a * LANES + LANES]
         second = distance[b * LANES : b * LANES + LANES]
         third = distance[c * LANES : c * LANES + LANES]
@@ -136,12 +139,14 @@ def _add_facets(lane: Floats, count: int, distance: Floats, polyhedron: Polyhedr
             # r1.(r2 x r3) is the height over the facet's plane times twice the area. In that plane the angle jumps
             # between two values; their mean, zero, makes the sum on a facet the mean of inside and outside.
             solid = 2.0 * angle(height * area, below) if height != 0.0 else 0.0
+            # Of a point on a facet that is no plane of the axes rounding leaves a height, which counts as none.
+            filled = solid if abs(height) > ROUNDING * (size + d1) else 0.0
             pull = solid * height
             lane[PULL_X * LANES + j] = fma(pull, nx, lane[PULL_X * LANES + j])
             lane[PULL_Y * LANES + j] = fma(pull, ny, lane[PULL_Y * LANES + j])
             lane[PULL_Z * LANES + j] = fma(pull, nz, lane[PULL_Z * LANES + j])
             lane[POTENTIAL * LANES + j] -= pull * height
-            lane[SOLID_ANGLE * LANES + j] += solid
+            lane[SOLID_ANGLE * LANES + j] += filled
 
 
 @compiled

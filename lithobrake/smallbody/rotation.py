@@ -208,8 +208,10 @@ class AttitudeHistory:
         return x, y, z
 
     def at(self, time: ArrayLike) -> Attitudes:
-        """Attitudes at times [s], [count]."""
-        part = np.atleast_1d(np.asarray(time, dtype=np.float64)) / self.step
+        """Attitudes at times [s], [count]. Raises ValueError for times out of the history by more than a step."""
+        part = np.atleast_1d(numbers("time", time)) / self.step
+        if not ((part >= -1.0) & (part <= len(self.attitude))).all():
+            raise ValueError(f"time is {time!r} s; allowed: 0 to {self.duration:.9g} s, for which attitudes are known.")
         states = self.turning.states
         interval = np.clip(part.astype(np.int64), 0, len(states) - 2)
         quaternion, spin, change = _curve(states, self.step, interval, part - interval)

@@ -248,10 +248,12 @@ class Shape:
         return height.reshape(p.shape[:-1]), facet.reshape(p.shape[:-1])
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Whether body-fixed points [m], shape [..., 3], lie inside, by the solid angle that the surface fills."""
+        """Whether body-fixed points [m], shape [..., 3], lie inside, and not on a facet, by the solid angle around them
+        that the surface fills.
+        """
         p = checked_points(self.name, points)
-        # Halfway between 0 outside and 4 pi inside, far above the rounding of the sum.
-        inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 2.0 * np.pi
+        # Halfway between 2 pi on a facet and 4 pi inside, far above the rounding of the sum.
+        inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 3.0 * np.pi
         return inside.reshape(p.shape[:-1])
 
 

@@ -1,7 +1,7 @@
 """What a place on the ground sees of the sky, and where Sun and Earth stand over a small body."""
 
 from collections.abc import Sequence
-from datetime import datetime
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +12,10 @@ from lithobrake.geometry.naif_kernels import spice
 from lithobrake.smallbody.facet_grid import intersect_facet
 from lithobrake.smallbody.shape import Shape
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.constants import DAY
 from lithobrake.vocabulary.extra_library import extra_library
-from lithobrake.vocabulary.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Directions in a day: rise and set are known to half of one each, a fraction of the day to one over this.
 DIRECTIONS = 144
@@ -26,8 +27,8 @@ EYE = 1e-6
 EVEN = 0.5 * (1.0 + 5.0**0.5)
 # Attraction of the Sun [km3/s2], nominal, and the astronomical unit [km]. Source: [Prsa-2016], [IAU-2012].
 SUN, ASTRONOMICAL_UNIT = 1.327_124_4e11, 149_597_870.7
-# Julian date of the epoch of J2000, and the same as a date.
-J2000, AT_J2000 = 2_451_545.0, datetime(2000, 1, 1, 12)
+# Julian date of the epoch of J2000.
+J2000 = 2_451_545.0
 
 
 class Screen(NamedTuple):
@@ -58,7 +59,10 @@ def circle_places(radius: float, inclination_deg: float) -> NDArray[np.float64]:
     """Places on a circular orbit [m], body-fixed, [PLACES, 3]: any phase of it with any longitude of its node alike.
 
     So a long time is, over which the body turns below the orbit. radius [m]; inclination to the body's equator [deg].
+    Raises ValueError for a radius that is not above 0, and an inclination beyond 0 to 180 degrees.
     """
+    radius = finite_number("radius", radius, above=0.0)
+    inclination_deg = finite_number("inclination_deg", inclination_deg, at_least=0.0, at_most=180.0)
     phase, inclination = 2.0 * np.pi * (np.arange(PLACES) + 0.5) / PLACES, np.radians(inclination_deg)
     x, across = np.cos(phase), np.sin(phase)
     node = 2.0 * np.pi * (np.arange(PLACES) * EVEN % 1.0)
@@ -129,8 +133,12 @@ def _take_out_hidden(
                         seen[p, d] = False
 
 
-class HeliocentricOrbit(NamedTuple):
-    """Osculating elements, ecliptic and equinox of J2000: semi-major axis [AU], eccentricity, angles [deg] and date."""
+@dataclass(frozen=True)
+class HeliocentricOrbit:
+    """Osculating elements, ecliptic and equinox of J2000: semi-major axis [AU], eccentricity, angles [deg], epoch.
+
+    Raises ValueError for an orbit that is not closed, numbers that are not finite, and what is no epoch.
+    """
 
     semi_major_axis_au: float
     eccentricity: float
@@ -138,9 +146,17 @@ class HeliocentricOrbit(NamedTuple):
     node_deg: float
     perihelion_deg: float
     mean_anomaly_deg: float
-    epoch: datetime
+    epoch: Epoch
 
-    def place(self, dates: Sequence[datetime]) -> Floats:
+    def __post_init__(self) -> None:
+        finite_number("semi_major_axis_au", self.semi_major_axis_au, above=0.0)
+        finite_number("eccentricity", self.eccentricity, at_least=0.0, below=1.0)
+        for name in ("inclination_deg", "node_deg", "perihelion_deg", "mean_anomaly_deg"):
+            finite_number(name, getattr(self, name), at_least=-360.0, at_most=360.0)
+        if not isinstance(self.epoch, Epoch):
+            raise ValueError(f"epoch is {self.epoch!r}, but must be an Epoch")
+
+    def place(self, dates: Sequence[Epoch]) -> Floats:
         """Heliocentric places [AU] along ICRF, [date_count, 3], by Kepler's equation as SPICE solves it.
 
         Raises ImportError without spiceypy.
@@ -149,23 +165,23 @@ class HeliocentricOrbit(NamedTuple):
         angles = np.radians([self.inclination_deg, self.node_deg, self.perihelion_deg, self.mean_anomaly_deg])
         nearest = self.semi_major_axis_au * ASTRONOMICAL_UNIT * (1.0 - self.eccentricity)
         elements = [nearest, self.eccentricity, *angles, 0.0, SUN]
-        states = [library.conics(elements, (date - self.epoch).total_seconds())[:3] for date in dates]
+        states = [library.conics(elements, date.since(self.epoch))[:3] for date in dates]
         return np.array(states) @ np.array(library.pxform("ECLIPJ2000", "J2000", 0.0)).T / ASTRONOMICAL_UNIT
 
 
-def earth_place(dates: Sequence[datetime]) -> Floats:
-    """Heliocentric places of Earth [AU] along ICRF, [date_count, 3]; UTC stands for TDB, a minute that moves it little.
+def earth_place(dates: Sequence[Epoch]) -> Floats:
+    """Heliocentric places of Earth [AU] along ICRF, [date_count, 3].
 
     Raises ImportError without pyerfa. Source: [Moisson-2001], as ERFA shortens it (epv00).
     """
-    days = np.array([(date - AT_J2000).total_seconds() / DAY for date in dates])
+    days = np.array([date.ephemeris_time / DAY for date in dates])
     erfa = extra_library("erfa", "pyerfa, which knows where Earth is,", "spice")
     heliocentric, _ = erfa.epv00(J2000, days)
     return np.array(heliocentric["p"])
 
 
 def latitudes_over(
-    orbit: HeliocentricOrbit, pole_right_ascension_deg: float, pole_declination_deg: float, dates: Sequence[datetime]
+    orbit: HeliocentricOrbit, pole_right_ascension_deg: float, pole_declination_deg: float, dates: Sequence[Epoch]
 ) -> dict[str, Floats]:
     """Latitudes [deg], [date_count], over which Sun and Earth stand, by name; the pole of the body is along ICRF."""
     body = orbit.place(dates)

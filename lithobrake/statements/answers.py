@@ -42,6 +42,7 @@ def study_answer(scope: Scope, results: "Results") -> list[str]:
         *(one.statement for one in results.limit_states.values()),
         *([results.emulated.statement] if results.emulated and results.emulated.statement else []),
         *([results.aim.statement] if results.aim else []),
+        *results.site.cautions,
         *results.site.sentences,
     ]
 
@@ -118,13 +119,14 @@ def page_details(data: "PageData") -> str:
 def page_warnings(data: "PageData") -> list[str]:
     """What makes the numbers of the page weaker than they look; to rest, warnings of runs are of first touchdowns."""
     results = data.results
+    cautions = list(results.site.cautions)
     if data.journeys is None:
-        return []
+        return cautions
     of_runs = landing_warnings(results, results.emulator.warning if results.emulator else None)
     if data.to_rest:
         of_runs = [f"Of the first touchdown alone: {words[:1].lower()}{words[1:]}" for words in of_runs]
         of_runs = [*([results.site.warning] if results.site.warning else []), *of_runs]
-    return [*of_runs, *rare_warnings(data.rare)]
+    return [*cautions, *of_runs, *rare_warnings(data.rare)]
 
 
 @dataclass(frozen=True)

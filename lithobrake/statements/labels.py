@@ -246,8 +246,11 @@ def smallest_region(one: "RestRegion", of: str) -> str:
 
 
 def extent(one: "RestRegion") -> str:
-    """How far apart the ends of a region are."""
-    return f"{two_digits(one.largest_extent_m)} m across"
+    """How far apart the ends of a region are, and those of the largest of its islands."""
+    words, islands = f"{two_digits(one.largest_extent_m)} m across", one.island_extents_m
+    if len(islands) < 2:
+        return words
+    return f"{words} in {len(islands)} separate parts, the largest of which is {two_digits(islands[0])} m across"
 
 
 def region(one: "RestRegion", of: str) -> str:

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.geometry.mesh_units import UNITS, labelled_mesh, mesh_unit
-from lithobrake.study.impact_sections import SiteSection, kernel_problems
-from lithobrake.study.quantity import Scalar, usual_reach
+from lithobrake.study.impact_sections import RotationSection, SiteSection, kernel_problems
+from lithobrake.study.quantity import Scalar, median, usual_reach
 from lithobrake.study.study import Study
-from lithobrake.vocabulary.constants import DAY
-from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES, KNOWN_BODIES
+from lithobrake.vocabulary.constants import DAY, GRAVITATIONAL_CONSTANT
+from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES, body_named_in
 from lithobrake.vocabulary.plain_text import closest, show
 
 # Bulk density [kg/m3]: nuclei of comets are near 500 (67P: 533, Paetzold et al. 2016, Nature 530), iron-nickel is 7900.
@@ -21,9 +21,14 @@ LIGHTEST, HEAVIEST = 300.0, 8000.0
 SMALLEST, LARGEST = 1.0, 1e6
 # Spin period [s]: the shortest known is that of 2020 HS7, 3.0 s (Beniyama et al. 2022, PASJ 74, 877).
 FASTEST = 1.0
+# Angle [rad] that a body with [site.rotation] turns by beside one turn an orbit: 1e4 are integrated in half a minute.
+LONGEST_TURN = 2e4
 # Of a body, as other programs take it too.
-NAME = r"[A-Za-z0-9][\w -]{0,39}"
-SYNCHRONOUS = [key for key, body in KNOWN_BODIES.items() if body.is_synchronous]
+NAME, NAME_WORDS = r"[A-Za-z0-9][\w -]{0,39}", "1 to 40 letters, digits, blanks, _ and -"
+SYNCHRONOUS = [key for key, body in BUILT_IN_BODIES.items() if body.is_synchronous]
+# A body whose spin period is within this part of that of its orbit keeps one face to its partner: distances are not
+# known well enough to tell the two apart.
+NEARLY_SYNCHRONOUS = 0.02
 
 
 def body_problems(study: Study) -> Iterator[str]:
@@ -36,10 +41,18 @@ def body_problems(study: Study) -> Iterator[str]:
     yield from _spin_problems(study)
     yield from _name_problems(study)
     yield from _extents_problems(study)
+    yield from _partner_problems(study)
+    if site.mass is not None and site.density is not None:
+        yield f"site.mass is {show(site.mass)} and site.density {show(site.density)}; keep one of the two"
+        return
     if site.body in BUILT_IN_BODIES:
         yield from _unit_problems(study)
         # Loading a built-in shape takes a second: only where the study changes what is known to be right.
-        if site.mass is None and not any(_largest(value) for value in _delivery(study).values()):
+        if (
+            site.mass is None
+            and site.density is None
+            and not any(_largest(value) for value in _delivery(study).values())
+        ):
             return
     elif lacking := list(_lacking(study)):
         yield from lacking
@@ -69,8 +82,8 @@ def _extents_problems(study: Study) -> Iterator[str]:
         return
     if site.body not in BUILT_IN_BODIES:
         yield "site.extents goes with a built-in body, and site.body is a mesh, which has its own: leave it out"
-    elif site.mass is None:
-        yield "site.extents changes the volume of the body, and site.mass is missing: write the mass that goes with it"
+    elif site.mass is None and site.density is None:
+        yield "site.extents changes the volume of the body; write site.mass, or site.density, that goes with it"
 
 
 def _name_problems(study: Study) -> Iterator[str]:
@@ -80,7 +93,7 @@ def _name_problems(study: Study) -> Iterator[str]:
     if study.site.body in BUILT_IN_BODIES:
         yield f"site.name is {show(name)}, and site.body is built in and has one; leave it out"
     elif not re.fullmatch(NAME, name, flags=re.ASCII):
-        yield f"site.name is {show(name)}; allowed: 1 to 40 letters, digits, blanks, _ and -; write such a name"
+        yield f"site.name is {show(name)}; allowed: {NAME_WORDS}; write such a name"
 
 
 def _spin_problems(study: Study) -> Iterator[str]:
@@ -98,9 +111,54 @@ def _lacking(study: Study) -> Iterator[str]:
         meant = closest(Path(study.site.body).name, BUILT_IN_BODIES)
         yield f"site.body is {show(study.site.body)}; allowed: {names} or the path of a mesh; no such file{meant}"
         return
-    for key in ("mass", "spin_period"):
-        if f"site.{key}" not in study.site_values():
-            yield f"site.{key} is missing; a body read from a mesh needs its {key.replace('_', ' ')}"
+    given = study.site_values()
+    if "site.mass" not in given and "site.density" not in given:
+        yield "site.mass is missing; a body read from a mesh needs its mass, or site.density"
+    if "site.spin_period" not in given:
+        yield "site.spin_period is missing; a body read from a mesh needs its spin period"
+
+
+def _partner_problems(study: Study) -> Iterator[str]:
+    """A partner of a body that has its own or none, or whose orbit is given twice, or nearly as the spin."""
+    site, partner = study.site, study.site.partner_body
+    if partner is None:
+        return
+    if site.body in BUILT_IN_BODIES or not site.partner:
+        why = f"site.body is {show(site.body)}, which has its own" if site.partner else "site.partner is false"
+        yield f"site.partner_body is given, and {why}; keep one of the two"
+    if not re.fullmatch(NAME, partner.name, flags=re.ASCII):
+        yield f"site.partner_body.name is {show(partner.name)}; allowed: {NAME_WORDS}; write such a name"
+    if partner.period is not None and partner.distance is not None:
+        yield (
+            f"site.partner_body.period is {partner.period:g} s and distance {partner.distance:g} m; either follows "
+            "from the other and both masses: keep one"
+        )
+    spin = study.site_values().get("site.spin_period")
+    if partner.distance is None or partner.period is not None or spin is None or site.mass is None:
+        return
+    total = GRAVITATIONAL_CONSTANT * (partner.mass + median(site.mass))
+    period, own = 2.0 * math.pi * math.sqrt(partner.distance**3 / total), median(spin)
+    if abs(period / own - 1.0) < NEARLY_SYNCHRONOUS:
+        yield (
+            f"site.partner_body.distance is {partner.distance:g} m, for an orbit of {period:.6g} s, and spin_period is "
+            f"{own:.6g} s; allowed: an orbit that differs by more than {NEARLY_SYNCHRONOUS:g} of that; leave distance "
+            "out for a body that keeps one face to its partner, or write period"
+        )
+
+
+def partner_warning(site: SiteSection) -> str | None:
+    """What it means that a body which is known to have a partner has none in a study; None where it is not so."""
+    if site.body in BUILT_IN_BODIES or site.partner_body is not None or not site.partner:
+        return None
+    known = body_named_in(site.name or "", site.kernel_body or "", Path(site.body).stem)
+    other = None if known is None else known.companion
+    if known is None or other is None:
+        return None
+    return (
+        f"{known.name} orbits with {other.name}, which this study leaves out: weights and flights lack its attraction; "
+        f'write [site.partner_body] with name = "{other.name}", mass = {other.mass:g} and diameter = '
+        f"{other.diameter:g}, or site.partner = false if it is meant so."
+    )
 
 
 def _volume(study: Study) -> float:
@@ -129,30 +187,39 @@ def _volume(study: Study) -> float:
 
 def _bulk_problems(study: Study, volume: float) -> Iterator[str]:
     """A body that is too light, too heavy, too small or too large, with the unit that was likely meant."""
-    if study.site.mass is None:
+    mass, density = study.site.mass, study.site.density
+    if mass is not None:
+        low, high = (one / volume for one in usual_reach(mass))
+    elif density is not None:
+        low, high = usual_reach(density)
+    else:
         return
-
-    low, high = (mass / volume for mass in usual_reach(study.site.mass))
     built_in = study.site.body in BUILT_IN_BODIES
     given = "m" if built_in else mesh_unit(labelled_mesh(Path(study.site.body)), study.site.unit)
     diameter, here = 2.0 * _ball_radius(volume), UNITS[given]
     # A wrong unit is the common slip, and a bulk density shows it: from metres to kilometres it changes by 1e9.
-    fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here)]
+    # A density that is given stays what it is in any unit.
+    heavier = 1.0 if mass is None else 3.0
+    fitting = [unit for unit, length in UNITS.items() if _is_a_body(low, high, diameter, length / here, heavier)]
     if given in fitting:
         return
     likely = fitting[0] if fitting and not built_in else None
-    remedy = f'is the mesh in {likely}? then set site.unit = "{likely}"' if likely else "mend site.mass or the mesh"
-    density = f"{low:.4g} kg/m3" if low == high else f"{low:.4g} to {high:.4g} kg/m3"
+    key = "site.density" if mass is None else "site.mass"
+    remedy = f'is the mesh in {likely}? then set site.unit = "{likely}"' if likely else f"mend {key} or the mesh"
+    bulk = f"{low:.4g} kg/m3" if low == high else f"{low:.4g} to {high:.4g} kg/m3"
     yield (
-        f"site.body has {volume:.4g} m3 and is {diameter:.4g} m across, and site.mass makes that a bulk density of "
-        f"{density}; allowed: {LIGHTEST:g} to {HEAVIEST:g} kg/m3, as bodies from comets to iron have, and "
+        f"site.body has {volume:.4g} m3 and is {diameter:.4g} m across, and {key} makes that a bulk density of "
+        f"{bulk}; allowed: {LIGHTEST:g} to {HEAVIEST:g} kg/m3, as bodies from comets to iron have, and "
         f"{SMALLEST:g} to {LARGEST:g} m; {remedy}"
     )
 
 
-def _is_a_body(low: float, high: float, diameter: float, longer: float) -> bool:
-    """Tell whether densities [kg/m3] and a diameter [m] are a small body's, with all lengths so many times longer."""
-    dense = low / longer**3 >= LIGHTEST and high / longer**3 <= HEAVIEST
+def _is_a_body(low: float, high: float, diameter: float, longer: float, power: float) -> bool:
+    """Tell whether densities [kg/m3] and a diameter [m] are a small body's, with all lengths so many times longer.
+
+    power: of a length by which the densities fall, 3 of a mass that is given.
+    """
+    dense = low / longer**power >= LIGHTEST and high / longer**power <= HEAVIEST
     return dense and SMALLEST <= diameter * longer <= LARGEST
 
 
@@ -188,6 +255,7 @@ def rotation_problems(study: Study) -> Iterator[str]:
         return
     yield from _body_problems(site)
     yield from _time_problems(site, site.rotation.days)
+    yield from _turn_problems(site.rotation)
     if study.sky.bodies:
         yield (
             "[sky] asks what landers at rest see over a day of the body, and with [site.rotation] no day is like "
@@ -210,6 +278,18 @@ def _body_problems(site: SiteSection) -> Iterator[str]:
                 f"site.{key} is given; with [site.rotation] the body turns once an orbit in the mean, as the built-in "
                 "one does; leave one of the two out"
             )
+
+
+def _turn_problems(rotation: RotationSection) -> Iterator[str]:
+    rate = math.hypot(*rotation.spin)
+    most = LONGEST_TURN / DAY / rate if rate > 0.0 else math.inf
+    if rotation.days > most:
+        yield (
+            f"site.rotation.days is {rotation.days:g} with a site.rotation.spin of {rate:.3g} rad/s, by which the body "
+            f"turns {rate * rotation.days * DAY:.3g} rad; allowed: at most {LONGEST_TURN:g} rad, "
+            f"site.rotation.days = {most:.3g}, as all of it is integrated before the first landing; lower the days or "
+            "the spin"
+        )
 
 
 def _time_problems(site: SiteSection, days: float) -> Iterator[str]:

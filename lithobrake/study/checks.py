@@ -1,11 +1,11 @@
 """What is wrong between the keys of a study that are each right in themselves: looked at before anything runs."""
 
-import math
 import os
 import re
 import shlex
 import shutil
 from collections.abc import Iterator
+from importlib.util import find_spec
 
 from lithobrake.study import ground_checks, lander_checks
 from lithobrake.study.body_checks import body_problems, rotation_problems
@@ -15,12 +15,9 @@ from lithobrake.study.ground_sections import Bell, Between, Constant, PowerLaw
 from lithobrake.study.quantity import reach
 from lithobrake.study.question_checks import aim_problems
 from lithobrake.study.study import Study
-from lithobrake.vocabulary.plain_text import show
 
 # A bed narrower than this many lander diameters would hold the lander between its walls.
 BED_WIDTH_PER_LANDER = 2.0
-# An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
-LONGEST_QUATERNION = 1e3
 # Fewer grains across are no bed.
 BED_WIDTH_PER_GRAIN = 3.0
 # The largest grain of a bed over its smallest.
@@ -56,17 +53,11 @@ def _arrival_problems(study: Study) -> Iterator[str]:
 
 def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
-        yield from ground_checks.contact_problems(study)
+        yield from ground_checks.material_problems(study)
         yield from ground_checks.slope_problems(study)
     gravity = study.surface.gravity
     # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).
-    if not isinstance(gravity, str):
-        yield from settling_problems(study, reach(gravity)[0])
-
-
-def settling_problems(study: Study, gravity: float) -> Iterator[str]:
-    """A bed that is to settle under the acceleration of the touchdown [m/s2], which does not press it down."""
-    if study.bed.settle_gravity is None and gravity <= 0.0:
+    if not isinstance(gravity, str) and study.bed.settle_gravity is None and reach(gravity)[0] <= 0.0:
         yield (
             "surface.gravity reaches zero or points outward, and no bed settles under that; "
             "give bed.settle_gravity an inward value, say 2e-5 m/s2 (the touchdown keeps surface.gravity)"
@@ -161,6 +152,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
     if found:
         return
     yield from ground_checks.size_problems(study, radius)
+    yield from ground_checks.spin_problems(study, radius)
     yield from ground_checks.boulder_problems(study, largest_diameter(study), radius)
     yield from _width_problems(study, radius)
 
@@ -210,13 +202,8 @@ def _place_problems(study: Study) -> Iterator[str]:
             '"random", which points anywhere already; allowed: a quaternion that the error is about; give one, or '
             "leave the error out"
         )
-    length = math.hypot(*impact.orientation) if isinstance(impact.orientation, tuple) else 1.0
-    if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:
-        yield (
-            f"impact.orientation is {show(impact.orientation)}, a quaternion of length {length:.3g}; "
-            f"allowed: {1.0 / LONGEST_QUATERNION:g} to {LONGEST_QUATERNION:g}, which is then made 1; "
-            "write [1, 0, 0, 0] for no rotation"
-        )
+    if isinstance(impact.orientation, tuple):
+        yield from lander_checks.quaternion_problems("impact.orientation", impact.orientation)
     for key, spot in (("place", impact.place), ("region", impact.region)):
         if spot is None:
             continue
@@ -287,3 +274,5 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     if not plain or os.path.splitext(solver.answer)[1].lower() not in DECODERS:
         endings = ", ".join(DECODERS)
         yield f"solver.answer is {solver.answer!r}; allowed: a file name without folders, ending in {endings}"
+    elif solver.answer.lower().endswith((".yaml", ".yml")) and find_spec("yaml") is None:
+        yield f'solver.answer is {solver.answer!r}, and PyYAML is not installed: pip install "lithobrake[yaml]"'

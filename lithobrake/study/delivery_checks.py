@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from lithobrake.study import delivery_sections
 from lithobrake.study.quantity import Uncertain
 from lithobrake.study.question_checks import sky_problems
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
@@ -37,10 +39,14 @@ def covariance_problems(matrix: delivery_sections.Matrix) -> Iterator[str]:
 
 
 def _variance(matrix: delivery_sections.Matrix, row: int) -> str | None:
-    variance = matrix[row][row]
-    if variance >= 0.0:
+    variance, unit = matrix[row][row], "m" if row < delivery_sections.SIDE / 2 else "m/s"
+    largest = delivery_sections.LARGEST[unit] ** 2
+    if 0.0 <= variance <= largest:
         return None
-    return f"has {variance:g} as the variance in row {row + 1}; allowed: at least 0; mend it"
+    return (
+        f"has {variance:g} as the variance in row {row + 1}; allowed: 0 to {largest:g}, the square of "
+        f"{delivery_sections.LARGEST[unit]:g} {unit}; mend it"
+    )
 
 
 def _pair(matrix: delivery_sections.Matrix, row: int, column: int) -> str | None:
@@ -168,17 +174,18 @@ def _frame_problems(study: Study, delivery: delivery_sections.DeliverySection, n
         )
     if delivery.epoch is None:
         return
-    from lithobrake.study.delivered_states import parsed_time
-
     try:
-        epoch = parsed_time(delivery.epoch)
-        if study.site.epoch is not None and parsed_time(study.site.epoch) != epoch:
+        epoch = Epoch.of(delivery.epoch)
+    except ValueError as error:
+        yield f"delivery.epoch {error}"
+        return
+    # One that is no date is refused where kernels are checked.
+    with suppress(ValueError):
+        if study.site.epoch is not None and Epoch.of(study.site.epoch) != epoch:
             yield (
                 f"delivery.epoch is {delivery.epoch} and site.epoch {study.site.epoch}; both say when the partner "
                 "stands where it does: make them equal"
             )
-    except ValueError as error:
-        yield f"delivery.epoch {error}"
 
 
 def _state_problems(study: Study, delivery: delivery_sections.DeliverySection) -> Iterator[str]:

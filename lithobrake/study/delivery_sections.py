@@ -8,6 +8,10 @@ from pydantic_core import core_schema
 
 from lithobrake.study import quantity
 
+# Largest numbers of a state by their units: all orbits about a small body are well within the first, and speeds against
+# axes that turn with the body within the second. The resolution of a larger time is worse than 0.1 ms.
+LARGEST = {"m": 1e9, "m/s": 1e6, "s": 1e12, "rad/s": 1e3}
+FAR, FAST, LATE = (LARGEST[unit] for unit in ("m", "m/s", "s"))
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6
 Error = Annotated[quantity.Scalar, quantity.MaybeUncertain("m")]
@@ -69,17 +73,21 @@ class ReleaseSection(quantity.Section):
     is sampled from a normal distribution about it, and the lander flies to the ground. The spread is `covariance`, or
     `position_std` and `velocity_std`; without them all journeys begin in the same state."""
 
-    time: Annotated[float, quantity.Number("s")] = 0.0
+    time: Annotated[float, quantity.Number("s", at_least=-LATE, at_most=LATE)] = 0.0
     """Time of the release, counted from delivery.epoch."""
-    position: Annotated[tuple[float, ...], quantity.Numbers("m")] = Field(examples=["[0.0, -300.0, 0.0]"])
+    position: Annotated[tuple[float, ...], quantity.Numbers("m", at_least=-FAR, at_most=FAR)] = Field(
+        examples=["[0.0, -300.0, 0.0]"]
+    )
     """x, y, z from the centre of the body."""
-    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s")] = Field(examples=["[0.0, 0.03, 0.0]"])
+    velocity: Annotated[tuple[float, ...], quantity.Numbers("m/s", at_least=-FAST, at_most=FAST)] = Field(
+        examples=["[0.0, 0.03, 0.0]"]
+    )
     """Along the same axes."""
-    position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0)] | None = Field(
+    position_std: Annotated[tuple[float, ...], Deviations("m", at_least=0, at_most=FAR)] | None = Field(
         default=None, examples=["30.0"]
     )
     """Standard deviation in every direction, or three: up, from the centre of the body; north; east."""
-    velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0)] | None = Field(
+    velocity_std: Annotated[tuple[float, ...], Deviations("m/s", at_least=0, at_most=FAST)] | None = Field(
         default=None, examples=["0.0067"]
     )
     """The same for the velocity."""
@@ -129,8 +137,8 @@ class DeliverySection(quantity.Section):
     not rotate; site.pole_right_ascension_deg, site.pole_declination_deg and site.meridian_deg give the attitude of the
     body. Both have the origin of the body's shape."""
     epoch: str | None = Field(default=None, examples=['"2027-04-20T12:00:00"'])
-    """Date and time at which the time of the states is 0, in the time system of an ephemeris message, otherwise in UTC.
-    Absent: that of the earliest state of the message."""
+    """Date and time at which the time of the states is 0: in UTC, or in the time system that it ends with, as in
+    "2027-04-20T12:00:00 TDB" (UTC, TAI, GPS, TT, TDB). Absent: that of the earliest state of the message."""
     states: str | None = Field(default=None, examples=['"states.csv"'])
     """File of states from another tool, relative to the study file, one state per journey in the order of the file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""

@@ -7,6 +7,7 @@ from lithobrake.chaos import smolyak_count, term_count
 from lithobrake.study.design_sections import ExpansionSection
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.constants import FEWEST_RUNS_OF_EMULATOR
 
 # Fewer tell no share.
 FEWEST_SAMPLES = 100
@@ -44,6 +45,12 @@ def _count_problems(study: Study) -> Iterator[str]:
         yield (
             f"design.run_count is {runs}; allowed: at least 2, or 0 with [expansion], which is then all of the study; "
             "raise it"
+        )
+    if 1 < runs < FEWEST_RUNS_OF_EMULATOR and samples and study.expansion is None:
+        yield (
+            f"design.run_count is {runs}, and monte_carlo.sample_count {samples}; allowed with samples of the "
+            f"emulator: at least {FEWEST_RUNS_OF_EMULATOR}, by which it is fitted; raise it, or set "
+            "monte_carlo.sample_count = 0"
         )
     if runs == 0:
         yield from _undrawn_problems(study)

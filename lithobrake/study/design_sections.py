@@ -1,5 +1,6 @@
 """The tables of the study file that say which runs are made, what is fitted to them, and what is asked."""
 
+import math
 import re
 from dataclasses import dataclass
 from itertools import product
@@ -174,6 +175,12 @@ class AimSection(Section):
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
     """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
 
+    @property
+    def count(self) -> int:
+        """How many aims there are, of which none is made for that."""
+        lengths = [*map(len, self.grid.values()), *([len(self.sides)] if self.sides else [])]
+        return math.prod(lengths) if lengths else 0
+
     def aims(self) -> list[dict[str, float]]:
         """All aims, the last of the names running fastest; a side by its place among `sides`."""
         columns = [*self.grid.values(), *([list(map(float, range(len(self.sides))))] if self.sides else [])]
@@ -232,7 +239,7 @@ class OrbiterSection(Section):
     with all phases of the orbit and of the body's rotation; a table of body-fixed states (`states`); or SPICE
     (`kernel_name`) from sky.date to sky.until."""
 
-    altitude: Annotated[float, Number("m", above=0)] | None = Field(default=None, examples=["2000.0"])
+    altitude: Annotated[float, Number("m", above=0, at_most=1e9)] | None = Field(default=None, examples=["2000.0"])
     """Height of the circle above the sphere around the body that touches its highest point."""
     inclination_deg: Annotated[float, Number("deg", at_least=0, at_most=180)] | None = Field(
         default=None, examples=["90.0"]

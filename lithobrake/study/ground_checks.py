@@ -8,7 +8,7 @@ from pathlib import Path
 from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
-from lithobrake.study.quantity import usual_reach
+from lithobrake.study.quantity import median, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
@@ -18,11 +18,19 @@ GRAINS_PER_LANDER = 1e6
 # Mass that is nearer to one point or farther out than so many times mass x radius^2 is a slip, and no equation of
 # motion can be solved for it. Booms and panels that the shape leaves out may reach far.
 INERTIAS = (1e-6, 1e2)
+# Of a point of the lander [m/s], as of the impact speed.
+FASTEST = 1000.0
+# Of what two grains at rest overlap by cohesion, over the radius of the smaller: Hertz' law is one of small overlaps.
+DEEPEST_PULL = 0.1
+# Young's modulus of a region over that of the bed, which is poured once for all regions.
+STIFFER = 1e5
 # A lander that is smaller than so much of a grain is a slip, too.
 SMALLEST_LANDER = 1e-4
 TWO_IMAGES = 'as with bed.sides = "periodic" nothing may meet another through two images'
 # What the skins of lists of neighbours add to that (dem/bodies/vectors.py): of two grains, and of one and the lander.
 SKINS, SKINS_AT_LANDER = 0.5, 0.7
+# Share of the volume that the loosest bed fills.
+LEAST_SOLID = 0.4
 # Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
 LEAST_FRICTION = 0.4
 
@@ -46,6 +54,16 @@ def size_problems(study: Study, radius: float) -> Iterator[str]:
             )
 
 
+def material_problems(study: Study, region: str | None = None) -> Iterator[str]:
+    """What this program's own soil cannot carry, with the grains of [grain] or of a region."""
+    there = study if region is None else study.on_soil(region)
+    yield from contact_problems(there)
+    yield from cohesion_problems(there)
+    # The median of some distributions takes SciPy, and hardly any study is near.
+    if usual_reach(there.grain.young_modulus)[1] > STIFFER * usual_reach(study.grain.young_modulus)[0]:
+        yield from stiffness_problems(there, median(study.grain.young_modulus))
+
+
 def contact_problems(study: Study) -> Iterator[str]:
     """Landers and speeds at which the contact of the lander with a grain means nothing; for this program's own soil."""
     if study.contact.held_speed > 0.0 and study.contact.stepping != "local":
@@ -66,17 +84,81 @@ def contact_problems(study: Study) -> Iterator[str]:
             "million of the heaviest, as no soil answers to another lander; change it or the grains"
         )
         return
-    radius = 0.5 * largest
-    # That of a lander that is flown to the ground is not known before its flight.
-    speed = 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
-    depth = _first_overlap(study, min(high, grain), radius, speed)
-    if depth > radius:
-        modulus = usual_reach(study.grain.young_modulus)[0]
+    speed = _impact_speed(study)
+    if wrong := deep_contact(study, speed):
+        yield f"impact.speed reaches {speed:.4g} m/s {wrong}; lower the speed or raise Young's modulus"
+
+
+def cohesion_problems(study: Study) -> Iterator[str]:
+    """Grains that pull each other deeper than the contact law describes; for this program's own soil."""
+    grain, radius = study.grain, 0.5 * _grain_sizes(study)[0]
+    line, softest = usual_reach(grain.surface_energy)[1], usual_reach(grain.young_modulus)[0]
+    # Of two equal grains: half the radius of one, half the modulus of one.
+    pull = usual_reach(grain.cohesion_force)[1] + 4.0 * math.pi * line * 0.5 * radius
+    modulus = 0.5 * softest / (1.0 - usual_reach(grain.poisson_ratio)[0] ** 2)
+    depth = (0.75 * pull / modulus / math.sqrt(0.5 * radius)) ** (2.0 / 3.0)
+    if depth > DEEPEST_PULL * radius:
         yield (
-            f"impact.speed reaches {speed:.4g} m/s with grain.young_modulus down to {modulus:.3g} Pa, so the first "
-            f"contact with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m; "
-            "lower the speed or raise Young's modulus"
+            f"grain.surface_energy reaches {line:.4g} J/m2 and grain.cohesion_force "
+            f"{usual_reach(grain.cohesion_force)[1]:.4g} N with grain.young_modulus down to {softest:.3g} Pa, so that "
+            f"two grains pull each other {depth:.3g} m deep; allowed: at most {DEEPEST_PULL * radius:.3g} m, a tenth "
+            "of the radius of the smallest grain; lower the cohesion (surface_energy is in J/m2), or raise Young's "
+            "modulus"
         )
+
+
+def stiffness_problems(study: Study, poured: float) -> Iterator[str]:
+    """Grains so much stiffer than those that a bed is poured with, of a Young's modulus [Pa], that it cannot take them
+    on.
+    """
+    highest = usual_reach(study.grain.young_modulus)[1]
+    if highest > STIFFER * poured:
+        yield (
+            f"grain.young_modulus reaches {highest:.3g} Pa, and beds are poured with the median of [grain], "
+            f"{poured:.3g} Pa; allowed: at most {STIFFER * poured:.3g} Pa, {STIFFER:g} times as much, as contacts of "
+            "the bed are then too deep for the stiffer law; lower it, or raise that of [grain]"
+        )
+
+
+def spin_problems(study: Study, radius: float) -> Iterator[str]:
+    """A spin that is too fast for a lander whose farthest point is at a radius [m]."""
+    spin = math.hypot(*(max(map(abs, usual_reach(getattr(study.impact, f"spin_{axis}")))) for axis in "xyz"))
+    if wrong := fast_spin(study, spin, radius):
+        yield f"impact.spin_x, impact.spin_y and impact.spin_z reach {wrong}"
+
+
+def fast_spin(study: Study, spin: float, radius: float) -> str | None:
+    """A spin [rad/s] in words where the tip of the lander, at a radius [m], is too fast, or its contact means nothing.
+
+    None where it is not.
+    """
+    tip, speed = spin * radius, _impact_speed(study)
+    said = f"{spin:.4g} rad/s, at which the tip of the lander moves at {tip:.4g} m/s"
+    if tip > FASTEST:
+        return f"{said}; allowed: at most {FASTEST:g} m/s, as of impact.speed; lower the spin, and write it in rad/s"
+    for one in (study, *map(study.on_soil, study.soil)) if study.has_soil else ():
+        # What the speed alone makes too deep is refused by itself.
+        if not deep_contact(one, speed) and (wrong := deep_contact(one, speed + tip)):
+            return f"{said} {wrong}; lower the spin, and write it in rad/s, or raise Young's modulus"
+    return None
+
+
+def _impact_speed(study: Study) -> float:
+    """The largest [m/s]; 0 of a lander that is flown to the ground, as it is not known before its flight."""
+    return 0.0 if study.impact.speed is None else usual_reach(study.impact.speed)[1]
+
+
+def deep_contact(study: Study, speed: float) -> str | None:
+    """What a speed [m/s] of the first contact does to it, where that is deeper than a grain; None where it is not."""
+    largest = _grain_sizes(study)[1]
+    radius, mass = 0.5 * largest, usual_reach(study.lander.mass)[1]
+    depth = _first_overlap(study, min(mass, _ball_mass(usual_reach(study.grain.density)[1], largest)), radius, speed)
+    if depth <= radius:
+        return None
+    return (
+        f"with grain.young_modulus down to {usual_reach(study.grain.young_modulus)[0]:.3g} Pa, so the first contact "
+        f"with a grain is {depth:.3g} m deep; allowed: at most the radius of a grain, {radius:.3g} m"
+    )
 
 
 def _grain_sizes(study: Study) -> tuple[float, float]:
@@ -142,8 +224,14 @@ def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iter
             f"boulders of at least {largest:g} m; raise it, or lower bed.diameter"
         )
     low, high = study.bed.boulders.cover
+    highest, deepest = 2.0 * BOULDER_REACH * upper, _most_depth(study, largest)
     if low > high:
         yield f"bed.boulders.cover is [{low:g}, {high:g}] m; allowed: the smaller first; swap them"
+    elif low < -highest or high > deepest:
+        yield (
+            f"bed.boulders.cover is [{low:g}, {high:g}] m; allowed: {-highest:.3g} m, as no boulder of {upper:g} m "
+            f"stands higher, to {deepest:.3g} m, as {study.bed.grain_count} grains fill the bed no deeper; mend it"
+        )
     width, least = min(study.bed.width), boulder_width(study, largest, lander_radius)
     if width < least:
         why = "as they lie between the walls" if study.bed.sides == "walls" else TWO_IMAGES
@@ -151,6 +239,11 @@ def boulder_problems(study: Study, largest: float, lander_radius: float) -> Iter
             f"bed.width is {width:g} m at its narrowest; allowed: at least {least:.3g} m for boulders of {upper:g} m, "
             f"{why}; widen the bed and add grains, or lower bed.boulders.diameter"
         )
+
+
+def _most_depth(study: Study, largest: float) -> float:
+    """The depth [m] to which the grains of a bed would fill it if all were as large as the largest."""
+    return study.bed.grain_count * _ball_mass(1.0, largest) / (LEAST_SOLID * math.prod(study.bed.width))
 
 
 def boulder_diameters(section: BoulderSection) -> tuple[float, float]:
@@ -188,8 +281,8 @@ def soil_problems(study: Study) -> Iterator[str]:
         yield from _region_problems(name, soil)
         if study.has_soil:
             # Problems of [grain] itself are reported already, and would be repeated for each region.
-            known = list(contact_problems(study))
-            yield from (f"soil.{name}: {text}" for text in contact_problems(study.on_soil(name)) if text not in known)
+            known, found = list(material_problems(study)), material_problems(study, name)
+            yield from (f"soil.{name}: {text}" for text in found if text not in known)
 
 
 def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:

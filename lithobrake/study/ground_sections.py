@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
+from lithobrake.files.reading import read_text
 from lithobrake.geometry.bed_limits import LARGEST_COVERAGE
 from lithobrake.study.quantity import MaybeUncertain, Number, Numbers, Scalar, Section, Uncertain, Whole
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
@@ -163,7 +164,9 @@ def with_properties(
         shown = known.example if needed else examples.get(name)
         field = Field(default=default, description=words(known), examples=None if shown is None else [shown])
         fields[name] = (kind if needed else kind | None, field)
-    return create_model(base.__name__, __base__=base, __module__=__name__, **fields)
+    # Nothing stands in a source that pydantic could look for, which it does through all modules.
+    sourceless: Any = {"use_attribute_docstrings": False}
+    return create_model(base.__name__, __base__=base, __module__=__name__, __cls_kwargs__=sourceless, **fields)
 
 
 _GrainProperties: Any = with_properties(Section, ALL_PROPERTIES, needed=True)
@@ -225,7 +228,7 @@ class SoilSection(Section):
 def facet_numbers(path: Path) -> tuple[int, ...]:
     """The numbers in a file of facets. Raises ValueError for a line that is none, or no number at all; OSError."""
     found = []
-    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
+    for number, line in enumerate(read_text(path).splitlines(), start=1):
         text = line.strip()
         if text and not re.fullmatch(r"\d{1,9}", text, re.ASCII):
             raise ValueError(f"line {number} is {show(text)}; allowed: a whole number from 0; mend that line")

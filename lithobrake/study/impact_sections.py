@@ -2,11 +2,14 @@
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, Strict
 
+from lithobrake.files.file_kinds import FileKind, file_kind
 from lithobrake.study.quantity import Angle, LengthUnit, MaybeUncertain, Number, Numbers, Scalar, Section, Whole
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 
 if TYPE_CHECKING:
@@ -130,6 +133,23 @@ class RotationSection(Section):
     """Time span, from the initial state, in which landers arrive."""
 
 
+class PartnerSection(Section):
+    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball on a circular
+    orbit in the plane of the equator, which attracts and may be hit. `period` or `distance` gives the orbit; with
+    neither the body keeps one face to its partner, over longitude 0."""
+
+    name: str = "partner"
+    """Name of the partner."""
+    mass: Annotated[float, Number("kg", above=0, at_most=1e31)] = Field(examples=["5.3e11"])
+    """Mass of the partner."""
+    diameter: Annotated[float, Number("m", above=0, at_most=1e10)] = Field(examples=["780.0"])
+    """Diameter of the partner."""
+    period: Annotated[float, Number("s", above=0, at_most=1e12)] | None = None
+    """Period of the orbit. Absent: it follows from `distance`, or is the spin period."""
+    distance: Annotated[float, Number("m", above=0, at_most=1e12)] | None = None
+    """Distance of the two centres, the semi-major axis of the orbit."""
+
+
 class SiteSection(Section):
     """The body, and the site on it where the lander touches down. Uncertain values here vary only in the Monte Carlo
     samples."""
@@ -148,11 +168,16 @@ class SiteSection(Section):
     """Number of facets for the gravity. A mesh with more facets is simplified for this purpose, with the same volume
     and centroid; the ground keeps the whole mesh. Absent: all facets."""
     partner: Annotated[bool, Strict()] = True
-    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper."""
+    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper. A mesh
+    has the one of `partner_body`; false: none is meant."""
+    partner_body: PartnerSection | None = None
     partner_longitude_deg: Angle | None = None
-    """East longitude over which the partner is when the lander leaves. Absent: unknown, sampled over the circle."""
+    """East longitude over which the partner is when the lander leaves. Absent: unknown, sampled over the circle; 0 of a
+    body that keeps one face to its partner."""
     mass: Annotated[Scalar, MaybeUncertain("kg", above=0)] | None = None
-    """Mass of the body; absent: that of the built-in body."""
+    """Mass of the body; absent: that of `density`, or of the built-in body."""
+    density: Annotated[Scalar, MaybeUncertain("kg/m3", above=0)] | None = None
+    """Bulk density of the body, instead of its mass, which is this times the volume of the shape."""
     spin_period: Annotated[Scalar, MaybeUncertain("s", above=0)] | None = None
     """Spin period of the body; absent: that of the kernels, or of the built-in body."""
     rotation: RotationSection | None = None
@@ -161,7 +186,7 @@ class SiteSection(Section):
     days."""
     kernels: list[str] = Field(default=[])
     """Kernels of SPICE, relative to the study file, from which the spin is read: text constants (PCK); with an epoch
-    also leap seconds (LSK) and an ephemeris of body and partner (SPK)."""
+    also an ephemeris of body and partner (SPK). A meta-kernel counts with the kernels that it names."""
     kernel_body: str | None = None
     """Name of the body in the kernels, or its number as text; absent: that of the built-in body."""
     epoch: str | None = None
@@ -272,6 +297,14 @@ def _key_problems(site: SiteSection) -> Iterator[str]:
     for path in site.kernels:
         if not os.path.isfile(path):
             yield f'site.kernels has "{path}"; no such file; give its path from the study file'
+        elif (kind := file_kind(Path(path))) not in (None, FileKind.TEXT_KERNEL, FileKind.BINARY_KERNEL):
+            remedy = "give it as site.body" if kind is FileKind.SHAPE_KERNEL else "leave it out"
+            yield f'site.kernels has "{path}", which is {kind}; allowed: PCK, LSK, SPK and meta-kernels; {remedy}'
+    try:
+        if site.epoch is not None:
+            Epoch.of(site.epoch)
+    except ValueError as error:
+        yield f"site.epoch {error}"
     built_in = site.body in BUILT_IN_BODIES
     if not built_in and site.kernel_body is None:
         yield 'site.kernel_body is missing; kernels know a mesh by the name of its body, say "bennu", or its number'

@@ -3,7 +3,7 @@
 import math
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +19,8 @@ NAME = r"[\w-]+"
 THINNEST = 1e-3
 # Mass anywhere adds at most as much to one moment of inertia as to the other two; a plate may miss that by rounding.
 ROUNDING = 1e-9
+# An attitude is scaled to length 1; one so much longer or shorter is a slip, and its square may not be a number.
+LONGEST_QUATERNION = 1e3
 TAKES = {"box": "edges", "sphere": "diameter", "hull": "file"}
 
 
@@ -143,12 +145,21 @@ def part_problems(lander: LanderSection) -> Iterator[str]:
         if (part.mass is None) == (part.density is None):
             both = "both are" if part.mass is not None else "neither is"
             yield f"{path} takes mass or density, and {both} given; keep one of the two"
-        if math.hypot(*part.orientation) == 0.0:
-            yield f"{path}.orientation is [0, 0, 0, 0]; allowed: a quaternion other than zero; write [1, 0, 0, 0]"
+        yield from quaternion_problems(f"{path}.orientation", part.orientation)
     if lander.part and isinstance(lander.diameter, Uncertain):
         yield (
             "lander.diameter is uncertain, and the lander has parts, which stand at fixed places; allowed: one number; "
             "write it, or make a study for each"
+        )
+
+
+def quaternion_problems(key: str, quaternion: Sequence[float]) -> Iterator[str]:
+    """A quaternion that is scaled to length 1, and whose own is far from that."""
+    length = math.hypot(*quaternion)
+    if not 1.0 / LONGEST_QUATERNION <= length <= LONGEST_QUATERNION:
+        yield (
+            f"{key} is {show(quaternion)}, a quaternion of length {length:.3g}; allowed: {1.0 / LONGEST_QUATERNION:g} "
+            f"to {LONGEST_QUATERNION:g}, which is then made 1; write [1, 0, 0, 0] for no rotation"
         )
 
 

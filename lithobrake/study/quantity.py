@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
+from lithobrake.vocabulary.given_numbers import LARGEST
 from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
@@ -63,6 +64,21 @@ Scalar = float | Uncertain
 
 def median(value: Scalar) -> float:
     return float(value.to_chaos().median) if isinstance(value, Uncertain) else value
+
+
+def scaled(value: Scalar, factor: float) -> Scalar:
+    """A factor above 0 times a number or, whatever its distribution, an uncertain one."""
+    if not isinstance(value, Uncertain):
+        return factor * value
+    changed = dict(value.parameters)
+    for name in changed:
+        if value.distribution == "log_normal":
+            changed[name] += math.log(factor) if name == "mean" else 0.0
+        elif name in ("lower", "upper", "mean", "std", "scale"):
+            changed[name] *= factor
+        elif name == "rate":
+            changed[name] /= factor
+    return Uncertain(value.distribution, changed)
 
 
 def reach(value: Scalar) -> tuple[float, float]:
@@ -132,6 +148,8 @@ class Number:
         if not is_number(value):
             unit = f", in {self.unit}" if self.unit else ""
             raise refuse(value, self, f"write a finite number without quotes{unit}")
+        if abs(value) > LARGEST and self.allow(value, value):
+            raise refuse(value, self, f"write a number below {LARGEST:g} in size, whose square is a number")
         if not self.allow(value, value):
             raise refuse(value, self, "write a number in this range")
         return float(value)
@@ -204,6 +222,8 @@ class MaybeUncertain(Number):
         if not self.allow(lower, upper, ends=math.isfinite(upper)):
             allowed = f"{self}, and it reaches from {lower:g} to {upper:g}"
             raise refuse(table, allowed, "bound it within the range (uniform, log_uniform, beta, truncated_normal)")
+        if any(LARGEST < abs(end) < math.inf for end in (lower, upper)):
+            raise refuse(table, self, f"write limits below {LARGEST:g} in size, whose squares are numbers")
         # The support can lie in the range and the samples can still leave it: a gamma law of a tiny shape underflows to
         # 0.
         if kind not in ALWAYS_SAMPLED:

@@ -3,7 +3,6 @@
 import importlib.util
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import UTC, datetime
 from itertools import pairwise
 
 from lithobrake.study.delivery_sections import arrival_key
@@ -11,13 +10,13 @@ from lithobrake.study.design_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.plain_text import closest, show
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
 PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
 POLE = ("pole_right_ascension_deg", "pole_declination_deg")
-EXAMPLE = "2027-04-20T12:00:00"
 # What tells where Sun and Earth are, by the module that each is imported by.
 SKY_KEYS = {"spiceypy": "spiceypy", "erfa": "pyerfa"}
 
@@ -41,7 +40,7 @@ def aim_problems(study: Study) -> Iterator[str]:
             'aim.grid has "delivery.incidence_deg", and site.roughness_deg draws the ground under each lander by its '
             "own incidence; leave one of the two out"
         )
-    axes, count = len(study.aim.names), len(study.aim.aims())
+    axes, count = len(study.aim.names), study.aim.count
     if axes > MOST_AXES or count > MOST_AIMS:
         yield (
             f"aim.grid has {axes} names, with aim.sides, and {count} aims; allowed: at most {MOST_AXES} and "
@@ -66,8 +65,8 @@ def _value_problems(
         inside = all(lower <= value <= upper for value in values)
         if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
             yield (
-                f'aim.grid."{option}" is {values}; allowed: ascending values from {lower:g} to {upper:g}, which the '
-                "runs reach over; leave others out, or widen its distribution"
+                f'aim.grid."{option}" is {show(values)}; allowed: ascending values from {lower:g} to {upper:g}, '
+                "which the runs reach over; leave others out, or widen its distribution"
             )
 
 
@@ -109,13 +108,13 @@ def sky_problems(study: Study) -> Iterator[str]:
 def _date_problems(study: Study) -> Iterator[str]:
     """Dates that are none, and a date without what it needs."""
     sky, site = study.sky, study.site
-    times: dict[str, datetime] = {}
+    times: dict[str, Epoch] = {}
     epoch = None if sky.orbit is None else sky.orbit.epoch
     for name, text in (("date", sky.date), ("until", sky.until), ("orbit.epoch", epoch)):
         try:
-            times |= {} if text is None else {name: utc(text)}
-        except ValueError:
-            yield f"sky.{name} is {show(text)}; allowed: a UTC date and time such as {EXAMPLE}"
+            times |= {} if text is None else {name: Epoch.of(text)}
+        except ValueError as error:
+            yield f"sky.{name} {error}"
             return
     if sky.date is None:
         for key in ("until", "orbit"):
@@ -130,7 +129,7 @@ def _date_problems(study: Study) -> Iterator[str]:
     if site.kernels:
         if sky.orbit is not None:
             yield "sky.orbit is given, and site.kernels tell where the body is; leave one of the two out"
-        yield from _kernel_problems(study, [name for name in ("date", "until") if name in times])
+        yield from _kernel_problems(study, [text for text in (sky.date, sky.until) if text is not None])
         return
     lacking = [key for key in POLE if getattr(site, key) is None]
     if lacking:
@@ -152,8 +151,7 @@ def _kernel_problems(study: Study, dates: Sequence[str]) -> Iterator[str]:
     name = None if sky.orbiter is None else sky.orbiter.kernel_name
     for target in ("sun", "earth", *([] if name is None else [name])):
         try:
-            times = [utc(str(getattr(sky, date))).isoformat() for date in dates]
-            read_places(site.kernels, site.kernel_body or site.body, target, times)
+            read_places(site.kernels, site.kernel_body or site.body, target, dates)
         except (ValueError, ImportError) as error:
             yield f"sky.date: {error}"
             return
@@ -180,13 +178,6 @@ def _orbiter_problems(study: Study) -> Iterator[str]:
         from lithobrake.study.delivered_states import orbiter_states
 
         try:
-            if len(orbiter_states(study).time) < 2:
-                yield "sky.orbiter.states has one state; allowed: two or more, over the time that counts; add some"
+            orbiter_states(study)
         except ValueError as error:
             yield f"sky.orbiter.states: {error}"
-
-
-def utc(text: str) -> datetime:
-    """A date and time [UTC]. Raises ValueError for another text."""
-    found = datetime.fromisoformat(text)
-    return found if found.tzinfo is None else found.astimezone(UTC).replace(tzinfo=None)

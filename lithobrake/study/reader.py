@@ -11,6 +11,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from lithobrake.files.reading import open_regular
 from lithobrake.study.checks import problems
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
@@ -134,9 +135,11 @@ def load_tables(path: Path) -> dict[str, Any]:
 def read_bytes(path: Path) -> bytes:
     """Read a study file as it lies on the disk. Raises StudyError when it is not there."""
     try:
-        return path.read_bytes()
-    except OSError as error:
-        reason, remedy = f"the study file cannot be read ({error.strerror or error})", "name an existing TOML file"
+        with open_regular(path) as file:
+            return file.read()
+    except (OSError, ValueError) as error:
+        said = error.strerror or error if isinstance(error, OSError) else error
+        reason, remedy = f"the study file cannot be read ({said})", "name an existing TOML file"
         # Without a suffix it was likely meant as the name of a shipped study.
         if not path.suffix:
             known = shipped_studies()
@@ -175,11 +178,10 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
     try:
         # The checks below compare values of several keys, so they need all of them in the right types: they run only
         # where the schema has nothing to refuse.
-        study = Study.model_validate(_absolute(tables, folder)).with_function(function)
+        study = Study.model_validate(_absolute(tables, folder)).with_function(function).of_file(name)
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
-    found = [f"{name}: {text}" for text in problems(study)]
-    if found:
+    if found := [study.said(text) for text in problems(study)]:
         raise StudyError(found)
     return study
 

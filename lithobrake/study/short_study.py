@@ -2,12 +2,14 @@
 
 import json
 import math
+import re
 from dataclasses import dataclass
+from pathlib import Path
 
 from lithobrake.study.refusals import by_name
 from lithobrake.study.template import DISTRIBUTION_WORDS, commented, sections
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
-from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody
+from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody, body_named_in
 
 _CDS = "largest mass and envelope in [CDS-2022], without deployable parts"
 GRAIN_SIZE = 0.4  # diameter of the grains over the longest edge of the lander
@@ -21,8 +23,8 @@ SLOW_WORDS = f"{SPEEDS[0]:g} to {SPEEDS[1]:g} of the escape speed"
 FAST_WORDS = "far below the escape speed; free fall is faster, and needs stiffer grains"
 # Over density and square of the speed: what a contact must have to be stiff, and the least of any use [Pa].
 STIFFNESS, SOFTEST = 16_000.0, 2e5
-LOST_PARTNER = "A mesh has no partner: the other body of the binary has no gravity and cannot be hit."
 DENSITY = 2500.0  # kg/m3
+BULK_DENSITY = 2000.0  # kg/m3, by which a body of a mesh has a size for the speeds of its study
 _STUDY = """\
 # Where does a lander come to rest? Each one is followed from delivery to rest, with a landing simulated at each impact.
 # Replace lander, body, delivery and ground by those of your mission. An unknown number is a table with a distribution,
@@ -74,7 +76,30 @@ _ALL_KEYS = """\
 
 def known_body(name: str) -> KnownBody:
     """The body of a name in any case. Raises ValueError for another name."""
-    return by_name("body", KNOWN_BODIES, name, "for another body write its mass and spin into [site]")
+    return by_name("body", KNOWN_BODIES, name, "for another body give --mass and --spin with its --shape")
+
+
+def body_of_mesh(shape: str, mass: float, spin_period: float) -> KnownBody:
+    """The body of a mesh by its mass [kg] and spin period [s]; its name is that of the file.
+
+    Raises ValueError for numbers that no body has.
+    """
+    for option, value, unit in (("--mass", mass, "kg"), ("--spin", spin_period, "s")):
+        if not 0.0 < value < math.inf:
+            raise ValueError(f"{option} is {value:g}; allowed: a finite number above 0 [{unit}]; write such a number")
+    name = re.sub(r"[^\w -]", "_", Path(shape).stem, flags=re.ASCII).strip("_ -")[:40] or "body"
+    radius = (0.75 * mass / (math.pi * BULK_DENSITY)) ** (1.0 / 3.0)
+    return KnownBody(name, mass, spin_period, radius, "mass and spin period of the command line")
+
+
+def refuse_other_body(body: KnownBody, shape: str) -> None:
+    """Raise ValueError where the file of a mesh has the name of another body than the one that it is to be."""
+    found = body_named_in(Path(shape).stem)
+    if found is not None and found is not body:
+        raise ValueError(
+            f"--shape is {shape!r}, which names {found.name}, and --body is {body.name}, whose mass and spin the study "
+            f"would have; write --body {found.key}, or rename the file"
+        )
 
 
 @dataclass(frozen=True)
@@ -166,13 +191,20 @@ def _site(body: KnownBody, shape: str | None) -> str:
         raise ValueError("shape is empty; give the path of a closed mesh, or leave --shape out")
     if shape is None:
         return f'[site]\nbody = "{body.key}"    # or a mesh with mass and spin_period\n'
-    missing = LOST_PARTNER if body.is_built_in else body.missing
     # A JSON string is a basic string of TOML, so backslashes and quotes of a path are escaped as TOML reads them.
-    head, quoted = f"# {missing}\n" if missing else "", json.dumps(shape, ensure_ascii=False)
+    quoted = json.dumps(shape, ensure_ascii=False)
     pole = ""
     if body.pole is not None:
         pole = f"# Its pole: right ascension {body.pole[0]} deg, declination {body.pole[1]} deg (ICRF).\n"
+    other = body.companion
+    partner = ""
+    if other is not None:
+        orbit = "" if body.is_synchronous else f"period = {other.period:.8g}    # s, of the orbit\n"
+        partner = (
+            f"\n# It orbits with {other.name}, a ball here, which attracts and may be hit.\n[site.partner_body]\n"
+            f'name = "{other.name}"\nmass = {other.mass:g}    # kg\ndiameter = {other.diameter:g}    # m\n{orbit}'
+        )
     return (
-        f'{head}# {body.name}: {body.source}.\n{pole}[site]\nbody = {quoted}    # unit = "km" if it is not in m\n'
-        f'name = "{body.name}"\nmass = {body.mass:g}    # kg\nspin_period = {body.spin_period:.8g}    # s\n'
+        f'# {body.name}: {body.source}.\n{pole}[site]\nbody = {quoted}    # unit = "km" if it is not in m\n'
+        f'name = "{body.name}"\nmass = {body.mass:g}    # kg\nspin_period = {body.spin_period:.8g}    # s\n{partner}'
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from lithobrake.study.body_checks import body_problems
+from lithobrake.study.body_checks import body_problems, rotation_problems
 from lithobrake.study.checks import landing_problems
 from lithobrake.study.lander_section import PartSection
 from lithobrake.study.quantity import is_number
@@ -151,8 +151,9 @@ def fixed_study(study: Study, values: Mapping[str, Any]) -> Study:
     # A landing reads nothing of the site, and a flight nothing else.
     of_site = all(key.startswith(SITE) for key in values)
     read = list(fixed.site_values()) if of_site else [*fixed.touchdown_values(), *ORIENTATION]
-    between = body_problems if of_site else landing_problems
-    found = [_unread(key, read) for key in values if key not in read] or list(between(fixed))
+    between = (rotation_problems, body_problems) if of_site else (landing_problems,)
+    found = [_unread(key, read) for key in values if key not in read]
+    found = found or [problem for problems in between for problem in problems(fixed)]
     if found:
         raise StudyError(found)
     return fixed

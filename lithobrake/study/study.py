@@ -3,15 +3,24 @@
 A `MaybeUncertain` key takes a number, or a table with a distribution. `lithobrake new` writes these very lines.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import BaseModel, Field, PrivateAttr, model_validator
 
 from lithobrake.study import design_sections, ground_sections, impact_sections
-from lithobrake.study.delivery_sections import DeliverySection, JourneySection, delivered_tables, journey_tables
+from lithobrake.study.delivery_sections import (
+    SURFACE_KEYS,
+    DeliverySection,
+    JourneySection,
+    arrival_key,
+    delivered_tables,
+    journey_tables,
+)
 from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole, median
+from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.quantities import PLACE
 
 
@@ -46,6 +55,7 @@ class Study(Section):
     sky: design_sections.SkySection = design_sections.SkySection()
     _function: str | None = PrivateAttr(default=None)
     _site_gravity: float | None = PrivateAttr(default=None)
+    _file: str = PrivateAttr(default=STUDY_FILE)
 
     @model_validator(mode="before")
     @classmethod
@@ -66,6 +76,33 @@ class Study(Section):
         study = self.model_copy()
         study._function = identity
         return study
+
+    def of_file(self, name: str) -> "Study":
+        """The same study, whose file has this name in messages."""
+        study = self.model_copy()
+        study._file = name
+        return study
+
+    def said(self, problem: str) -> str:
+        """A problem after the name of the study file, each key as the file has it."""
+        return f"{self._file}: {self.as_written(problem)}"
+
+    def as_written(self, text: str) -> str:
+        """A text with each key as the study file has it: delivery.speed for impact.speed."""
+        for key, own in self._given_elsewhere().items():
+            # What stands in quotation marks is a value of the file.
+            text = re.sub(rf'(?<![\w."]){re.escape(own)}(?![\w."])', key, text)
+        return text
+
+    def _given_elsewhere(self) -> dict[str, str]:
+        """The keys that stand for others, with these; not those that are given in both places and contradict."""
+        given = {} if self.journey.count != self.design.run_count else {"journey.count": "design.run_count"}
+        if self.delivery is not None:
+            for key in SURFACE_KEYS:
+                value, own = getattr(self.delivery, key), arrival_key(f"delivery.{key}")
+                if value is not None and value == getattr(getattr(self, own.partition(".")[0]), key):
+                    given[f"delivery.{key}"] = own
+        return given
 
     def under_site_gravity(self, gravity: float) -> "Study":
         """The same study, whose beds and medians have the acceleration [m/s2] of the site, inward."""

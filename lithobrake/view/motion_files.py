@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,11 +51,23 @@ def journey_film(motion: "JourneyMotion", path: Path, seconds: float = 8.0, prog
 
 
 def _refuse(path: Path, seconds: float) -> None:
-    """Raise ValueError for another kind or duration."""
     if path.suffix not in KINDS:
         raise ValueError(f"the film is {path.name!r}; allowed: a name that ends in {' or '.join(KINDS)}")
+    refuse_film(path, seconds)
+
+
+def refuse_film(path: Path, seconds: float) -> None:
+    """Raise ValueError for a film of no duration, ImportError where what draws or writes it is absent.
+
+    Any other file is none, and is not refused.
+    """
+    if path.suffix not in KINDS:
+        return
     if not 0.0 < seconds < np.inf:
         raise ValueError(f"the film lasts {seconds!r} s; allowed: a finite time above 0 s")
+    extra_library("pyvista", "PyVista", "view")
+    if path.suffix == ".mp4":
+        _film_library()
 
 
 def _told(pictures: Iterator[np.ndarray], count: int, progress: Progress) -> Iterator[np.ndarray]:
@@ -105,8 +117,12 @@ def _write(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
         (_write_mp4 if path.suffix == ".mp4" else _write_webp)(draft, pictures, rate)
 
 
+def _film_library() -> Any:
+    return extra_library("imageio_ffmpeg", "imageio-ffmpeg", "view", ", or write .webp")
+
+
 def _write_mp4(path: Path, pictures: Iterator[np.ndarray], rate: float) -> None:
-    library = extra_library("imageio_ffmpeg", "imageio-ffmpeg", "view", ", or write .webp")
+    library = _film_library()
     writer = library.write_frames(str(path), SIZE, fps=rate, output_params=["-f", "mp4"], macro_block_size=2)
     writer.send(None)
     for picture in pictures:

@@ -9,6 +9,8 @@ LEAST_PROBABILITY = 2.0**-53
 
 # Of a study whose file does not say how many it has: on fewer an interval is far wider.
 FEWEST_BEDS_OF_INTERVAL = 12
+# Landings that leave the surface, of an emulator.
+FEWEST_RUNS_OF_EMULATOR = 8
 # Of a quantile far out: on fewer a handful of runs beyond it lie on one or two beds.
 FEWEST_BEDS_OF_TAIL = 10
 # Of the correlation of pairs by the sums over beds: fewer say less of it than the pairs do.

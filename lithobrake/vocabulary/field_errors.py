@@ -1,5 +1,7 @@
-"""The error that the engine raises for a value, with the field that has it."""
+"""The error that the engine raises for a value, with the field that has it, and the check of a number."""
 
+import math
+from numbers import Real
 from typing import Any
 
 
@@ -18,3 +20,28 @@ class FieldError(ValueError):
     def __str__(self) -> str:
         value = f"{self.value!r} {self.unit}".rstrip()
         return f"{self.field} is {value}; allowed {self.allowed}: {self.remedy}"
+
+
+def field_number(field: str, value: Any, allowed: str, unit: str = "", *, above: float = -math.inf) -> float:
+    """Return a finite number above a limit. Raises FieldError for another, and for text, true and false."""
+    # One of NumPy is compared and shown as a plain one; a whole number beyond all floats is none.
+    plain = value.item() if isinstance(value, Real) and hasattr(value, "item") else value
+    is_number = isinstance(plain, Real) and not isinstance(plain, bool)
+    if not is_number or not above < plain < math.inf or not plain > -math.inf:
+        raise FieldError(field, value, allowed, unit=unit)
+    try:
+        return float(plain)
+    except OverflowError as error:
+        raise FieldError(field, value, allowed, unit=unit) from error
+
+
+def field_numbers(field: str, values: Any, count: int, allowed: str, unit: str = "") -> list[float]:
+    """Return so many finite numbers. Raises FieldError for anything else."""
+    given = list(values) if hasattr(values, "__len__") and not isinstance(values, str | bytes | dict) else []
+    try:
+        found = [field_number(field, value, allowed, unit) for value in given]
+    except FieldError as error:
+        raise FieldError(field, values, allowed, unit=unit) from error
+    if len(found) != count:
+        raise FieldError(field, values, allowed, unit=unit)
+    return found

@@ -41,16 +41,18 @@ def finite_number(
 
     above, below: limits that it may not reach; at_least, at_most: limits that it may.
     """
-    # A whole number beyond all floats would overflow; none of the ranges reaches so far.
+    # Squares of larger numbers would be infinite; a whole number beyond all floats would overflow.
     # A number of NumPy would take the limit into its own precision.
     plain = value.item() if isinstance(value, Real) and hasattr(value, "item") else value
-    real = isinstance(value, Real) and not isinstance(value, bool) and bool(abs(plain) < 1e308)  # type: ignore[arg-type]
+    real = isinstance(value, Real) and not isinstance(value, bool) and bool(abs(plain) <= LARGEST)  # type: ignore[arg-type]
     number = float(plain) if real else math.nan  # type: ignore[arg-type]
     low_enough = (below is None or number < below) and (at_most is None or number <= at_most)
     high_enough = (above is None or number > above) and (at_least is None or number >= at_least)
     if not (math.isfinite(number) and low_enough and high_enough):
         named = {"above": above, "of at least": at_least, "below": below, "of at most": at_most}
         ends = [f"{word} {limit:g}" for word, limit in named.items() if limit is not None]
+        if below is None and at_most is None and isinstance(plain, int | float) and LARGEST < abs(plain) < math.inf:
+            ends.append(f"of at most {LARGEST:g} in size")
         raise ValueError(f"{name} is {value!r}, but must be a finite number{' ' if ends else ''}{' and '.join(ends)}")
     return number
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import MISSING, dataclass, field, fields
+from numbers import Real
 from typing import Any
 
 from lithobrake.vocabulary.field_errors import FieldError
@@ -58,6 +59,8 @@ class MaterialProperty:
 
     def allows(self, value: float) -> bool:
         """Whether a value is finite and in the range."""
+        if isinstance(value, bool) or not isinstance(value, Real):
+            return False
         return math.isfinite(value) and self.above < value < self.below and self.at_least <= value <= self.at_most
 
 

@@ -27,6 +27,12 @@ def plain(text: str) -> str:
     return "".join(letter if letter.isprintable() or letter == "\n" else " " for letter in _ESCAPE.sub("", text))
 
 
+def program_name(name: str) -> str:
+    """A name as other programs take it: capitals, digits and underscores; BODY where a name has no letter of these."""
+    found = re.sub(r"\W+", "_", name, flags=re.ASCII).upper()
+    return found if found.strip("_") else "BODY"
+
+
 def wrapped(text: str, width: int) -> str:
     """Give a text with line breaks at blanks alone, so that no line is longer than a width where that can be.
 

@@ -126,8 +126,8 @@ FLIGHT = {
 ARC = {
     "sample": FLIGHT["sample"],
     "arc": Quantity("", "number of the flight in the journey of the sample, from 0"),
-    "begin_s": Quantity("s", "time from the first impact to the beginning of the flight, below 0 before it"),
-    "end_s": Quantity("s", "time from the first impact to its end"),
+    "begin_s": Quantity("s", "time from the first touchdown to the beginning of the flight, below 0 before it"),
+    "end_s": Quantity("s", "time from the first touchdown to its end"),
     "clock_s": Quantity("s", "time at its beginning in the clock of the partner's motion"),
     **{f"position_{axis}": Quantity("m", f"place of its beginning along {axis}", FIXED) for axis in "xyz"},
     **{f"velocity_{axis}": Quantity("m/s", f"velocity at its beginning along {axis}", FIXED) for axis in "xyz"},
@@ -139,7 +139,9 @@ JOURNEY = {
     "journey": Quantity("", "number of the journey, from 0"),
     "bed": Quantity("", "number of the bed that it meets, from 0"),
     "end": Quantity("", "how the journey ended"),
-    "time_s": Quantity("s", "time from the first touchdown to the end", title="time to rest"),
+    "time_s": Quantity(
+        "s", "time from the first touchdown to the end, or from delivery where there is none", title="time to rest"
+    ),
     "latitude_deg": FLIGHT["latitude_deg"],
     "longitude_deg": FLIGHT["longitude_deg"],
     **{f"position_{axis}": Quantity("m", f"place of the end along {axis}", FIXED) for axis in "xyz"},

@@ -143,6 +143,18 @@ def test_what_one_draw_met_has_no_wider_bounds_than_what_none_met() -> None:
     assert sure.lower == pytest.approx(1.0 - rare.upper)
 
 
+@pytest.mark.parametrize(
+    ("met", "lower", "upper"), [(9998, 0.1 ** (1.0 / 9.0), 1.0), (2, 0.0, 1.0 - 0.1 ** (1.0 / 9.0))]
+)
+def test_what_few_runs_could_not_show_is_bounded_by_their_beds(met: int, lower: float, upper: float) -> None:
+    """A fit to 19 runs on 9 beds, all of which ended alike, gives another end 0.02 % and says no more than they do."""
+    counts, totals = np.full(50, met // 50.0) + (np.arange(50) < met % 50), np.full(50, 200)
+    few, many, plain = (refit_interval(counts, totals, 9, runs) for runs in (19, 19_000, None))
+    assert (few.lower, few.upper) == pytest.approx((lower, upper), abs=1e-3)
+    assert many == plain
+    assert plain.upper - plain.lower < 0.1
+
+
 @pytest.mark.parametrize(("counts", "totals", "beds"), [([1], [5], 12), ([1, 2], [5, 1], 12), ([1, 2], [5, 5], 1)])
 def test_one_of_anything_gives_no_interval(counts: list[int], totals: list[int], beds: int) -> None:
     with pytest.raises(ValueError, match="give at least two of each"):

@@ -146,14 +146,24 @@ def test_places_on_both_sides_of_the_body_are_not_torn() -> None:
     assert region.area_m2 < 0.15 * 4.0 * math.pi * 1e4
 
 
-def test_outlines_stop_at_the_date_line_and_close_elsewhere() -> None:
-    across = highest_density(cloud(200, np.array([-1.0, 0.0, 0.0]), (3.0, 3.0), 2), [0.5]).regions[0]
-    assert len(across.outlines) > 1
-    for line in across.outlines:
-        assert np.abs(np.diff(line[:, 1])).max(initial=0.0) < 180.0
-    (whole,) = highest_density(cloud(200, np.array([1.0, 0.0, 0.0]), (3.0, 3.0), 2), [0.5]).regions[0].outlines
+@pytest.mark.parametrize("middle", [0.0, 180.0])
+def test_an_outline_closes_across_the_date_line_as_elsewhere(middle: float) -> None:
+    turned = math.cos(math.radians(middle)) * np.array([1.0, 0.0, 0.0])
+    (whole,) = highest_density(cloud(200, turned, (3.0, 3.0), 2), [0.5]).regions[0].outlines
     assert whole[0] == pytest.approx(whole[-1])
-    assert np.abs(whole).max() < 10.0
+    assert np.abs(whole[:, 1]).max() <= 180.0
+    assert np.abs((whole[:, 1] - middle + 180.0) % 360.0 - 180.0).max() < 10.0
+
+
+def test_a_region_knows_the_extent_of_each_of_its_islands() -> None:
+    """A large and a small cloud, 53 m apart straight through a sphere of 100 m; a cloud alone is one island."""
+    places = np.concatenate([cloud(count, np.array([1.0, y, 0.0]), (spread, spread), 3)
+                             for count, y, spread in ((150, 0.0, 2.5), (50, 0.6, 2.0))])  # fmt: skip
+    two, one = highest_density(places, [0.95]).regions[0], highest_density(places[:150], [0.5]).regions[0]
+    assert len(two.island_extents_m) == 2
+    assert two.island_extents_m[0] > two.island_extents_m[1]
+    assert 53.0 < two.largest_extent_m < 54.0 + 0.5 * sum(two.island_extents_m)
+    assert one.island_extents_m == pytest.approx((one.largest_extent_m,), rel=0.02)
 
 
 def test_the_map_keeps_areas_and_gives_places_back() -> None:

@@ -42,6 +42,12 @@ class HereExecutor(Executor):
         return future
 
 
+class OneWorker(HereExecutor):
+    """The same, as of one worker."""
+
+    capacity = 1
+
+
 def campaign(path: Path, model: Callable[..., Any], executor: Executor, x: np.ndarray = X, **options: Any) -> Runs:
     with Ledger(path / "runs.sqlite") as ledger:
         return run(model, x, names=("a", "b"), ledger=ledger, executor=executor, **options)
@@ -218,6 +224,28 @@ def test_what_the_ledger_has_is_not_made_again(tmp_path: Path) -> None:
     again = HereExecutor()
     assert chains(tmp_path, again) == first
     assert again.call_count == 0
+
+
+def test_a_chain_that_has_begun_goes_on_before_others_begin(tmp_path: Path) -> None:
+    """In the order of their numbers, so that what has ended at any time does not favour short ones."""
+    lengths, made = [5, 1, 3, 1, 1, 4], []
+
+    def note(inputs: Mapping[str, float], seed: int) -> dict[str, float]:
+        made.append(int(inputs["chain"]))
+        return {"value": 0.0}
+
+    def next_link(chain: int, records: Sequence[Record]) -> Mapping[str, float] | None:
+        return None if len(records) == lengths[chain] else {"chain": float(chain), "link": float(len(records))}
+
+    first = [{"chain": float(chain), "link": 0.0} for chain in range(len(lengths))]
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        run_chains(note, first, next_link, ledger=ledger, executor=OneWorker())
+    begins = [made.index(chain) for chain in range(len(lengths))]
+    ends = [begin + 1 + max(rest for rest, one in enumerate(made[begin:]) if one == chain)
+            for chain, begin in enumerate(begins)]  # fmt: skip
+    assert begins == sorted(begins)
+    # Two runs are handed out to a worker, so two chains are under way.
+    assert max(sum(begin <= run < end for begin, end in zip(begins, ends, strict=True)) for run in range(15)) == 2
 
 
 class Killed(Exception):

@@ -134,16 +134,43 @@ def test_new_names_body_lander_and_place(home: Path) -> None:
     assert "the package has no shape of Bennu; give a closed mesh" in refused(["new", "x", "--body", "bennu"])
     assert "known are Didymos, Dimorphos, Bennu" in refused(["new", "x", "--body", "pluto"])
     assert "known are 1U, 2U" in refused(["new", "x", "--lander", "4u"])
-    assert "shape is empty" in refused(["new", "x", "--shape", ""])
+    assert "shape is empty" in refused(["new", "x", "--body", "bennu", "--shape", ""])
     assert "--first-bounce takes none of" in refused(["new", "x", "--first-bounce", "--lander", "6u"])
     odd = 'C:\\new\\"table".obj'
     assert RUNNER.invoke(app, ["new", "odd", "--body", "dimorphos", "--shape", odd]).exit_code == 0
     text = (home / "odd.toml").read_text()
     assert tomllib.loads(text)["site"]["body"] == odd
-    assert "A mesh has no partner" in text
+    # The other body is a ball of its volume, and the orbit that of the two.
+    other = tomllib.loads(text)["site"]["partner_body"]
+    assert other == {"name": "Didymos", "mass": 5.32e11, "diameter": pytest.approx(765.2)}
     for at in ("91,0", "10", "a,b", "nan,0"):
         assert "it takes a latitude of -90 to 90" in refused(["new", "x", "--at", at])
     assert not (home / "x.toml").exists()
+
+
+MESH = ["--shape", "apophis.obj"]
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (MESH, "--shape is given; allowed: --shape with --body, whose mass and spin are known, or with both --mass"),
+    ([*MESH, "--mass", "4e10"], "--shape and --mass are given; allowed"),
+    ([*MESH, "--body", "bennu", "--mass", "4e10"], "--body and --shape and --mass are given; allowed: --shape with"),
+    (["--mass", "4e10", "--spin", "1e5"], "--mass and --spin are given; allowed: --shape"),
+    ([*MESH, "--mass", "-1", "--spin", "1e5"], "--mass is -1; allowed: a finite number above 0 [kg]"),
+    ([*MESH, "--mass", "4e10", "--spin", "nan"], "--spin is nan; allowed: a finite number above 0 [s]"),
+    (["--body", "bennu", "--shape", "m/ryugu_v3.obj"], "which names Ryugu, and --body is Bennu"),
+])  # fmt: skip
+def test_no_study_has_the_mass_of_another_body(arguments: list[str], words: str, home: Path) -> None:
+    assert words in refused(["new", "x", *arguments])
+
+
+def test_a_body_by_its_mesh_has_the_mass_and_the_spin_that_are_given(home: Path) -> None:
+    given = [*MESH, "--mass", "4e10", "--spin", "110160"]
+    assert RUNNER.invoke(app, ["new", "apo", *given]).exit_code == 0
+    tables = tomllib.loads((home / "apo.toml").read_text())
+    assert tables["site"] == {"body": "apophis.obj", "name": "apophis", "mass": 4e10, "spin_period": 110160.0}
+    assert tables["title"] == "2U on apophis"
+    assert "partner_body" not in (home / "apo.toml").read_text()
 
 
 @pytest.mark.parametrize(
@@ -356,6 +383,14 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "current folder" in ended.stderr
     assert ended.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("seconds", ["nan", "0", "inf"])
+def test_a_film_without_a_length_is_refused_before_the_landing(seconds: str, tmp_path: Path) -> None:
+    words = ["film", str(tmp_path), "--journey", "1", "--out", str(tmp_path / "x.webp"), "--seconds", seconds]
+    found = RUNNER.invoke(app, words)
+    # The folder, which is empty, is not looked at before.
+    assert (found.exit_code, "allowed: a finite time above 0 s" in found.stderr) == (2, True)
 
 
 @pytest.mark.parametrize("kind", [".h5", ".vtkhdf", ".png", ".mp4"])

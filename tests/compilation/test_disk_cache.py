@@ -121,6 +121,15 @@ def test_a_key_that_is_none_keeps_nothing_and_says_so(home, caplog, spoil, word)
     assert word in told
 
 
+def test_a_folder_in_the_place_of_a_file_keeps_the_others(home, caplog):
+    cache = DiskCache("beds")
+    (cache.folder / NAME).mkdir()
+    cache.write(NAME, b"made")
+    assert "is a folder" in caplog.messages[-1]
+    cache.write("another", b"made")
+    assert cache.read("another") == b"made"
+
+
 def test_without_a_home_nothing_is_kept(home, monkeypatch, caplog):
     monkeypatch.setenv("LITHOBRAKE_CACHE", str(home / "cache"))
     (home / "file").write_text("no folder")

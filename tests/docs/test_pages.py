@@ -358,7 +358,7 @@ LEFT_OUT_PAGE = (ROOT / "docs" / "what_the_model_leaves_out.md").read_text(encod
 SCRIPT = runpy.run_path(str(ROOT / "validation" / "experiments" / "left_out.py"))
 
 
-@pytest.mark.parametrize("table", ["contact_lines", "yield_lines", "cohesion_lines", "force_lines"])
+@pytest.mark.parametrize("table", ["contact_lines", "yield_lines", "cohesion_lines", "force_lines", "duration_lines"])
 def test_the_page_has_the_tables_of_the_script(table: str) -> None:
     assert "\n".join(SCRIPT[table]()) in LEFT_OUT_PAGE
 

@@ -3,6 +3,7 @@
 import json
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
@@ -15,7 +16,12 @@ from scipy.spatial.transform import Rotation
 from lithobrake.export import ExportOptions, ephemerides, export_study
 from lithobrake.export.czml import SHOWN
 from lithobrake.export.flown import Flown
+from lithobrake.export.oem import Frame, Segment, epoch_texts, write_oem
 from lithobrake.results import StudyResults, Table
+from lithobrake.study.delivered_states import read_states
+from lithobrake.vocabulary.callbacks import silent
+from lithobrake.vocabulary.clock import Epoch
+from lithobrake.vocabulary.plain_text import program_name
 from lithobrake.vocabulary.quantities import ORIENTATION, ORIENTATION_OUT
 
 from ..smallbody.kernels import LSK
@@ -106,6 +112,19 @@ def test_what_cannot_be_written_is_refused(results: StudyResults, tmp_path: Path
     assert not list(tmp_path.iterdir())
 
 
+def test_a_chosen_flight_is_written_where_too_few_fly_for_a_mean(
+    delivered: StudyResults, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All eight landers fly: a mean that needs nine is not made, and takes no flight with it."""
+    monkeypatch.setattr(ephemerides, "FEWEST", 9)
+    assert [path.name for path in written(delivered, tmp_path, "oem", [3])] == ["flight_3.oem"]
+    assert [path.name for path in tmp_path.iterdir()] == ["flight_3.oem"]
+    words = "8 landers have flights, and the covariance of their mean needs 9"
+    assert caplog.messages == [f"flight_mean.oem is not written: {words}; raise journey.count for the mean."]
+    with pytest.raises(ValueError, match=f"{words}; name single flights with --flight, or raise journey.count"):
+        written(delivered, tmp_path, "oem")
+
+
 def test_progress_reaches_its_end_and_large_files_are_announced(
     results: StudyResults, tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -141,27 +160,63 @@ def test_a_message_gives_back_the_states_that_were_delivered(delivered: StudyRes
 
 def test_a_message_along_icrf_delivers_the_next_study(delivered: StudyResults, tmp_path: Path) -> None:
     """What is written is what is read: the states of the first flight as those of a delivery."""
-    from lithobrake.study.delivered_states import read_states
-
     written(delivered, tmp_path, "oem", [3], frame="icrf")
     read = read_states(tmp_path / "flight_3.oem", "icrf", EPOCH, ["DIMORPHOS"])
     assert read.time[0] == 300.0
     assert np.concatenate([read.position[0], read.velocity[0]]) == pytest.approx(delivered_states()[3, 1:7], abs=1e-9)
 
 
-@pytest.fixture
-def furnished(delivered: StudyResults, tmp_path: Path):  # type: ignore[no-untyped-def]
+@pytest.fixture(scope="module")
+def furnished(delivered: StudyResults, tmp_path_factory: pytest.TempPathFactory):  # type: ignore[no-untyped-def]
     """NAIF's routines with what was written, and leap seconds."""
-    spice = pytest.importorskip("spiceypy")
-    pytest.importorskip("erfa")
-    files = written(delivered, tmp_path, "spk", [3], step=20.0)
-    (tmp_path / "leap.tls").write_text(LSK)
-    kernels = [str(path) for path in (*files, tmp_path / "leap.tls")]
+    spice, folder = pytest.importorskip("spiceypy"), tmp_path_factory.mktemp("spk")
+    files = written(delivered, folder, "spk", [3], step=20.0)
+    (folder / "leap.tls").write_text(LSK)
+    kernels = [str(path) for path in (*files, folder / "leap.tls")]
     for kernel in kernels:
         spice.furnsh(kernel)
     yield spice
     for kernel in kernels:
         spice.unload(kernel)
+
+
+def test_spice_has_each_epoch_of_the_message_of_the_same_flights(furnished, delivered: StudyResults) -> None:  # type: ignore[no-untyped-def]
+    """Both ends of each flight among them, whose times it turns into its own; a flight moves by 3e-8 m in 1 us."""
+    axes = Frame.of(delivered, "icrf", None)
+    flights = axes.timed(delivered, Flown.of(delivered).journeys(delivered, [3]))
+    for segment in ephemerides.flight_segments(flights, axes, 20.0, silent)[3]:
+        times = [furnished.str2et(text) for text in epoch_texts(axes.epoch, segment.time)]
+        found = 1e3 * np.array([furnished.spkgeo(LANDER, time, "J2000", DIMORPHOS)[0] for time in times])
+        assert found == pytest.approx(segment.state, abs=1e-6)
+
+
+@pytest.mark.parametrize(("given", "name"), [
+    ("67P Churyumov-Gerasimenko", "67P_CHURYUMOV_GERASI"),
+    ("g_01960mm_spc_obj_dimo_0000n00000_v004", "G_01960MM_SPC_OBJ_DI"),
+    ("433", "BODY_433"),
+    ("小惑星", "BODY"),
+    ("Ирина-2", "_2"),
+])  # fmt: skip
+def test_spice_takes_the_name_of_any_body(given: str, name: str, delivered: StudyResults, tmp_path: Path) -> None:
+    spice = pytest.importorskip("spiceypy")
+    axes = replace(Frame.of(delivered, "icrf", None), body=program_name(given))
+    path = tmp_path / "body.tpc"
+    path.write_text(ephemerides._constants(delivered, axes, 1_000_012, 4e4, [3]))
+    spice.furnsh(str(path))
+    found = spice.namfrm(f"{name}_FIXED"), spice.bodn2c(name), spice.bods2c(name)
+    spice.unload(str(path))
+    assert found == (1_400_012, 1_000_012, 1_000_012)
+
+
+def test_a_message_counts_the_leap_second(tmp_path: Path) -> None:
+    time, state = np.array([0.0, 10.5, 11.0, 59.9999996, 60.0]), np.ones((5, 6))
+    start = Epoch.of("2016-12-31T23:59:50")
+    write_oem(tmp_path / "a.oem", [Segment("LANDER", "ROCK", "ROCK_FIXED", time, state)], start)
+    read = read_states(tmp_path / "a.oem", "body_fixed", None, ["ROCK"])
+    assert read.time == pytest.approx(time, abs=5e-7)
+    epochs = [line.split()[0] for line in (tmp_path / "a.oem").read_text().splitlines() if line.startswith("201")]
+    assert epochs == ["2016-12-31T23:59:50.000000", "2016-12-31T23:59:60.500000", "2017-01-01T00:00:00.000000",
+        "2017-01-01T00:00:49.000000", "2017-01-01T00:00:49.000000"]  # fmt: skip
 
 
 def test_spice_reads_the_states_that_were_delivered(furnished) -> None:  # type: ignore[no-untyped-def]
@@ -188,9 +243,6 @@ def test_spice_turns_them_into_the_axes_of_the_body(furnished, delivered: StudyR
 
 def test_between_states_an_ephemeris_of_spice_is_the_flight(furnished, delivered: StudyResults) -> None:  # type: ignore[no-untyped-def]
     """Half a step after a state, against Hermite's polynomial of one step from exact states would be 1e-6 m."""
-    from lithobrake.export.flown import Flown
-    from lithobrake.export.oem import Frame
-
     axes = Frame.of(delivered, "icrf", None)
     first = axes.timed(delivered, Flown.of(delivered).journeys(delivered, [3]))._rows(np.array([0])).at(410.0)
     state = axes.states(first, 410.0, first.position, first.velocity)[0]

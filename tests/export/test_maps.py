@@ -58,7 +58,10 @@ def test_points_carry_what_the_flights_have_and_the_frame_of_the_body(results: S
             abs=1e-6,
         )
         assert point["properties"]["impact_speed"] == results.flights["impact_speed"][row]
-    crs = rasterio.crs.CRS.from_user_input(json.loads(path.read_text())["crs"]["properties"]["name"])
+    content = json.loads(path.read_text())
+    # RFC 7946, section 4: no member "crs".
+    assert "crs" not in content
+    crs = rasterio.crs.CRS.from_user_input(content["body_frame"])
     assert crs.to_dict()["R"] == pytest.approx(MapFrame.of(results).radius)
 
 
@@ -261,8 +264,8 @@ def test_what_is_wrong_is_said_in_one_sentence(results: StudyResults, tmp_path: 
             f"{taken} is no folder and cannot become",
         ),
         (["export", str(results.folder), "--to", "vtkhdf", "--out", str(tmp_path)], "a program or function of its own"),
-        (["film", str(results.folder), "--out", str(tmp_path / "a.mp4")], "ask that program for its frames"),
-        (["film", str(results.folder), "--run", "²", "--out", str(tmp_path / "a.mp4")], "run is '²', which none of"),
+        (["film", str(results.folder), "--out", str(tmp_path / "a.png")], "ask that program for its frames"),
+        (["film", str(results.folder), "--run", "²", "--out", str(tmp_path / "a.png")], "run is '²', which none of"),
         (["film", str(results.folder), "--out", str(film)], f"{film} exists; choose another name with --out"),
         (["view", str(results.folder), "--run", "5"], "--run 5 is given without --3d"),
     ):

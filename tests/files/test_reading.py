@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import pytest
 
-from lithobrake.files.atomic import atomic_path, lock_holder, locked
+from lithobrake.files.atomic import atomic_path, lock_holder, locked, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading, source_hash
 
 FORM = {"files": {str: {"key": str}}, "wall_s": {str: NUMBER}, "names": [str]}
@@ -133,6 +133,16 @@ def test_a_folder_is_no_name_for_a_file(tmp_path):
     with pytest.raises(ValueError, match="is a folder; name a file"), atomic_path(tmp_path) as draft:
         draft.write_text("never written")
     assert list(tmp_path.parent.glob(f".{tmp_path.name}*")) == []
+
+
+def test_a_file_without_a_folder_is_one_sentence(tmp_path):
+    with pytest.raises(ValueError, match=r"p\.csv cannot be written \(there is no folder .*such\); make it"):
+        write_whole(tmp_path / "no" / "such" / "p.csv", "")
+
+
+def test_a_name_that_stands_twice_is_refused() -> None:
+    with pytest.raises(ValueError, match="it has 'a' twice; write each name once"):
+        parsed('{"b": {"a": 1, "a": 2}}', dict)
 
 
 PACKAGE = Path(__file__).parents[2] / "lithobrake"

@@ -132,6 +132,36 @@ def test_a_plate_table_with_gaps_between_its_numbers_is_refused(tmp_path: Path, 
         read_mesh(tmp_path / "rock.tab")
 
 
+SQUARE = "v 0 0 0\nv 2 0 0\nv {x} 1 0\nv 0 2 0\nv 0 0 1\n"
+FANS = "f 1 4 5\nf 1 5 2\nf 2 5 3\nf 3 5 4\n"
+
+
+@pytest.mark.parametrize(("name", "text", "words"), [
+    ("rock.obj", "ply\nformat ascii 1.0\n", "rock.obj is a PLY mesh; meshes are read from OBJ"),
+    ("rock.tab", "CCSDS_OEM_VERS = 2.0\n", r"rock.tab is an Orbit Ephemeris Message \(OEM\); meshes are read"),
+    ("rock.dat", OCTAHEDRON, "rock.dat is an OBJ mesh, which its ending does not say; allowed: .obj"),
+    ("rock.obj", "solid rock\nfacet normal 0 0 1\n", "rock.obj is an STL mesh.*; allowed: .stl; rename it"),
+    ("rock.xyz", "1 2 3\n", "the ending '.xyz' is not read"),
+    ("rock.obj", OCTAHEDRON.translate(str.maketrans("123456", "012345", "")).replace("v 0", "v 1"),
+     "its facets count from 0, to 5 of 6 vertices; allowed: from 1"),
+    ("rock.tab", plate_table([line[2:] for line in NUMBERED[0]], ["0 2 4", "2 1 4", "1 3 4", "3 0 5"]),
+     "its facets count from 0, to 5 of 6 vertices"),
+    ("dart.obj", f"{SQUARE.format(x=0.5)}{FANS}f 4 3 2 1\n", "line 10 has a facet of 4 corners that is not convex"),
+    ("bow.obj", f"{SQUARE.format(x=2)}{FANS}f 1 3 2 4\n", "line 10 has a facet of 4 corners that is not convex"),
+])  # fmt: skip
+def test_a_mesh_that_is_none_is_told_why(tmp_path: Path, name: str, text: str, words: str) -> None:
+    (tmp_path / name).write_text(text)
+    with pytest.raises(ValueError, match=words):
+        read_mesh(tmp_path / name)
+
+
+def test_a_convex_facet_is_cut_into_a_fan(tmp_path: Path) -> None:
+    (tmp_path / "pyramid.obj").write_text(f"{SQUARE.format(x=1.5)}{FANS}f 4 3 2 1\n")
+    vertices, faces = read_mesh(tmp_path / "pyramid.obj")
+    # A third of the height times the base, 2 x 1 / 2 + 1.5 x 2 / 2 by its two triangles at the origin.
+    assert abs(volume_of(vertices, closed_faces(vertices, faces, "pyramid"))) == pytest.approx(2.5 / 3.0)
+
+
 def gaskell_cube(size: int) -> np.ndarray:
     """Vertices of a cube as the format has them, [6, J, I, 3], from the corners that its faces share."""
     corners = {
@@ -277,6 +307,13 @@ def test_a_volume_has_the_sign_of_its_facets() -> None:
 def test_a_surface_goes_round_the_origin_or_not(shift: float, inside: bool) -> None:
     for direction in np.eye(3):
         assert holds_origin(UNIT_CUBE + shift * direction, FACES) == inside
+
+
+def test_a_surface_through_the_origin_does_not_go_round_it() -> None:
+    """Whichever way its facets are turned: of slanted ones rounding leaves the origin above or below."""
+    turns = np.linalg.qr(np.random.default_rng(0).normal(size=(40, 3, 3)))[0]
+    on_facets = UNIT_CUBE + np.array([0.5, 0.1, 0.2])
+    assert not any(holds_origin(on_facets @ turn, FACES) for turn in turns)
 
 
 def test_a_flat_body_has_no_volume() -> None:

@@ -93,6 +93,7 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = few_grains(30, 0.54, 0.05) + "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\nspin_z = 1.0\n"
     text = text.replace("[grain]", "bed_count = 2\n[grain]")
     asked = "[journey]\ntouchdowns = 1\n[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n"
+    asked += "[monte_carlo]\nsample_count = 0\n"
     (folder / "study.toml").write_text(f"{text}{asked}")
     run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
     return folder

@@ -1,6 +1,7 @@
 """The site: where an error of delivery leads, accelerations there, and the flights of single runs from it."""
 
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -17,11 +18,12 @@ from lithobrake.pipeline.first_touchdown.flights import Starts, flight_dependenc
 from lithobrake.pipeline.first_touchdown.run_flights import FLIGHT_COUNT, run_sites
 from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.job import Job, Silent
-from lithobrake.pipeline.site import SITE_KEYS, Site
+from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
-from lithobrake.study import Study, check_tables
+from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.template import template
+from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 
 from ..geometry.test_mesh_files import PRODUCT, mesh, write_kernel
 from ..paper_tables import with_keys
@@ -57,6 +59,90 @@ def test_the_slope_at_a_site_of_a_mesh_is_known_before_a_run(tmp_path: Path) -> 
     assert 20.0 < Site(changed(site=body | {"latitude_deg": 85.0})).slope_deg < 55.0
 
 
+PHOBOS = {"mass": 1.06e16, "spin_period": 27_553.8, "latitude_deg": 0.0, "longitude_deg": 0.0}
+MARS = {"name": "Mars", "mass": 6.417e23, "diameter": 6.779e6}
+
+
+def phobos(folder: Path, file: str = "phobos_v2.obj", **site: Any) -> Site:
+    """An ellipsoid with the extents of Phobos, 26.06 x 22.8 x 18.28 km."""
+    shape = top_shape((26_060.0, 22_800.0, 18_280.0), 0.0)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in shape.vertices.tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (shape.faces + 1).tolist()]
+    (folder / file).write_text("\n".join(lines))
+    return Site(changed(site=PHOBOS | {"body": str(folder / file)} | site))
+
+
+def test_weight_below_a_planet_lacks_three_times_the_centrifugal_acceleration(tmp_path: Path) -> None:
+    """Of a moon that keeps one face to it: n2 x by its turning, and 2 n2 x, with higher terms of x / d, by the tide.
+
+    n2 d3 = G (M + m): d = 9374 km of 27 553.8 s. At the end of the long axis x = 13.03 km.
+    """
+    alone, both = phobos(tmp_path), phobos(tmp_path, partner_body=MARS)
+    turning, x = (2.0 * math.pi / PHOBOS["spin_period"]) ** 2, 13_030.0
+    pull = GRAVITATIONAL_CONSTANT * MARS["mass"]
+    distance = ((pull + GRAVITATIONAL_CONSTANT * PHOBOS["mass"]) / turning) ** (1.0 / 3.0)
+    assert both.body.orbit.distance == pytest.approx(distance, rel=1e-5)
+    assert both.body.orbit.rate == 0.0
+    tide = pull / (distance - x) ** 2 - pull / distance**2
+    assert both.acceleration[2] - alone.acceleration[2] == pytest.approx(tide, rel=1e-4)
+    assert tide == pytest.approx(2.0 * turning * x, rel=3e-3)
+    # 3.5 mm/s2 by a point mass there become 2.1; the ellipsoid, whose ends are nearer, pulls by 1.3 mm/s2 more.
+    assert [-1e3 * site.acceleration[2] for site in (both, alone)] == pytest.approx([3.46, 4.82], abs=0.01)
+    assert both.values["partner_longitude_deg"] == 0.0
+    assert both.slope_deg == pytest.approx(0.0, abs=2.0)
+    assert site_results(both).partner == "Mars"
+
+
+def test_a_body_that_is_known_to_have_a_partner_is_warned_of_without_it(tmp_path: Path) -> None:
+    site = phobos(tmp_path)
+    (words,) = site.cautions
+    assert words.startswith("Phobos orbits with Mars, which this study leaves out")
+    assert 'name = "Mars", mass = 6.417e+23 and diameter = 6.779e+06' in words
+    assert site_results(site).cautions == (words,) == tuple(site.remarks[:1])
+    assert phobos(tmp_path, partner=False).cautions == ()
+    assert phobos(tmp_path, partner_body=MARS).cautions == ()
+    assert phobos(tmp_path, "moon.obj").cautions == ()
+    assert phobos(tmp_path, "moon.obj", name="Phobos").cautions == (words,)
+
+
+def test_the_orbit_of_a_partner_follows_from_its_distance_as_from_its_period(tmp_path: Path) -> None:
+    """Another body is over every longitude in turn."""
+    given = {"name": "Other", "mass": 1e15, "diameter": 5e3, "distance": 4e5}
+    site = phobos(tmp_path, partner_body=given)
+    assert site.body.orbit.distance == pytest.approx(4e5, rel=1e-12)
+    again = phobos(tmp_path, partner_body=given | {"distance": None, "period": site.body.partner.period})
+    assert again.body.orbit.distance == pytest.approx(4e5, rel=1e-12)
+    assert site.values["partner_longitude_deg"].parameters == {"lower": -180.0, "upper": 180.0}
+    assert flight_dependencies(site.study) != flight_dependencies(again.study)
+
+
+def test_a_density_is_a_mass_over_the_volume_of_the_shape(tmp_path: Path) -> None:
+    volume, mass = phobos(tmp_path).body.shape.volume, PHOBOS["mass"]
+    uncertain = {"distribution": "uniform", "lower": 1800.0, "upper": 1900.0}
+    site = phobos(tmp_path, mass=None, density=uncertain)
+    assert site.values["mass"].parameters == pytest.approx({"lower": 1800.0 * volume, "upper": 1900.0 * volume})
+    assert site.body.density == pytest.approx(1850.0)
+    assert phobos(tmp_path, mass=None, density=mass / volume).body.mass == pytest.approx(mass, rel=1e-12)
+    built_in = changed(site={"body": "dimorphos", "density": 2400.0})
+    assert Site(built_in).body.density == pytest.approx(2400.0)
+
+
+@pytest.mark.parametrize(("site", "words"), [
+    ({"density": 2000.0}, r"site.mass is 1.06e\+16 and site.density 2000; keep one"),
+    ({"mass": None}, "site.mass is missing; a body read from a mesh needs its mass, or site.density"),
+    ({"mass": None, "density": 2.0}, "site.density makes that a bulk density of 2 kg/m3"),
+    ({"partner_body": MARS | {"period": 1e5, "distance": 1e7}}, "either follows from the other and both masses"),
+    ({"partner_body": MARS | {"distance": 9.376e6}}, "an orbit of 27563.7 s, and spin_period is 27553.8 s"),
+    ({"partner_body": MARS, "partner": False}, "site.partner_body is given, and site.partner is false; keep one"),
+    ({"partner_body": MARS, "body": "dimorphos"}, 'and site.body is "dimorphos", which has its own'),
+    ({"partner_body": MARS | {"name": "<b>"}}, "site.partner_body.name is \"<b>\"; allowed: 1 to 40 letters"),
+    ({"partner_body": {"mass": 1e10}}, "site.partner_body.diameter is missing"),
+])  # fmt: skip
+def test_partners_and_densities_that_cannot_be_are_refused(site: dict[str, Any], words: str, tmp_path: Path) -> None:
+    with pytest.raises(StudyError, match=words):
+        phobos(tmp_path, **site)
+
+
 def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
     def warned(gravity: Any, latitude: float) -> str | None:
         return Site(changed(surface={"gravity": gravity}, site={"latitude_deg": latitude})).gravity_warning
@@ -72,6 +158,15 @@ def test_unlike_accelerations_of_touchdown_and_site_are_told() -> None:
     assert warned({"distribution": "uniform", "lower": 1e-5, "upper": 1e-4}, 80.0) is None
     site = changed(surface={"gravity": "site"}, bed={"settle_gravity": 2e-5}, site={"latitude_deg": 0.0})
     assert Site(site).gravity_warning is None
+
+
+def test_a_spin_period_in_hours_is_asked_back() -> None:
+    said = r"is 11\.4 s, and .* push outward by .* m/s2.*is it in hours\? write seconds, 41040"
+    with pytest.raises(StudyError, match=said):
+        with_site_gravity(changed(surface={"gravity": "site"}, site={"body": "dimorphos", "spin_period": 11.4}))
+    # At the equator of Didymos, which turns so fast that it throws off what lies there.
+    with pytest.raises(StudyError, match=r"push outward by 1\.39e-05 m/s2.*move the site, or give bed\.settle_gravity"):
+        with_site_gravity(changed(surface={"gravity": "site"}, site={"latitude_deg": 0.0}))
 
 
 def test_the_escape_speed_is_that_of_the_potential_at_the_site() -> None:
@@ -108,6 +203,11 @@ def test_the_product_of_an_archive_is_named_by_the_label_of_its_mesh(tmp_path: P
     assert flight_dependencies(found) == before[0]
     assert summary_dependencies(found) != before[1]
     assert site_results(Site(changed())).product_id is None
+    # A mesh or a label that is edited is read again in the same process.
+    path.write_text("\n".join(re.sub("^(v.*)1", r"\g<1>3", line) for line in path.read_text().splitlines()))
+    assert site_results(Site(given)).extents_m == (6e3, 6e3, 6e3)
+    label.write_text(label.read_text().replace("<unit>km", "<unit>m"))
+    assert site_results(Site(given)).extents_m == (6.0, 6.0, 6.0)
     label.write_text(PRODUCT.format(file="other.obj"))
     with pytest.raises(ValueError, match=r"study\.toml: site\.body: .*rock\.xml: this label names other\.obj"):
         changed(site={"body": str(label), "mass": 3e12, "spin_period": 1e4})

@@ -15,7 +15,8 @@ from ..quick_studies import quick_studies
 
 UNITS = {"grain.friction": "-", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
 BOUND = {
-    "height": 0.5, "across": 1.0, "smallest": 0.001, "largest": 0.001, "mass_power": 0.0, "diameter_power": 2.0,
+    "height": 0.5, "across": 1.0, "time_limit": 0.0, "smallest": 0.001, "largest": 0.001, "mass_power": 0.0,
+    "diameter_power": 2.0,
     "impact.speed": 0.2, "impact.spin_x": 0.0, "impact.spin_y": 0.0, "impact.spin_z": 0.1, "surface.slope_deg": 10.0,
     "surface.gravity": 1e-4, "lander.mass": 1.0, "lander.diameter": 0.1,
 }  # fmt: skip

@@ -88,6 +88,14 @@ def test_an_address_is_taken_apart_or_refused() -> None:
         ModelServer("http://127.0.0.1:9", "landing").evaluate([[1.0]], {})
 
 
+@pytest.mark.parametrize("value", [None, "0.1", True])
+def test_what_is_no_number_of_an_answer_is_named(value: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ModelServer, "_post", lambda *_: {"output": [[0, value, 0.9]]})
+    said = rf"http://h:1 answered {json.dumps(value)} for {LANDING[1]}; allowed: a number"
+    with pytest.raises(ValueError, match=said):
+        ModelServer("http://h:1", "landing").evaluate([[1.0]], {}, LANDING)
+
+
 @pytest.fixture
 def study_address(tmp_path: Path) -> Iterator[str]:
     """A server of the ball on a plate."""
@@ -95,6 +103,12 @@ def study_address(tmp_path: Path) -> Iterator[str]:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
+
+
+def test_a_flight_takes_speeds_that_the_integration_can_square(tmp_path: Path) -> None:
+    flight = served_models(BALL, tmp_path / "out")[0]
+    with pytest.raises(ValueError, match=r"input of model flight is \[1e\+300, 0, 1\]; allowed: below 1e\+20 m/s each"):
+        flight.evaluate([1e300, 0.0, 1.0], {})
 
 
 def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
@@ -125,6 +139,7 @@ def test_a_study_serves_its_landing_and_its_flight(study_address: str) -> None:
     ({"mass": 1e20}, "a bulk density of .* kg/m3; allowed: 300 to 8000 kg/m3"),
     ({"mass": "5e11"}, 'site.mass is "5e11"; allowed: above 0 .kg.; write a finite number without quotes'),
     ({"latitude_deg": 91}, "site.latitude_deg is 91; allowed: at least -90 and at most 90 .deg."),
+    ({"rotation_time": 5.0}, "site.rotation_time is a time in .site.rotation., and there is none; add it, or leave"),
     ({"heading_deg": True}, "site.heading_deg is true; allowed"),
     ({"heading_deg": {"distribution": "uniform", "lower": 0, "upper": 9}}, "allowed: one number"),
 ])  # fmt: skip

@@ -195,6 +195,8 @@ def test_wrong_calls_are_refused(ball):
     start, rate = [200.0, 0.0, 0.0], [0.0, 0.0, 0.0]
     for change, said in [
         ({"duration": 0.0}, "duration is 0"),
+        ({"duration": math.nan}, "duration is nan s; it must be finite"),
+        ({"start_time": 1e300}, r"start_time is 1e\+300 s; it must be from -1e\+12 to 1e\+12 s"),
         ({"gravity": "guess"}, "gravity is 'guess'"),
         ({"tolerance": 1.0}, "tolerance is 1"),
         ({"threads": 0}, "threads is 0"),

@@ -79,6 +79,21 @@ def test_laplacian_tells_inside_from_outside(block):
     assert block.laplacian(points) == pytest.approx(expected, abs=1e-12)
 
 
+def test_a_slanted_facet_has_half_the_laplacian_and_holds_no_point():
+    """As the facets of a cube have it: of these planes rounding leaves every point a height, above or below."""
+    tetrahedron = Shape(
+        np.array([(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2)]) + 0.3, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    )
+    for shape in (tetrahedron, didymos(partner=False).shape):
+        body, corners = Body(shape, mass=1.0, spin_period=math.inf), shape.vertices[shape.faces]
+        points = np.einsum("fkc,fci->fki", np.random.default_rng(1).dirichlet([1, 1, 1], (len(corners), 3)), corners)
+        inside = -4.0 * math.pi * GRAVITATIONAL_CONSTANT * body.density
+        assert body.laplacian(points) / inside == pytest.approx(np.full(points.shape[:2], 0.5), abs=1e-9)
+        assert not shape.contains(points).any()
+        away = 1e-9 * shape.radius * shape.normals[:, None]
+        assert shape.contains(points - away).all()
+
+
 def test_near_points_need_no_moments_and_get_the_same_bits():
     body = Body(Shape(*sphere_mesh(3)), mass=1.0 / GRAVITATIONAL_CONSTANT, spin_period=math.inf)
     directions, _ = sphere_mesh(2)

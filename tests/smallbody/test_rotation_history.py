@@ -307,6 +307,13 @@ def test_flights_longer_than_the_history_are_refused():
         fly(body, [100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 3000.0, start_time=1000.0)
     with pytest.raises(ValueError, match=r"spin_period is not 40922\.6 s"):
         fly(body, [100.0, 0.0, 0.0], [0.0, 0.0, 0.0], 300.0, spin_period=3e4)
+    for time in (math.nan, 1e300, -2000.0):
+        with pytest.raises(ValueError, match=r"time is .* s; allowed: 0 to 3600 s, for which attitudes are known"):
+            body.rotation.at(time)
+    with pytest.raises(
+        ValueError, match=r"duration is 1e\+300, but must be a finite number above 0 and of at most 1e\+09"
+    ):
+        rotation_history(body, 1e300)
 
 
 @pytest.mark.parametrize(("attitude", "spin", "words"), [

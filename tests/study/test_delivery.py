@@ -64,6 +64,8 @@ def covariance(**entries: float) -> list[list[float]]:
     ([[1.0]], "allowed: 6 rows of 6 numbers"),
     ([["1"] * 6] * 6, "write finite numbers without quotes"),
     (covariance(r2c2=-1.0), "has -1 as the variance in row 2"),
+    (covariance(r1c1=1e308), "has 1e+308 as the variance in row 1; allowed: 0 to 1e+18, the square of 1e+09 m"),
+    (covariance(r4c4=1e13), "has 1e+13 as the variance in row 4; allowed: 0 to 1e+12, the square of 1e+06 m/s"),
     (covariance(r2c1=5.0), "has 5 in row 2, column 1 and 0 in row 1, column 2; allowed: a symmetric matrix"),
     (covariance(r4c1=0.2, r1c4=0.2), "has 0.2 in row 4, column 1; allowed: -0.1 to 0.1"),
     (covariance(r2c1=90.0, r1c2=90.0, r3c2=90.0, r2c3=90.0, r3c1=-90.0, r1c3=-90.0),
@@ -85,10 +87,13 @@ def test_covariances_without_full_rank_are_taken() -> None:
     ({"release": RELEASE | {"position_std": 1.0}}, "takes position_std and velocity_std together"),
     ({"release": RELEASE | {"position_std": 1.0, "velocity_std": 0.0, "covariance": covariance()}},
      "has covariance and position_std; keep one"),
-    ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}}, "allowed: 3 numbers, each at least 0 [m]"),
-    ({"speed": 0.1}, "impact.speed is given, and the flight from [delivery.release] tells it"),
-    ({"heading_deg": 10.0}, "site.heading_deg is given"),
-    ({"north_error": NORMAL}, "site.north_error is given"),
+    ({"release": RELEASE | {"position_std": -1.0, "velocity_std": 0.0}},
+     "allowed: 3 numbers, each at least 0 and at most 1e+09 [m]"),
+    ({"release": RELEASE | {"velocity": [1e200, 0.0, 0.0]}}, "each at least -1e+06 and at most 1e+06 [m/s]"),
+    ({"release": RELEASE | {"time": 1e300}}, "at least -1e+12 and at most 1e+12 [s]"),
+    ({"speed": 0.1}, "delivery.speed is given, and the flight from [delivery.release] tells it"),
+    ({"heading_deg": 10.0}, "delivery.heading_deg is given"),
+    ({"north_error": NORMAL}, "delivery.north_error is given"),
     ({"frame": None}, "delivery.frame is missing"),
     ({"frame": "J2000"}, "allowed: body_fixed or icrf"),
     ({"frame": "icrf"}, "site.pole_right_ascension_deg is missing"),
@@ -105,7 +110,7 @@ def test_keys_that_do_not_go_together_are_refused(delivery: dict[str, Any], word
 def test_landers_that_are_flown_to_the_ground_take_the_acceleration_of_where_they_are() -> None:
     said = refused(FLOWN, surface={"gravity": 5e-5}, journey={"touchdowns": 1})
     assert "surface.gravity is 5e-05, and landers that fly to the ground from a state take the acceleration" in said
-    assert checked(FLOWN, journey={"touchdowns": 1}).has_local_ground
+    assert checked(FLOWN, journey={"touchdowns": 1}, monte_carlo={"sample_count": 0}).has_local_ground
     assert "delivery.frame goes with states or [delivery.release]" in refused(SURFACE | {"frame": "icrf"})
 
 
@@ -143,6 +148,12 @@ def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(t
     (("1,0,210,0,0,-0.05,0", "1,0,210,0,0,-0.05"), "line 3 has 6 cells; allowed: 7"),
     (("210", "many"), 'line 3: y is "many"; allowed: a finite number'),
     (("210", "nan"), "line 3: y is"),
+    (("210", "1e308"), 'line 3: y is "1e308"; allowed: a finite number, at most 1e+09 m in size'),
+    (("-0.05", "1e200"), 'line 2: vy is "1e200"; allowed: a finite number, at most 1e+06 m/s'),
+    (("1,0,210", "1e300,0,210"), 'line 3: time is "1e300"; allowed: a finite number, at most 1e+12 s'),
+    ((",y_m", ";y_m"), "has comma and semicolon; allowed: titles such as time_s, x_m"),
+    ((STATES, STATES.replace(",", " ")), "has no separator"),
+    ((STATES, STATES.replace(",", ";").replace("-0.05", "-0,05")), "a finite number, with a decimal point"),
     ((STATES[STATES.index("0,0,200") :], ""), "has no states"),
     (("time_s", "<xml>"), "is XML"),
     ((",vz_m_s", ""), "the column vz_m_s is missing"),
@@ -191,13 +202,18 @@ META_STOP
 
 @pytest.mark.parametrize(("change", "frame", "words"), [
     (("REF_FRAME = ICRF", "REF_FRAME = TEME"), "icrf", "line 8: REF_FRAME is TEME"),
-    (("", ""), "body_fixed", "line 8: REF_FRAME is ICRF, which does not turn"),
+    (("", ""), "body_fixed", 'line 8: REF_FRAME is ICRF, and the states of the study are "body_fixed"'),
     (("DIMORPHOS", "DIDYMOS"), "icrf", "line 8: CENTER_NAME is DIDYMOS; allowed: DIMORPHOS"),
     (("-5e-5 0\n2027", "-5e-5\n2027"), "icrf", "line 8 has 6 words"),
     (("-5e-5 0\n2027", "fast 0\n2027"), "icrf", "line 8: could not convert"),
     (("2027-04-20T12:00:10", "20 April"), "icrf", "line 9 has 8 words"),
     (("CENTER_NAME = DIMORPHOS\n", ""), "icrf", "line 6: the segment has no CENTER_NAME"),
     (("META_START", "META_STOP"), "icrf", "the segment has no"),
+    (("META_STOP\n", ""), "icrf", "line 7: the block META_START has no META_STOP before it; write it"),
+    (("REF_FRAME", "TIME_SYSTEM = UTC\nREF_FRAME"), "icrf", "line 7: TIME_SYSTEM stands twice in its segment"),
+    (("META_STOP\n", "META_STOP\nCOVARIANCE_START\n"), "icrf", "COVARIANCE_START has no COVARIANCE_STOP"),
+    (("0 0.2 0 0 -5e-5 0\n2027", "0 1e308 0 0 -5e-5 0\n2027"), "icrf", "line 8: a number is not finite or too large"),
+    (("META_STOP", "USEABLE_START_TIME = noon\nMETA_STOP"), "icrf", 'line 8: USEABLE_START_TIME is "noon"'),
 ])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path
@@ -214,7 +230,47 @@ def test_times_of_a_message_count_from_the_epoch(tmp_path: Path) -> None:
     path.write_text(OEM)
     found = read_states(path, "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
     assert (found.time.tolist(), found.position[0].tolist()) == ([0.5, 10.0], [0.0, 200.0, 0.0])
-    assert read_states(path, "icrf", None, ()).time.tolist() == [0.0, 9.5]
+    assert read_states(path, "icrf", None, ("DIMORPHOS",)).time.tolist() == [0.0, 9.5]
+
+
+@pytest.mark.parametrize(("system", "epochs", "epoch", "times"), [
+    ("UTC", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), None, [0.0, 21.0]),
+    ("UTC", ("2016-366T23:59:60.5", "2017-001T01:00:00Z"), "2016-12-31T23:59:60", [0.5, 3601.0]),
+    ("UTC", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), "2017-01-01T01:00:00+01:00", [-11.0, 10.0]),
+    ("TAI", ("2016-12-31T23:59:50", "2017-01-01T00:00:10"), None, [0.0, 20.0]),
+    ("TAI", ("2027-04-20T12:00:37", "2027-04-20T12:01:37"), "2027-04-20T12:00:00 UTC", [0.0, 60.0]),
+    ("GPS", ("2027-04-20T12:00:18", "2027-04-20T12:01:18"), "2027-04-20T12:00:00Z", [0.0, 60.0]),
+    ("TT", ("2027-04-20T12:00:00", "2027-04-20T12:01:00"), "2027-04-20T12:00:00 TT", [0.0, 60.0]),
+    ("tdb", ("2027-04-20T12:00:00", "2027-04-20T12:01:00"), "2027-04-20T12:00:00 TDB", [0.0, 60.0]),
+])  # fmt: skip
+def test_times_of_a_message_are_seconds_in_any_time_system(
+    system: str, epochs: tuple[str, str], epoch: str | None, times: list[float], tmp_path: Path
+) -> None:
+    read = read_states(timed(tmp_path, system, *epochs), "icrf", epoch, ("DIMORPHOS",))
+    assert read.time.tolist() == pytest.approx(times, abs=1e-7)
+
+
+@pytest.mark.parametrize(("system", "epoch", "words"), [
+    ("UTC", "2027-366T00:00:00", 'line 8: the epoch is "2027-366T00:00:00", and 2027 has the days 001 to 365'),
+    ("UTC", "2027-1T00:00:00", 'line 8: the epoch is "2027-1T00:00:00"; allowed: '),
+    ("UTC", "0001-01-01T00:00:00+05:00", "and the year is 1; allowed: a date and time of the years 1900 to 2999"),
+    ("MET", "2027-04-20T12:00:00", "in the time system MET; allowed: UTC, TAI, GPS, TT, TDB; mend the line"),
+    ("TDB", "2027-04-20T12:00:00", 'write "2027-04-20T12:00:00 TDB" or "2027-04-20T12:00:00 UTC"'),
+])  # fmt: skip
+def test_epochs_that_are_none_or_of_an_open_time_system_are_refused(
+    system: str, epoch: str, words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=r"states\.oem|delivery\.epoch is") as error:
+        read_states(timed(tmp_path, system, epoch, epoch), "icrf", "2027-04-20T12:00:00", ("DIMORPHOS",))
+    assert words in str(error.value)
+
+
+def timed(folder: Path, system: str, *epochs: str) -> Path:
+    """A message whose states are at these epochs of a time system."""
+    path, (head, *_) = folder / "states.oem", OEM.partition("2027")
+    rows = "".join(f"{epoch} 0 0.2 0 0 -5e-5 0\n" for epoch in epochs)
+    path.write_text(head.replace("UTC", system) + rows)
+    return path
 
 
 BOOM = {"shape": "box", "edges": [1.5, 0.01, 0.02], "centre": [0.93, 0.0, 0.01], "mass": 0.05}

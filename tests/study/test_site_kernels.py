@@ -8,12 +8,14 @@ from typing import Any
 import pytest
 
 from lithobrake.pipeline.answer.dispersion_statistics import site_results
-from lithobrake.pipeline.answer.study_summary import study_tables
+from lithobrake.pipeline.answer.study_summary import study_tables, summary_dependencies
 from lithobrake.pipeline.first_touchdown.flights import flight_dependencies
 from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.sky_at_rest import sky_dependencies
 from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import read_partner
 from lithobrake.study import Study, check_tables
+from lithobrake.study.design_sections import SkySection
 from lithobrake.study.template import template
 
 from ..smallbody.kernels import PCK, write_kernels
@@ -69,6 +71,19 @@ def test_another_spin_in_the_kernel_makes_the_flights_anew_and_another_comment_d
     assert flight_dependencies(found) == before
     kernel.write_text(PCK.replace("3823.0", "3824.0"))
     assert flight_dependencies(found) != before
+    # A text of a kernel has eighty characters at most, which folders of tests are longer than.
+    path = [f"'{str(kernel)[at : at + 60]}+'" for at in range(0, len(str(kernel)), 60)]
+    path[-1] = path[-1].replace("+'", "'")
+    names = " ".join(path)
+    (folder / "all.tm").write_text(f"KPL/MK\n\\begindata\nKERNELS_TO_LOAD = ( {names} )\n\\begintext\n")
+    by_meta = study(folder, kernels=["all.tm"])
+    with_sky = by_meta.model_copy(update={"sky": SkySection(date=EPOCH)})
+    before, summary, sky = flight_dependencies(by_meta), summary_dependencies(by_meta), sky_dependencies(with_sky)
+    kernel.write_text(PCK.replace("3823.0", "3825.0").replace("69.327", "69.5"))
+    assert flight_dependencies(by_meta) != before
+    assert sky_dependencies(with_sky) != sky
+    # The summary has the pole, too.
+    assert summary_dependencies(by_meta)["kernels"][1] - summary["kernels"][1] == pytest.approx(0.173)
     assert flight_dependencies(study(folder)) == flight_dependencies(study(folder, kernels=[]))
 
 
@@ -82,6 +97,7 @@ def test_another_spin_in_the_kernel_makes_the_flights_anew_and_another_comment_d
      "site.partner_longitude_deg is given, and site.epoch has it read"),
     ({"kernels": NAMES, "epoch": EPOCH, "partner": False}, "the body has none; leave it out"),
     ({"epoch": EPOCH}, "site.epoch goes with site.kernels"),
+    ({"kernels": NAMES, "epoch": "2026-366T00:00:00"}, "site.epoch is \"2026-366T00:00:00\", and 2026 has the days"),
     ({"body": "cube.obj", "mass": 2e9, "kernels": NAMES[:1]}, "site.kernel_body is missing"),
     ({"kernels": NAMES[0]}, "allowed: a list; write its entries in square brackets"),
 ])  # fmt: skip

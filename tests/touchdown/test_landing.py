@@ -42,13 +42,14 @@ def test_bouncy_ball_rebounds_and_tells_of_it(bed):
     assert out["contact_duration"] > 0.0
     assert out["penetration"] > 0.0
     assert out["peak_acceleration"] > 0.3 / out["contact_duration"]
-    assert 6 <= len(outcome.frames["time"]) <= 12
+    # A landing that is looked at less often than six times has as many frames as looks.
+    assert 4 <= len(outcome.frames["time"]) <= 12
     assert outcome.frames["position"].shape[1:] == (25, 3)
 
 
 def test_heavy_dead_box_is_captured(bed):
     lander = Lander(shape=Box((0.1, 0.1, 0.1)), mass=3.0, material=DEAD)
-    outcome = land(bed, lander, landing(grain=DEAD, speed=0.02, incidence=0.0))
+    outcome = land(bed, lander, landing(grain=DEAD, speed=0.02, incidence=0.0, time_limit=200.0))
     assert outcome.status == "captured"
     assert math.isnan(outcome.outputs["speed_out"])
     left = 0.5 * 3.0 * 0.02**2 - outcome.outputs["energy_lost"]
@@ -239,7 +240,7 @@ def test_contacts_at_steps_of_their_own_tell_the_same_story(bed):
     # What the first blow decides agrees; what follows it is chance.
     assert one["peak_acceleration"] == pytest.approx(together["peak_acceleration"], rel=0.05)
     assert one["energy_lost"] == pytest.approx(together["energy_lost"], rel=0.05)
-    assert 6 <= len(found[0].frames["time"]) <= 12
+    assert 4 <= len(found[0].frames["time"]) <= 12
     assert (np.diff(found[0].frames["time"]) > 0.0).all()
 
 

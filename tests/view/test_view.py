@@ -148,7 +148,7 @@ def track(**changes: Any) -> JourneyTrack:
         TouchdownFacts(2, 4000.0, 5000.0, 0.03, 60.0, "captured", None, 11.5, -179.0),
     )
     sphere = 80.0 * np.vstack([np.eye(3), -np.eye(3)])
-    return JourneyTrack({**ROW, **changes}, touchdowns, (10.0, 178.0), 80.0, sphere)
+    return JourneyTrack({**ROW, **changes}, touchdowns, (10.0, 178.0), 80.0, sphere, 0.0)
 
 
 def bodies(way: float) -> MovingBodies:

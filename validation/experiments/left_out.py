@@ -2,12 +2,20 @@
 
     python validation/experiments/left_out.py
 
-Prints the tables of that page. The landing is that of scenarios/first_bounce.toml: a box of 2 kg on grains of 9 cm.
+Prints the tables of that page. The landing is that of scenarios/first_bounce.toml: a box of 2 kg on grains of 9 cm;
+durations are those of the touchdowns of showcase/mission.
 """
 
+import csv
 import math
+import statistics
+from pathlib import Path
 
 from lithobrake.dem import contact_duration
+from lithobrake.smallbody import dimorphos
+from lithobrake.vocabulary.number_words import duration
+
+TOUCHDOWNS = Path(__file__).parents[2] / "showcase" / "mission" / "runs" / "touchdowns.csv"
 
 GRAVITY, SPEEDS = 5e-5, (0.4, 0.05)  # m/s2, m/s
 DENSITY, POISSON, GRAIN = 2500.0, 0.25, 0.09  # kg/m3, -, m across
@@ -119,7 +127,23 @@ def force_lines() -> list[str]:
     return lines + [f"| {name} | {force:.2g} | {force / LANDER_MASS:.2g} |" for name, force in rows]
 
 
+def duration_lines() -> list[str]:
+    """Return the table of the time from first to last touch, and of the angle by which the body turns in it."""
+    with TOUCHDOWNS.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    lines = [
+        "| touchdown | count | median | longest | Dimorphos turns in it by up to [deg] |",
+        "|---|---|---|---|---|",
+    ]
+    for outcome, words in (("clear", "the lander leaves"), ("captured", "the lander comes to rest")):
+        times = [float(row["output:contact_duration [s]"]) for row in rows if row["outcome"] == outcome]
+        turn = 360.0 * max(times) / dimorphos(partner=False).spin_period
+        ends = f"{duration(statistics.median(times))} | {duration(max(times))}"
+        lines.append(f"| {words} | {len(times)} | {ends} | {turn:.2g} |")
+    return lines
+
+
 if __name__ == "__main__":
-    for table in (contact_lines(), yield_lines(), cohesion_lines(), force_lines()):
+    for table in (contact_lines(), yield_lines(), cohesion_lines(), force_lines(), duration_lines()):
         print("\n".join(table), "\n")
     print(f"carried by 5 V/m: {lofted(5.0):.2g} m, by 1e5 V/m: {lofted(1e5):.2g} m")

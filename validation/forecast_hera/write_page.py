@@ -230,6 +230,8 @@ def draw_map(rows: list[Row], landers: dict[str, Any], path: Path) -> None:
         for ax, (name, of) in zip(axes, landers.items(), strict=True):
             for line in of["soil"]["regions"][0]["outlines"]:
                 latitude, longitude = np.array(line).T
+                # A line that crosses the date line is not drawn back over the whole map.
+                longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
                 ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=1.8)
             own = [row for row in rows if (row["lander"], row["ground"], row["end"]) == (name, "soil", "at_rest")]
             for rotation, colour in zip(("small", "large", "rolling"), (SOIL, "#e69f00", "#a8659a"), strict=True):

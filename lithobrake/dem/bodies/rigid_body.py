@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.shape import ConvexHull, Shape, Sphere
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.field_errors import FieldError
+from lithobrake.vocabulary.field_errors import FieldError, field_number, field_numbers
 from lithobrake.vocabulary.material_properties import Material
 
 Offset = tuple[float, ...]
@@ -119,8 +119,12 @@ def new_body(
 
     Raises ValueError for a mass that is not positive, a centre that is not finite, and an inertia that no body has.
     """
-    if mass is not None and not 0.0 < mass < np.inf:
-        raise FieldError("add_body mass", mass, "is a finite value above 0", unit="kg")
+    if not hasattr(shape, "inertia_per_density"):
+        raise FieldError("add_body shape", shape, "is a Sphere, a ConvexHull or another shape of dem")
+    if not isinstance(material, Material):
+        raise FieldError("add_body material", material, "is a Material")
+    if mass is not None:
+        field_number("add_body mass", mass, "is a finite value above 0", "kg", above=0.0)
     centre = None if centre_of_mass is None else vector(centre_of_mass, "add_body centre_of_mass")
     if others or centre is not None:
         return _body_of_parts((Part(shape, material), *others), mass, inertia, centre)
@@ -201,10 +205,7 @@ def checked_inertia(inertia: ArrayLike, name: str) -> Floats:
 
 def vector(value: ArrayLike, name: str) -> Floats:
     """Return three finite numbers. Raises ValueError for anything else."""
-    array = np.array(value, dtype=np.float64)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise FieldError(name, value, "are three finite numbers")
-    return array
+    return np.array(field_numbers(name, value, 3, "are three finite numbers"))
 
 
 def rows(value: ArrayLike, width: int, count: int, name: str) -> Floats:
@@ -220,7 +221,13 @@ def rows(value: ArrayLike, width: int, count: int, name: str) -> Floats:
 
 def unit(value: ArrayLike, name: str) -> Floats:
     """Return a vector of unit length. Raises ValueError where it has none."""
-    return units(np.array(value, dtype=np.float64)[None], name)[0]
+    allowed = "is any finite vector other than zero"
+    array = np.array(field_numbers(name, value, np.size(value), allowed))
+    # Over the largest part, as the squares of very large and very small ones would be infinite or 0.
+    largest = float(np.abs(array).max(initial=0.0))
+    if largest == 0.0:
+        raise FieldError(name, value, allowed)
+    return units((array if 1e-100 < largest < 1e100 else array / largest)[None], name)[0]
 
 
 def units(vectors: Floats, name: str) -> Floats:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull as Quickhull
 from scipy.spatial import QhullError
 
-from lithobrake.vocabulary.field_errors import FieldError
+from lithobrake.vocabulary.field_errors import FieldError, field_number, field_numbers
 
 # Facets whose unit normals differ by less are one face: far above round-off, far below any angle one would draw.
 COPLANAR = 1e-9
@@ -198,13 +198,9 @@ class Sphere:
     """
 
     def __init__(self, radius: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        if not 0.0 < radius < math.inf:
-            raise FieldError("Sphere.radius", radius, "is a finite value above 0", unit="m")
-        self.radius = float(radius)
+        self.radius = field_number("Sphere.radius", radius, "is a finite value above 0", "m", above=0.0)
         self.volume = 4.0 / 3.0 * math.pi * self.radius**3
-        self.centroid = np.array(centre, dtype=np.float64)
-        if self.centroid.shape != (3,) or not np.isfinite(self.centroid).all():
-            raise FieldError("Sphere.centre", centre, "are three finite numbers", unit="m")
+        self.centroid = np.array(field_numbers("Sphere.centre", centre, 3, "are three finite numbers", "m"))
         self.inertia_per_density = 0.4 * self.volume * self.radius**2 * np.eye(3)
         self.rounding = self.radius
         self.core_polyhedron = single_point()

@@ -1,6 +1,5 @@
 """Products of vectors and matrices on scalars, and ways to the nearest image in a world that repeats."""
 
-import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,7 +8,7 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Period
 from lithobrake.vocabulary.array_types import Floats, Vector
-from lithobrake.vocabulary.field_errors import FieldError
+from lithobrake.vocabulary.field_errors import FieldError, field_numbers
 
 NO_PERIOD = Period(0.0, 0.0, 0.0, 0.0)
 # Over which bounding radii and skins of the two largest bodies a period extends at least.
@@ -124,9 +123,10 @@ def period_of(lengths: Sequence[float] | None) -> Period:
     """Return a period of lengths along x and y [m], or none. Raises ValueError for lengths that are not positive."""
     if lengths is None:
         return NO_PERIOD
-    if len(lengths) != 2 or not all(0.0 < length < math.inf for length in lengths):
-        raise FieldError("World.period", lengths, "are two finite lengths above 0 along x and y, or None", unit="m")
-    x, y = (float(length) for length in lengths)
+    allowed = "are two finite lengths above 0 along x and y, or None"
+    x, y = field_numbers("World.period", lengths, 2, allowed, "m")
+    if min(x, y) <= 0.0:
+        raise FieldError("World.period", lengths, allowed, unit="m")
     return Period(x, y, 1.0 / x, 1.0 / y)
 
 

@@ -14,7 +14,7 @@ from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
 from lithobrake.vocabulary.array_types import Floats, Vector
-from lithobrake.vocabulary.field_errors import FieldError
+from lithobrake.vocabulary.field_errors import FieldError, field_number
 from lithobrake.vocabulary.material_properties import Material
 
 # Steps in the shortest contact when a world chooses its own step.
@@ -27,18 +27,22 @@ STABLE_FRACTION = 0.8
 LOOK_STEPS, LOOK_PHASE = 16, 0.2
 
 
+# Of one call [s], and its steps: 30 years, which no contact of microseconds is followed over.
+LONGEST_RUN, MOST_STEPS = 1e9, 1e12
+
+
 def checked_step(time_step: float, allowed: str = "is a finite value above 0") -> float:
     """Return a time step [s]. Raises ValueError for one that is not finite and positive; `allowed` says what is."""
-    if not 0.0 < time_step < math.inf:
-        raise FieldError("World.time_step", time_step, allowed, unit="s")
-    return float(time_step)
+    return field_number("World.time_step", time_step, allowed, "s", above=0.0)
 
 
-def checked_count(steps: float) -> int:
-    """Return a number of steps. Raises ValueError for one that is not whole, or below 0."""
-    if steps != int(steps) or steps < 0:
-        raise FieldError("World.run steps", steps, "is a whole number of at least 0")
-    return int(steps)
+def checked_count(count: float, name: str = "World.run steps", least: int = 0, most: float = MOST_STEPS) -> int:
+    """Return a number of steps, or of another name. Raises ValueError for one that is not whole, or out of range."""
+    allowed = f"is a whole number from {least} to {most:g}"
+    number = field_number(name, count, allowed)
+    if number % 1.0 != 0.0 or not least <= number <= most:
+        raise FieldError(name, count, allowed)
+    return int(number)
 
 
 @dataclass
@@ -62,8 +66,10 @@ class Clock:
 
         Raises ValueError for a duration that is not finite, or below 0.
         """
-        if duration is None or not 0.0 <= duration < math.inf:
-            raise FieldError("World.run duration", duration, "is a finite value of at least 0", unit="s")
+        allowed = f"is a value from 0 to {LONGEST_RUN:g}"
+        duration = field_number("World.run duration", duration, allowed, "s")
+        if not 0.0 <= duration <= LONGEST_RUN:
+            raise FieldError("World.run duration", duration, allowed, unit="s")
         if duration == 0.0:
             return 0
         if self.time_step is None:

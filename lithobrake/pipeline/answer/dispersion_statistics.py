@@ -50,7 +50,7 @@ def site_results(site: Site) -> SiteResults:
         mass_kg=body.mass,
         bulk_density_kg_m3=body.density,
         spin_period_s=body.spin_period,
-        kernels=_of_kernels(study),
+        kernels=kernel_numbers(study),
         extents_m=extents,
         facet_count=len(body.shape.faces),
         centroid_m=centroid,
@@ -67,6 +67,7 @@ def site_results(site: Site) -> SiteResults:
         warning=site.warning,
         rotation=site.rotation_words,
         gravity_warning=site.gravity_warning,
+        cautions=site.cautions,
     )
 
 
@@ -75,7 +76,7 @@ def body_product(study: Study) -> str | None:
     return None if study.site.body in BUILT_IN_BODIES else product_id(labelled_mesh(Path(study.site.body)))
 
 
-def _of_kernels(study: Study) -> KernelNumbers | None:
+def kernel_numbers(study: Study) -> KernelNumbers | None:
     """What was read from kernels; None without any."""
     spin, place = kernel_spin(study.site), kernel_partner(study.site)
     if spin is None:

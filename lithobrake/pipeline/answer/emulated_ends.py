@@ -89,7 +89,7 @@ def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> di
             found[end] = CountedShare(count, Estimate(share, None, None, why_missing=why))
             continue
         least, most = (
-            refit_interval(np.bincount(fresh.refit[one], minlength=REFIT_COUNT), totals, beds)
+            refit_interval(np.bincount(fresh.refit[one], minlength=REFIT_COUNT), totals, beds, len(table.end))
             for one in (met, met | ~known)
         )
         found[end] = CountedShare(count, Estimate(share, least.lower, most.upper))
@@ -164,7 +164,8 @@ class Refits:
         if self.why is not None or totals.min() < 2:
             return found
         for name, event in met.items():
-            one = refit_interval(np.bincount(refit[event], minlength=REFIT_COUNT), totals, self.bed_count)
+            counted = np.bincount(refit[event], minlength=REFIT_COUNT)
+            one = refit_interval(counted, totals, self.bed_count, self.run_count)
             found[name] = found[name].within(one.lower, one.upper)
         return found
 
@@ -179,7 +180,7 @@ class Refits:
         told = totals >= 2
         if self.why is not None or told.sum() < REFIT_COUNT // 2:
             return Estimate(share, None, None)
-        return replace(refit_interval(counts[told], totals[told], self.bed_count), value=share)
+        return replace(refit_interval(counts[told], totals[told], self.bed_count, self.run_count), value=share)
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many beds can say of it."""

@@ -181,7 +181,7 @@ def _words(fate: str, count: int) -> dict[str, np.ndarray]:
 def rest_regions(density: HighestDensity) -> tuple[RestRegion, ...]:
     """Regions of highest density as results."""
     return tuple(
-        RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)))
+        RestRegion(one.share, one.area_m2, one.largest_extent_m, tuple(map(_line, one.outlines)), one.island_extents_m)
         for one in density.regions
     )
 

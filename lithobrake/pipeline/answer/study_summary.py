@@ -3,7 +3,7 @@
 import os
 import platform
 import sys
-from dataclasses import replace
+from dataclasses import astuple, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Any
@@ -12,7 +12,13 @@ import numpy as np
 
 from lithobrake.analysis import LEVEL
 from lithobrake.campaign import read_records
-from lithobrake.pipeline.answer.dispersion_statistics import body_product, delivery_results, flight_checks, site_results
+from lithobrake.pipeline.answer.dispersion_statistics import (
+    body_product,
+    delivery_results,
+    flight_checks,
+    kernel_numbers,
+    site_results,
+)
 from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends
 from lithobrake.pipeline.answer.expansion_results import expansion_results
 from lithobrake.pipeline.answer.followed_landers import followed_results
@@ -63,7 +69,10 @@ PIT_BINS = 10
 
 def summary_dependencies(study: Study) -> dict[str, Any]:
     """What the summary depends on beside the files of the stages before it."""
-    return study_tables(study) | {"product": body_product(study)}
+    # What kernels say counts by its numbers: their files change without a word in the study.
+    numbers = kernel_numbers(study)
+    read = {} if numbers is None else {"kernels": astuple(numbers)}
+    return study_tables(study) | {"product": body_product(study)} | read
 
 
 def study_tables(study: Study, tables: Any = None) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
 from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
+from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.results.study_files import intact_file, json_values
@@ -65,12 +65,13 @@ class OneStudy:
     def open(cls, path: Path) -> "OneStudy":
         """Read a folder. Raises ValueError for a study that draws no lander, or did not run to its summary."""
         results = open_study(path)
-        source = StudyFolder.only_read(path).source()
+        folder = FinishedFolder(path)
+        source = folder.source()
         if not source.study.design.run_count:
             raise ValueError(f"{path} draws no lander (design.run_count is 0); compare studies that draw some")
-        runs = DesignRuns.load(StudyFolder.only_read(path), "drawn")
+        runs = DesignRuns.load(folder, "drawn")
         # A lander that is flown to the ground and misses it has a journey, and no run.
-        bed, number = JourneyTable.load(StudyFolder.only_read(path)).bed, runs.inputs["journey"].astype(int)
+        bed, number = JourneyTable.load(folder).bed, runs.inputs["journey"].astype(int)
         columns = {name: _placed(runs.inputs[name], number, len(bed)) for name in COMMON if name in runs.inputs}
         return cls(path, results, source.study, bed.astype(int), columns | {"bed": bed.astype(float)}, number)
 
@@ -80,9 +81,9 @@ class OneStudy:
         return len(self.bed)
 
     @property
-    def folder(self) -> StudyFolder:
+    def folder(self) -> FinishedFolder:
         """Its folder, to read."""
-        return StudyFolder.only_read(self.path)
+        return FinishedFolder(self.path)
 
     def by_lander(self, values: np.ndarray) -> np.ndarray:
         """Values of the first touchdowns [touchdown_count] as [run_count], NaN for a lander without one."""

@@ -18,9 +18,10 @@ from lithobrake.pipeline.journeys.campaign import Journeys
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.runs.beds import bed_recipe, compile_kernels
+from lithobrake.pipeline.runs.energy_bound import energy_warning
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.results import JourneyMotion, JourneyTrack, TouchdownFacts
-from lithobrake.results.journey_track import HEADS
+from lithobrake.results.journey_track import HEADS, descent_time
 from lithobrake.results.motions import MovingBodies
 from lithobrake.study import Study, StudyError, fixed_study
 from lithobrake.touchdown.lander_model import lander
@@ -93,13 +94,17 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     """
     if not study.has_soil:
         raise ValueError("the study has a solver of its own and no soil to land on; get the motion from that solver")
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     design = DrawnDesign(study)
-    Soils(design.site).refuse("the study")
+    Soils(design.site).refuse()
     values = _values(design, number)
     own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
-    changed = dict(_changed(change, free) for change in changes)
+    changed: dict[str, float] = {}
+    for key, value in (_changed(change, free) for change in changes):
+        if key in changed:
+            raise ValueError(f"--set has {key} twice; give each key once")
+        changed[key] = value
     if not changed:
         return values
     if design.is_flown:
@@ -125,7 +130,7 @@ def land_one(study: Study, values: Row, progress: Progress = silent) -> OneLandi
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
     another soil that is landed on, and not another bed.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     return landed(study, values, bed_of(study, round(values["bed"]), progress), progress)
 
 
@@ -206,9 +211,10 @@ class OneJourney:
     @property
     def track(self) -> JourneyTrack:
         """Where the lander went, and how it ended."""
-        site, facts = self.journeys.design.site, map(_facts, self._touchdowns, self.landings)
+        site, descent = self.journeys.design.site, _descent(self.journeys, self.lander)
+        facts = [_facts(*one, descent) for one in zip(self._touchdowns, self.landings, strict=True)]
         row = dict(zip(JOURNEY, self.journeys.row(self.lander), strict=True))
-        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices)
+        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices, descent)
 
     @property
     def _touchdowns(self) -> list[dict[str, Any]]:
@@ -238,7 +244,7 @@ def follow_one(
     tell: called with a line for each touchdown as soon as it is known how it ended, heads before the first. The bits
     are those of that journey in the study.
     """
-    study = with_site_gravity(study, "the study")
+    study = with_site_gravity(study)
     journeys, lander = _begun(study, values)
     bed, landings, context = bed_of(study, round(values["bed"]), progress), [], touchdown_dependencies(study)
     row: Row | None = values
@@ -248,6 +254,13 @@ def follow_one(
         for line in [*(HEADS if len(landings) == 1 else ()), _line(journeys, lander, landings[-1])]:
             tell(line)
     return OneJourney(journeys, lander, tuple(landings))
+
+
+def energy_gained(study: Study, landings: Iterable[OneLanding]) -> str | None:
+    """What it means that landings gave a lander more energy than it came with; None where they did not."""
+    study, made = with_site_gravity(study), list(landings)
+    records = [_record(study, one, {}) for one in made]
+    return energy_warning(DrawnDesign(study), records, max(float(one.bed.surface_height) for one in made))
 
 
 def _begun(study: Study, values: Row) -> tuple[Journeys, int]:
@@ -274,7 +287,7 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
 
 
 def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
-    facts, there = _facts(journeys.touchdowns[lander][-1], landing), None
+    facts, there = _facts(journeys.touchdowns[lander][-1], landing, _descent(journeys, lander)), None
     word, site = str(journeys.landers.end[lander]), journeys.design.site
     if not word:
         latitude, longitude = site.body.shape.latitude_longitude(journeys.landers.position[lander])
@@ -282,5 +295,9 @@ def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
     return facts.line(facts.to_next(there, site.aim_radius, JourneyEnd(word) if word else None))
 
 
-def _facts(touchdown: Mapping[str, Any], landing: OneLanding) -> TouchdownFacts:
-    return TouchdownFacts.of({**landing.values, **landing.outcome.outputs, **touchdown})
+def _descent(journeys: Journeys, lander: int) -> float:
+    return descent_time([float(flight["begin_s"]) for flight in journeys.flights[lander]])
+
+
+def _facts(touchdown: Mapping[str, Any], landing: OneLanding, descent: float) -> TouchdownFacts:
+    return TouchdownFacts.of({**landing.values, **landing.outcome.outputs, **touchdown}, descent)

@@ -14,7 +14,8 @@ from scipy.special import ndtr
 
 from lithobrake.analysis import SubsetResult, subset_simulation
 from lithobrake.analysis.subset_simulation import limit_state_margin, limit_state_met
-from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.single_run import Model
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.answer.run_answers import OF_TOUCHDOWN, values_of_runs, why_no_interval
 from lithobrake.pipeline.design.dependencies import touchdown_keys
@@ -60,7 +61,7 @@ def rare_failure(
     run_study(source, out, until="bed", worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
     folder = StudyFolder(out)
     with folder.alone(), DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor:
-        study = with_site_gravity(source.study, source.name)
+        study = with_site_gravity(source.study)
         design = grown(DrawnDesign(study), folder)
         landings = Landings(Job(design, source.tables, folder, executor, shown, model), name, state)
         if not study.has_soil:

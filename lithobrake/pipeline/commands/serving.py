@@ -22,10 +22,10 @@ from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, heigh
 from lithobrake.pipeline.runs.landings import model_of
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.site import SITE_KEYS, with_site_gravity
-from lithobrake.pipeline.study_folder import REMEDY, StudyFolder
-from lithobrake.results.study_files import intact_file
+from lithobrake.pipeline.study_folder import FinishedFolder
 from lithobrake.serve import ClientGoneError, ServedModel
 from lithobrake.study import Study, StudyError, StudySource, fixed_study
+from lithobrake.study.lander_checks import quaternion_problems
 from lithobrake.study.quantity import is_number
 from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
@@ -55,7 +55,7 @@ class ServedStudy:
     def __init__(self, study: Path, out: Path) -> None:
         """Read the study. Raises ValueError where it is refused."""
         source = StudySource.read(study)
-        self.study, self.folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+        self.study, self.folder = with_site_gravity(source.study), FinishedFolder(out)
         self.design = DrawnDesign(self.study)
         self.inputs = tuple(self.design.inputs)
 
@@ -78,8 +78,6 @@ class ServedStudy:
 
     @cached_property
     def _touchdowns(self) -> TouchdownEmulator:
-        # A file that was edited would be served as if it were the study's.
-        intact_file(self.folder.path, TOUCHDOWN_EMULATOR_FILE, REMEDY)
         return TouchdownEmulator.read(self.design, self.folder)
 
     def emulated_touchdown(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
@@ -133,7 +131,7 @@ class ServedStudy:
     def _emulator(self) -> Any:
         from lithobrake.emulator import load
 
-        return load(intact_file(self.folder.path, EMULATOR_FILE, REMEDY))
+        return load(self.folder / EMULATOR_FILE)
 
     def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
         """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.
@@ -169,10 +167,15 @@ class ServedStudy:
         """
         _refuse_keys(config, SITE_KEYS)
         from lithobrake.smallbody import fly
+        from lithobrake.smallbody.flight import FARTHEST
 
+        if not max(map(abs, point)) < FARTHEST:
+            raise ValueError(f"input of model flight is {show(point)}; allowed: below {FARTHEST:g} m/s each")
         body, numbers = self.design.site.body, self.design.site.medians | dict(config)
         if config:
-            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items()})
+            # What neither the study nor the client gives is no number of a study file.
+            given = {*self.study.site_values(), *(f"site.{key}" for key in config)}
+            _refuse(self.study, {f"site.{key}": value for key, value in numbers.items() if f"site.{key}" in given})
         site = {key: np.array([float(value)]) for key, value in numbers.items()}
         origin, axes = self.design.site.frames(site)
         flown = fly(
@@ -222,8 +225,10 @@ def _attitude(config: Mapping[str, Any], seed: int) -> Rotation:
     if given is None:
         # A stream of its own, so that the attitude and the draw of the touchdown are independent.
         return Rotation.random(1, rng=np.random.default_rng([seed, 1]))
-    if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)) or not any(given):
+    if not isinstance(given, list) or len(given) != 4 or not all(map(is_number, given)):
         raise ValueError(f"config.orientation is {show(given)}; allowed: a quaternion of four numbers w, x, y, z")
+    for wrong in quaternion_problems("config.orientation", given):
+        raise ValueError(wrong)
     w, x, y, z = given
     return Rotation.from_quat([[x, y, z, w]])
 

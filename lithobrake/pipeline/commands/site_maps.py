@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
-from lithobrake.campaign import DaskExecutor, LocalExecutor, Model
+from lithobrake.campaign import DaskExecutor, LocalExecutor
+from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
@@ -56,7 +57,7 @@ def map_sites(
     # Before the journeys of the study are made.
     _refuse(source.study, cell_count, lander_count)
     run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
-    study, folder = with_site_gravity(source.study, source.name), StudyFolder(out)
+    study, folder = with_site_gravity(source.study), StudyFolder(out)
     why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
     if why is not None:
         raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")

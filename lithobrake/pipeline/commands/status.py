@@ -13,9 +13,9 @@ from lithobrake.pipeline.commands.running_estimates import (
     RunningEstimates,
     journeys_status,
     running_estimates,
-    touchdown_keys,
 )
 from lithobrake.pipeline.folder_state import FolderState, StageState, grouped, read_state
+from lithobrake.pipeline.planning.known_journeys import touchdown_keys
 from lithobrake.pipeline.study_folder import LOCK, NAME, FileState, Notes, StudyFolder
 from lithobrake.results import open_study
 from lithobrake.results.study_files import JOURNEYS

@@ -1,7 +1,8 @@
 """Landers on their way to their first touchdown, from states of another tool or from where they are released."""
 
+import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,16 +14,19 @@ from lithobrake.pipeline.design import arrivals
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
-from lithobrake.study.delivered_states import DeliveredStates, states_of
+from lithobrake.study.delivered_states import states_of
 from lithobrake.study.delivery_sections import SIDE, ReleaseSection
-from lithobrake.study.ground_checks import contact_problems
+from lithobrake.study.ground_checks import deep_contact, fast_spin
+from lithobrake.study.lander_checks import lander_radius
+from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Flights
+    from lithobrake.smallbody import Flights, Shape
 
 # Coordinates of the sequence of a study beside the others.
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
@@ -122,7 +126,7 @@ class Descents:
         position, velocity = arrivals.turned(into_body, states.position), arrivals.turned(into_body, states.velocity)
         if _is_icrf(study):
             velocity = arrivals.against_ground(position, velocity, columns["spin_period"])
-        clock = site.clock(columns)
+        clock, uniform = site.clock(columns), position
         if (ground := site.body.rotation) is None:
             clock = clock + states.time
         else:
@@ -130,7 +134,7 @@ class Descents:
             here = ground.at(clock)
             position, velocity = here.states_out_of_frame(position, velocity)
             into_body = here.axes.transpose(0, 2, 1) @ into_body
-        _refuse_below(site, position, states.source)
+        _refuse_below(site, position, uniform, clock, columns, states.source)
         flights = fly(
             *(site.body, position, velocity, study.journey.duration),
             gravity=study.flight.gravity,
@@ -140,7 +144,10 @@ class Descents:
         )
         down = flights.status == FlightStatus.IMPACT
         axes, incidence = _met_ground(study, flights, down, first)
-        _refuse_fast(study, flights.impact_speed[down])
+        falling = [states.source[row] for row in np.flatnonzero(down).tolist()]
+        fastest = _refuse_fast(study, flights.impact_speed[down], falling)
+        if states.rates is not None:
+            _refuse_spinning(study, states.rates, fastest, states.source)
         attitude, spin = _turning(states, into_body)
         return cls(site, first, flights, axes, incidence, attitude, spin)
 
@@ -228,30 +235,67 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     return Rotation.from_matrix(into_body) * given, arrivals.turned(into_body, given.apply(states.rates))
 
 
-def _refuse_below(site: Site, position: np.ndarray, source: Sequence[str]) -> None:
-    shape, delivery = site.body.shape, site.study.delivery
-    for place, where in zip(position, source, strict=True):
-        height = float(shape.height(place))
-        if height < -min(SLACK_PART * shape.radius, MOST_SLACK):
-            key = "delivery.states" if delivery and delivery.states else "delivery.release"
-            raise StudyError(
-                [
-                    f"{key}: {where} lies {-height:.3g} m below the ground; allowed: on it or above; is it counted "
-                    "from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
-                    "the spread"
-                ]
-            )
+def _refuse_below(
+    site: Site, fixed: Array, uniform: Array, clock: Array, columns: Mapping[str, Array], source: Sequence[str]
+) -> None:
+    """Raise StudyError for a state below the ground of the body or of its partner.
+
+    Places [m], [count, 3], fixed to the body, and in the axes that turn uniformly, in which the partner moves; clock:
+    time of its motion at each [s], [count].
+    """
+    body, partner = site.body, site.body.partner
+    _refuse_within(site, body.shape, fixed, source, "the ground")
+    if partner is not None:
+        orbit = body.orbit_with(GRAVITATIONAL_CONSTANT * columns["mass"], 2.0 * np.pi / columns["spin_period"])
+        there, _ = orbit.seen_from_partner(uniform, np.zeros_like(uniform), clock)
+        _refuse_within(site, partner.body.shape, there, source, f"the surface of {partner.body.name}")
 
 
-def _refuse_fast(study: Study, speed: np.ndarray) -> None:
-    """Raise StudyError where the fastest lander comes in too fast for any contact [m/s]."""
-    if not len(speed) or not study.has_soil:
-        return
-    fastest = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": float(speed.max())})})
+def _refuse_within(site: Site, shape: "Shape", position: np.ndarray, source: Sequence[str], what: str) -> None:
+    # The height of a place takes a look at every facet.
+    near = np.flatnonzero(np.linalg.norm(position, axis=1) < shape.radius)
+    height = np.full(len(position), np.inf)
+    height[near] = shape.height(position[near])
+    below = np.flatnonzero(height < -min(SLACK_PART * shape.radius, MOST_SLACK))
+    if len(below):
+        row = int(below[0])
+        said = (
+            f"{_origin(site.study)}: {source[row]} lies {-height[row]:.3g} m below {what}; allowed: on it or above; is "
+            "it counted from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
+            "the spread"
+        )
+        raise StudyError([site.study.said(said)])
+
+
+def _origin(study: Study) -> str:
+    """The key that says where landers come from."""
+    return "delivery.states" if study.delivery and study.delivery.states else "delivery.release"
+
+
+def _refuse_fast(study: Study, speed: np.ndarray, source: Sequence[str]) -> float:
+    """Return the largest of impact speeds [m/s], 0 of none; source: where each of the landers stands.
+
+    Raises StudyError where it is too fast for any contact.
+    """
+    if not len(speed):
+        return 0.0
+    fastest = int(np.argmax(speed))
     # The overlap depends on the stiffness, and a region may have softer grains than [grain].
-    for one in (fastest, *map(fastest.on_soil, study.soil)):
-        if wrong := list(contact_problems(one)):
-            raise StudyError(wrong)
+    for one in (study, *map(study.on_soil, study.soil)) if study.has_soil else ():
+        if wrong := deep_contact(one, float(speed[fastest])):
+            said = f"{_origin(study)}: {source[fastest]} comes down at {speed[fastest]:.4g} m/s {wrong}"
+            raise StudyError([study.said(f"{said}; lower its velocity, or raise Young's modulus")])
+    return float(speed[fastest])
+
+
+def _refuse_spinning(study: Study, rates: np.ndarray, speed: float, source: Sequence[str]) -> None:
+    """Raise StudyError where one of the angular velocities [count, 3] [rad/s] is too fast at a speed [m/s]."""
+    # In Python's own numbers: squares of absurd ones would overflow with a warning.
+    spins = [math.hypot(*one) for one in rates.tolist()]
+    fastest = int(np.argmax(spins))
+    arriving = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": speed})})
+    if wrong := fast_spin(arriving, spins[fastest], lander_radius(study.lander)):
+        raise StudyError([study.said(f"{_origin(study)}: {source[fastest]}: its rates are {wrong}")])
 
 
 def descents_in_words(descents: Descents) -> str:

@@ -107,8 +107,10 @@ class DrawnDesign:
         if not found.touches_down.any():
             raise StudyError(
                 [
-                    f"[delivery]: none of {len(self.beds)} landers reaches the ground within journey.duration; "
-                    "allowed: states of which at least one does; correct them, or raise the duration"
+                    self.study.said(
+                        f"[delivery]: none of {len(self.beds)} landers reaches the ground within journey.duration; "
+                        "allowed: states of which at least one does; correct them, or raise the duration"
+                    )
                 ]
             )
         return found

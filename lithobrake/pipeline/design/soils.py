@@ -117,8 +117,8 @@ class Soils:
         numbers = self._numbers(points.reshape(-1, 3), facets.ravel())
         return latitude, longitude, numbers.reshape(facets.shape)
 
-    def refuse(self, name: str) -> None:
-        """Raise StudyError, with the name of the study file, for regions in which this body has no ground."""
+    def refuse(self) -> None:
+        """Raise StudyError for regions in which this body has no ground."""
         if not self.site.study.soil:
             # The body, which a study of one soil may not need, is not made for this.
             return
@@ -127,18 +127,18 @@ class Soils:
             last = max(self._facets[region]) if soil.facets is not None else -1
             if last >= facet_count:
                 wrong.append(
-                    f"{name}: soil.{region}.facets has {last}; allowed: 0 to {facet_count - 1}, the facets of the "
+                    f"soil.{region}.facets has {last}; allowed: 0 to {facet_count - 1}, the facets of the "
                     "body's shape; take the numbers of its faces in their order, from 0"
                 )
         shares = {} if wrong else self.area_shares()
         wrong += [
-            f"{name}: soil.{region} holds no ground of this body within its bounds and outside of the regions before "
+            f"soil.{region} holds no ground of this body within its bounds and outside of the regions before "
             "it; widen its bounds, move it up, or leave it out"
             for region, share in shares.items()
             if share == 0.0 and region != ELSEWHERE
         ]
         if wrong:
-            raise StudyError(wrong)
+            raise StudyError([self.site.study.said(text) for text in wrong])
 
     def _numbers(self, points: np.ndarray, facets: np.ndarray) -> np.ndarray:
         """The place among `names` of the region of each point [m], [count, 3], on its facet, [count]."""

@@ -181,6 +181,7 @@ def expansion_tables(
         "class_never": np.zeros((refits, len(outcome.names))),
         "lower": np.full(count, -np.inf),
         "upper": np.full(count, np.inf),
+        "distant": np.zeros(count),
         "grows": scatter.grows.astype(float),
         "scatter_speed": np.array([scatter.speed]),
     }

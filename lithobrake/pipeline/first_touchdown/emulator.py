@@ -54,7 +54,8 @@ def fit_emulator(job: Job) -> None:
     if left < FEWEST:
         why = f"{left} of {runs.run_count} landers left the surface, but an emulator needs {FEWEST}"
         if job.study.sample_count and job.study.expansion is None:
-            raise ValueError(f"{why}; raise design.run_count, or set monte_carlo.sample_count to 0")
+            remedy = job.study.as_written("raise design.run_count")
+            raise ValueError(f"{why}; {remedy}, or set monte_carlo.sample_count to 0")
         job.folder.write_json(EMULATOR_FILE, {"why": f"{why}."})
         return
     values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}

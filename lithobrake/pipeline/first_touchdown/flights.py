@@ -177,6 +177,7 @@ def flight_dependencies(study: Study) -> dict[str, Any]:
     later = {
         "gravity_facets": study.site.gravity_facets,
         "extents": study.site.extents,
+        "partner_body": None if study.site.partner_body is None else study.site.partner_body.model_dump(),
         "rotation": None if turning is None else turning.model_dump(mode="json"),
     }
     return (
@@ -211,9 +212,8 @@ def fly_samples(job: Job) -> None:
             f"Gravity table: {error.median:.1e} of the surface gravity off the facets' sum in the median, "
             f"{error.p95:.1e} at the 95th percentile of {error.point_count} points."
         )
-    for words in (job.site.warning, job.site.rotation_words):
-        if words:
-            job.say(words)
+    for words in job.site.remarks:
+        job.say(words)
     job.folder.write_json(file_names.FLIGHT_CHECKS_FILE, _checks(job, start))
     flown = fly_starts(job, start, "flights")
     write_table(job.folder, file_names.SAMPLE_FLIGHTS_FILE, COLUMNS, flight_rows(start, flown))

@@ -17,6 +17,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals, Row
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.journeys.simulated_touchdowns import LandingRows, answers_of
+from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds
 from lithobrake.pipeline.runs.landings import account, campaign_setting, model_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
@@ -173,9 +174,8 @@ def flight_row(journey: int, flights: "Flights", place: int, begin: float) -> di
 
 
 def make_journeys(job: Job) -> None:
-    for words in (job.site.warning, job.site.rotation_words):
-        if words:
-            job.say(words)
+    for words in job.site.remarks:
+        job.say(words)
     if job.design.descents is not None:
         job.say(descents_in_words(job.design.descents))
     journeys, rows = Journeys.begun(job.design), job.design.rows
@@ -184,6 +184,8 @@ def make_journeys(job: Job) -> None:
     chains, reused = follow_in_chains(job, journeys, rows)
     records = [record for chain in chains for record in chain]
     _say_touchdowns(job, records, reused)
+    if gained := energy_warning(job.design, records, height_of_beds(job.study, job.folder)):
+        job.say(f"touchdowns: {gained}")
     first = Runs([chain[0] for chain in chains], 0)
     account(job, "drawn", first, tuple(job.design.inputs))
     # First touchdowns are what the drawn runs of other studies are, so all that reads those serves journeys as well.

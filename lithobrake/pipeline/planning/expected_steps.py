@@ -52,7 +52,7 @@ class PlannedRuns:
     """Distinct touchdowns of a study in which so many inputs are kept after the screening.
 
     A touchdown that several designs share counts for the first of them. known: keys of those that have ended already.
-    drawn, side: first touchdowns of drawn landers, and their side runs.
+    drawn, side: first touchdowns of drawn landers, and their side runs; drawn_new: first ones that have not ended.
     """
 
     kept_count: int
@@ -62,6 +62,7 @@ class PlannedRuns:
     known: frozenset[str]
     drawn: int = 0
     side: int = 0
+    drawn_new: int = 0
 
     @property
     def total(self) -> int:
@@ -73,7 +74,8 @@ class PlannedRuns:
 
     def beside(self, landers: "PlannedRuns") -> "PlannedRuns":
         """The runs of the expansion beside those of drawn landers."""
-        return replace(self, known=self.known | landers.known, drawn=landers.drawn, side=landers.side)
+        of_landers = {"drawn": landers.drawn, "side": landers.side, "drawn_new": landers.drawn_new}
+        return replace(self, known=self.known | landers.known, **of_landers)
 
 
 def possible_runs(drawn: DrawnDesign, folder: StudyFolder, screened: bool, known: Iterable[str]) -> list[PlannedRuns]:
@@ -137,7 +139,8 @@ def _planned_drawn(drawn: DrawnDesign, ended: set[str]) -> PlannedRuns:
     keys = set(drawn.keys)
     side_keys = {key for design in side for key in touchdown_keys(drawn.study, drawn.rows_of(design), 0)} - keys
     known = frozenset((keys | side_keys) & ended)
-    return PlannedRuns(len(drawn.inputs), 0, 0, 0, known, drawn=len(keys), side=len(side_keys))
+    counts = {"drawn": len(keys), "side": len(side_keys), "drawn_new": len(keys - ended)}
+    return PlannedRuns(len(drawn.inputs), 0, 0, 0, known, **counts)
 
 
 def _planned(drawn: DrawnDesign, kept: Sequence[str], ended: set[str]) -> PlannedRuns:

@@ -15,6 +15,7 @@ from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning import expected_time
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
+from lithobrake.pipeline.planning.known_journeys import journeys_under_way
 from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
 from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
@@ -29,6 +30,7 @@ from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.runs.landings import known_runs
 from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.sky_at_rest import refuse_hidden_orbiter
 from lithobrake.pipeline.stages import EMULATOR, STAGES
 from lithobrake.pipeline.study_folder import StudyFolder, refuse_others_folder
 from lithobrake.study import Study, StudySource
@@ -46,10 +48,11 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     that is none.
     """
     source = StudySource.read(path)
-    study, folder = with_site_gravity(source.study, source.name), StudyFolder.only_read(out)
+    study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
     design = DrawnDesign(study)
-    Soils(design.site).refuse(source.name)
+    Soils(design.site).refuse()
+    refuse_hidden_orbiter(design.site)
     plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
     return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
 
@@ -81,7 +84,7 @@ def plan_of(
     largest = design.with_run_count(study.design.most_runs) if runs[-1].drawn > runs[0].drawn else design
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
-    made = _made(study, stale.keys(), runs, beds)
+    made = _made(study, stale.keys(), runs, beds, journeys_under_way(design, folder, known))
     soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
@@ -113,15 +116,16 @@ def plan_of(
 
 
 def _made(
-    study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...]
+    study: Study, stale: Set[str], runs: tuple[PlannedRuns, ...], beds: tuple[PlannedBeds, ...], under_way: int
 ) -> dict[str, tuple[int, int]]:
+    """How many of each are to be made; under_way: journeys that go on after touchdowns that have ended."""
     new = [one.new for one in runs] if stale & MAKE_RUNS else [0]
     landings = len(stale & SHOW_LANDINGS) * study.has_soil
     touchdowns, journeys = (min(new), max(new)), (0, 0)
-    if study.journey.touchdowns != 1:
-        landers = [min(one.new, one.drawn) if stale & MAKE_RUNS else 0 for one in runs]
-        journeys = min(landers), max(landers)
-        touchdowns = touchdowns[0] - journeys[0], touchdowns[1] - journeys[1]
+    if study.journey.touchdowns != 1 and stale & MAKE_RUNS:
+        landers = [one.drawn_new for one in runs]
+        touchdowns = touchdowns[0] - min(landers), touchdowns[1] - max(landers)
+        journeys = min(landers) + under_way, max(landers) + under_way
     return {
         "beds": (beds[0].new, beds[-1].new),
         "landings": (landings, landings),

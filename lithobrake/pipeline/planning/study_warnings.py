@@ -1,5 +1,6 @@
 """What a user should know of a study before it runs: nothing here is an error, and all of it may be meant."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
@@ -21,6 +22,8 @@ from lithobrake.vocabulary.quantities import PLACE
 if TYPE_CHECKING:
     from lithobrake.touchdown import Lander, Landing
 
+# Pull of one contact over the weight of the lander: clean lunar soil pulls a CubeSat on Dimorphos with some 16 weights.
+STICKY = 1000.0
 # A share of touchdowns that may be cut off without a word [-].
 CUT_OFF = 0.05
 # A smaller share of delivered landers that reach the ground is hardly meant [-].
@@ -33,9 +36,11 @@ RUNS_A_TERM = 1.5
 
 def study_warnings(design: DrawnDesign, soil: ExpectedSoil | None) -> list[str]:
     study, site = design.study, design.site
-    ground = [warning for warning in (site.warning, site.gravity_warning) if warning]
+    ground = [*site.cautions, *filter(None, (site.warning, site.gravity_warning))]
     touchdown = (
-        [] if soil is None else [*_bed(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
+        []
+        if soil is None
+        else [*_bed(soil), *_cohesion(soil), *_sides(design, soil), *_time_limit(study, soil), *_never_count(study)]
     )
     return [
         *_missed(design),
@@ -68,10 +73,31 @@ def _bed(soil: ExpectedSoil) -> Iterator[str]:
     body, landing = soil.landings[0]
     width, depth = smallest_bed(body, landing.grain, soil.diameter, landing.speed)
     here = min(soil.recipe.width)
+    # A wider bed of as many grains is shallower.
+    wide, deep = max(here, width), max(soil.depth, depth)
+    count = math.ceil(soil.recipe.grain_count * deep / soil.depth * (wide / here) ** 2)
     if here < width or soil.depth < depth:
         yield (
             f"The bed will be about {soil.depth:.2g} m deep and is {here:g} m wide; it must be at least {depth:.2g} m "
-            f"deep and {width:.2g} m wide to avoid {_echo(soil)} during the first impact: add grains, or widen the bed."
+            f"deep and {width:.2g} m wide to avoid {_echo(soil)} during the first impact: set bed.grain_count = {count}"
+            f"{f', and bed.width = {wide:.2g} m' if wide > here else ''}."
+        )
+
+
+def _cohesion(soil: ExpectedSoil) -> Iterator[str]:
+    """Contacts that pull far more than the lander weighs."""
+    from lithobrake.dem.law.restitution import pair_law
+
+    radius, most = 0.5 * soil.diameter, (0.0, 0.0)
+    for body, landing in soil.landings:
+        law = pair_law(landing.grain, body.own_material, landing.contact.shear_modulus_rule, landing.contact.pair_rule)
+        pull, weight = law.cohesion_force + law.cohesion_line * radius, body.mass * math.hypot(*landing.gravity)
+        most = max(most, (pull / weight, pull)) if weight > 0.0 else most
+    if most[0] > STICKY:
+        yield (
+            f"One contact of the lander with a grain pulls with up to {most[1]:.2g} N, {most[0]:.2g} times the weight "
+            "of the lander, which may then never leave the ground: check surface_energy (J/m2; is it in mJ/m2?) and "
+            "cohesion_force (N)."
         )
 
 
@@ -178,7 +204,7 @@ def _few_beds(study: Study) -> Iterator[str]:
         )
         return
     wider = t_quantile(study.bed_count - 1) / t_quantile(FEWEST_BEDS_OF_INTERVAL - 1) - 1.0
-    remedy = "set bed.bed_count" if study.bed.bed_count is not None else "raise design.run_count"
+    remedy = "set bed.bed_count" if study.bed.bed_count is not None else study.as_written("raise design.run_count")
     yield (
         f"The runs land on {study.bed_count} beds, and the bed is the unit of an interval: so few make it "
         f"{percent(wider)} wider than {enough} would, by Student's t alone; {remedy} to {enough} or more."

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from lithobrake import campaign
-from lithobrake.campaign import Model
 from lithobrake.campaign import run as run_campaign
 from lithobrake.campaign.external_model import PREFIX
+from lithobrake.campaign.single_run import Model
 from lithobrake.pipeline.design import dependencies
 from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign, inputs_of
 from lithobrake.pipeline.design.random_inputs import draw

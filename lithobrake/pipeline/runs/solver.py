@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lithobrake.campaign import Command, Model, ModelServer
+from lithobrake.campaign import Command, ModelServer
+from lithobrake.campaign.single_run import Model, output_number
 from lithobrake.campaign.worker import pickled
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, OUTPUTS, SPIN_OUT, Row
@@ -44,7 +45,7 @@ class ServerModel:
     def __call__(self, values: Row, seed: int) -> dict[str, Any]:
         """Make one touchdown. Raises ValueError for an answer that a study cannot use."""
         config = {"seed": seed, "inputs": values, "setting": self.setting}
-        vectors = self.server.evaluate([[values[name] for name in self.names]], config)
+        vectors = self.server.evaluate([[values[name] for name in self.names]], config, LANDING)
         numbers = [number for vector in vectors for number in vector]
         outcomes = tuple(TouchdownOutcome)
         # A float is in a range of whole numbers only where it is whole.
@@ -69,7 +70,7 @@ class FunctionModel:
             raise ValueError(
                 f"the model gave {reprlib.repr(answer)}; it must give a dict with an outcome and outputs by name"
             )
-        outputs = {name: float(value) for name, value in answer.get("outputs", {}).items()}
+        outputs = {name: output_number(name, value) for name, value in answer.get("outputs", {}).items()}
         # An output without a value is absent, as in a program's answer.
         known = {name: value for name, value in outputs.items() if not math.isnan(value)}
         return checked("the model's answer", {**answer, "outputs": known})

@@ -152,8 +152,11 @@ def _partner_longitude(data: PageData) -> float | None:
     if isinstance(given, int | float):
         return float(given)
     # A body that turns once an orbit, as Dimorphos does, has its partner over its longitude 0.
-    known = BUILT_IN_BODIES.get(data.study["site"]["body"])
-    return 0.0 if known is not None and known.is_synchronous and given is None else None
+    known, partner = BUILT_IN_BODIES.get(data.study["site"]["body"]), data.study["site"].get("partner_body")
+    is_synchronous = known is not None and known.is_synchronous
+    if partner is not None:
+        is_synchronous = partner["period"] in (None, site.spin_period_s) and partner["distance"] is None
+    return 0.0 if is_synchronous and given is None else None
 
 
 def _ways(data: PageData) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:

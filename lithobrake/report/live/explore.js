@@ -136,8 +136,8 @@ function freedVariance(values, chance) {
 }
 
 // Share and its bounds over beds that were not in the study, as lithobrake.analysis.refit_interval has them; a share of
-// 0 or 1 has no other bounds here.
-function refitInterval(returns, known, bedCount, reach) {
+// 0 or 1 has no other bounds here. runCount: runs that the law was fitted to.
+function refitInterval(returns, known, bedCount, reach, runCount) {
   const shares = Array.from(returns, (one, refit) => one / known[refit]), total = meanOf(known) * known.length;
   const chance = meanOf(shares.map((one, refit) => one * (1 - one) / (known[refit] - 1)));
   const share = meanOf(returns) * returns.length / total, between = freedVariance(shares, chance)[1];
@@ -149,8 +149,9 @@ function refitInterval(returns, known, bedCount, reach) {
   const low = odds / factor / (1 + odds / factor), high = odds * factor / (1 + odds * factor);
   // What so many beds leave open of an event that nobody has met (90 %): few who have leave no more open.
   const limit = 1 - Math.pow(0.1, 1 / bedCount);
-  if (share < 0.5) return [share, low, Math.min(high, Math.max(share + half, limit))];
-  return [share, Math.max(low, Math.min(share - half, 1 - limit)), high];
+  const isUnseen = Math.min(share, 1 - share) * runCount < 0.5;
+  if (share < 0.5) return [share, low, Math.max(Math.min(high, Math.max(share + half, limit)), isUnseen ? limit : 0)];
+  return [share, Math.min(Math.max(low, Math.min(share - half, 1 - limit)), isUnseen ? 1 - limit : 1), high];
 }
 
 // Value that a share of counts does not exceed, straight within a bin; axis: where the last bin ends.

@@ -214,7 +214,8 @@ class Law {
     this.placeAt(refit, point.terms);
     for (let k = 0; k < this.outputs; k++)
       y[k] = fromCoordinate(
-        this.where[k] + this.scale[k] * y[k] * (this.grows[k] ? point.growth : 1), this.lower[k], point.upper[k]);
+        this.where[k] + this.scale[k] * y[k] * (this.grows[k] ? point.growth : 1), this.lower[k], point.upper[k],
+        this.distant[k]);
     // What the speed has taken is not there for the spin.
     const { speed, spin } = this.facts, most = point.upper[speed] ** 2 - y[speed] ** 2;
     if (point.gyration) y[spin] = Math.min(y[spin], Math.sqrt(Math.max(most, 0)) / point.gyration);
@@ -245,10 +246,12 @@ function placeOf(ends, uniform) {
   return low;
 }
 
-// An output of its coordinate: logit between two bounds, logarithm beyond one, itself where there is none.
-function fromCoordinate(coordinate, lower, upper) {
-  const limited = Math.min(Math.max(coordinate, -700), 700);
-  if (Number.isFinite(lower) && Number.isFinite(upper)) return lower + (upper - lower) / (1 + Math.exp(-limited));
-  if (Number.isFinite(lower)) return lower + Math.exp(limited);
-  return Number.isFinite(upper) ? upper - Math.exp(-limited) : coordinate;
+// An output of its coordinate: logit between two bounds, logarithm beyond one, itself where there is none or where they
+// are distant. No output is beyond a bound, or on a lower one of 0.
+function fromCoordinate(coordinate, lower, upper, isDistant) {
+  const limited = Math.min(Math.max(coordinate, -700), 700), from = Number.isFinite(lower), to = Number.isFinite(upper);
+  let y = coordinate;
+  if (!isDistant && from && to) y = lower + (upper - lower) / (1 + Math.exp(-limited));
+  else if (!isDistant && (from || to)) y = from ? lower + Math.exp(limited) : upper - Math.exp(-limited);
+  return Math.min(Math.max(y, lower + Number.MIN_VALUE), upper);
 }

@@ -170,9 +170,12 @@ def region_table(data: PageData, *, of_impacts: bool, of_rest: bool) -> PageTabl
         sets["next impacts"] = samples.regions
     if of_rest:
         sets |= {f"at rest, {GROUND_WORDS[key]}": one.regions for key, one in data.results.hard_ground.items()}
-    columns = ["points", "share inside", "area", "largest extent [m]"]
+    columns = ["points", "share inside", "area", "largest extent [m]", "separate parts", "of the largest [m]"]
     rows = [
-        [name, percent(one.share), area(one.area_m2), two_digits(one.largest_extent_m)]
+        [
+            *(name, percent(one.share), area(one.area_m2), two_digits(one.largest_extent_m)),
+            *(str(len(one.island_extents_m)), next(map(two_digits, one.island_extents_m), "")),
+        ]
         for name, found in sets.items()
         for one in found
     ]

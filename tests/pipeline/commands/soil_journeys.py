@@ -3,7 +3,7 @@
 SOIL_JOURNEYS = """
 seed = 5
 lander = { shape = "box", edges = [0.06, 0.07, 0.08], mass = 1.0 }
-journey = { count = 2, duration = 20000.0 }
+journey = { count = 2, duration = 20000.0, emulated_count = 40 }
 site = { body = "dimorphos" }
 [bed]
 grain_count = 60

@@ -1,6 +1,8 @@
 """Two studies side by side, and estimates while a study runs."""
 
 import json
+import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import lithobrake
 from lithobrake.analysis import mean_estimate, share_estimate
 from lithobrake.campaign import Ledger, Record, RunStatus
 from lithobrake.cli import app
-from lithobrake.pipeline import StudyFolder, compare_studies, study_status
+from lithobrake.pipeline import InferredStudy, StudyFolder, compare_studies, study_status
 from lithobrake.pipeline.commands.comparison import OneStudy, _other_beds
 from lithobrake.pipeline.commands.running_estimates import running_estimates
 from lithobrake.results.questions import StudyComparison
@@ -206,6 +208,36 @@ def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_
     assert "--force" in again.output
     shown = CliRunner().invoke(app, ["compare", *map(str, pair), "--out", str(out), "--force", "--json"])
     assert json.loads(shown.stdout) == numbers
+
+
+def test_a_table_that_was_edited_is_refused(pair: tuple[Path, Path], tmp_path: Path) -> None:
+    edited = shutil.copytree(pair[0], tmp_path / "edited")
+    path = edited / "journeys.csv"
+    path.write_text(path.read_text().replace("at_rest", "escaped", 3))
+    with pytest.raises(ValueError, match=r"edited/journeys\.csv changed after it was made"):
+        compare_studies(pair[1], edited)
+
+
+@pytest.mark.parametrize(("out", "said"), [
+    ("", "omit --out to use comparison"),
+    ("file/compared", r"cannot be written \(.*\); choose another folder with --out"),
+])  # fmt: skip
+def test_a_folder_that_cannot_be_made_is_one_sentence(
+    out: str, said: str, pair: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").write_text("no folder")
+    ended = CliRunner().invoke(app, ["compare", *map(str, pair), "--out", out])
+    assert ended.exit_code == 2
+    assert ended.stderr.count("\n") == 1
+    assert re.search(said, ended.stderr)
+
+
+def test_soil_is_inferred_with_an_emulator(pair: tuple[Path, Path], tmp_path: Path) -> None:
+    folder = shutil.copytree(pair[0], tmp_path / "unfinished")
+    (folder / "emulator.json").unlink()
+    with pytest.raises(ValueError, match=r"has no emulator\.json; finish the study there with: lithobrake run"):
+        InferredStudy.open(folder)
 
 
 def test_studies_that_cannot_be_paired_are_refused(pair: tuple[Path, Path], tmp_path: Path) -> None:

@@ -72,6 +72,7 @@ def test_the_command_tells_what_came_out_and_keeps_the_motion(study_file: Path, 
 @pytest.mark.parametrize(("options", "said"), [
     (["--set", "grain.colour=1"], "--set names 'grain.colour', which no landing of this study uses"),
     (["--set", "impact.speed"], "--set is 'impact.speed'; allowed: KEY=VALUE"),
+    (["--set", "impact.speed=0.1", "--set", "impact.speed=0.2"], "--set has impact.speed twice"),
     (["--set", "impact.speed=fast"], "--set impact.speed is 'fast'; allowed: a number"),
     (["--set", "impact.speed=nan"], "--set impact.speed is nan; allowed: a finite number"),
     (["--set", "impact.speed=-1"], "--set: impact.speed is -1; allowed: above 0 and at most 1000 [m/s]"),

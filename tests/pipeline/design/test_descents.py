@@ -21,6 +21,7 @@ from lithobrake.pipeline.design.descents import Descents, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
@@ -235,7 +236,7 @@ def message(states: np.ndarray, frame: str = "DIMORPHOS_FIXED", centre: str = "D
 def test_states_of_a_message_know_their_line_and_segment(tmp_path: Path) -> None:
     found = list(message_states(tmp_path / "a.oem", message(some_states(2))))
     assert [state.line for state in found] == [15, 16]
-    assert (found[0].segment["REF_FRAME"], found[1].epoch.second) == ("DIMORPHOS_FIXED", 40)
+    assert (found[0].segment["REF_FRAME"], found[1].epoch.text(0)[-2:]) == ("DIMORPHOS_FIXED", "40")
     by_day = message(some_states(1)).replace("2027-04-20T12:00:00.", "2027-110T12:00:00.")
     assert next(message_states(tmp_path / "a.oem", by_day)).epoch == found[0].epoch
 
@@ -304,9 +305,44 @@ def test_a_state_below_the_ground_is_refused_with_its_line(tmp_path: Path) -> No
         _ = DrawnDesign(study(delivery=released(position=[0.0, 60.0, 0.0]))).descents
 
 
+def test_states_along_one_path_are_warned_of_in_plan_and_run(tmp_path: Path) -> None:
+    """A fall at constant speed: eight states a second apart."""
+    fall = np.column_stack([np.arange(8.0), np.array([*POSITION, *VELOCITY]) + np.zeros((8, 6))])
+    fall[:, 1:4] += fall[:, :1] * VELOCITY
+    design = DrawnDesign(study(delivery={"states": write_table(tmp_path / "states.csv", fall, TITLES)}))
+    (words,) = design.site.cautions
+    assert "The 8 states of delivery.states lie on one path (states.csv, line 2 to states.csv, line 9)" in words
+    assert words in study_warnings(design, None)
+    assert design.site.remarks[0] == words
+    assert Site(study(delivery={"states": write_table(tmp_path / "other.csv", some_states(), TITLES)})).cautions == ()
+
+
+def test_a_state_within_the_partner_is_refused_with_its_line(tmp_path: Path) -> None:
+    """Didymos stands 1157 m from Dimorphos, over longitude 0, and reaches 425 m."""
+    states = some_states()
+    states[2, 1:4] = [1180.0, 0.0, 0.0]
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    with pytest.raises(StudyError, match=r"states\.csv, line 4 lies 30\d m below the surface of didymos; allowed"):
+        _ = DrawnDesign(study(delivery={"states": path}, site={"partner": True})).descents
+
+
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:
-    with pytest.raises(StudyError, match=r"impact\.speed reaches"):
+    said = r"study\.toml: delivery\.release: the release of journey \d comes down at 20 m/s .*lower its velocity"
+    with pytest.raises(StudyError, match=said):
         _ = DrawnDesign(study(delivery=released(velocity=[0.0, -20.0, 0.0]))).descents
+
+
+@pytest.mark.parametrize(("rate", "words"), [
+    (1e300, r'rate_z is "1.*e\+300"; allowed: a finite number, at most 1000 rad/s in size'),
+    (1e3, "its rates are 1000 rad/s, .*m deep"),
+])  # fmt: skip
+def test_rates_that_no_contact_carries_are_refused_with_their_line(rate: float, words: str, tmp_path: Path) -> None:
+    table = np.hstack([some_states(3), np.tile([1.0, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0], (3, 1))])
+    table[1, -1] = rate
+    titles = f"{TITLES},q_w,q_x,q_y,q_z,rate_x_rad_s,rate_y_rad_s,rate_z_rad_s"
+    path = write_table(tmp_path / "states.csv", table, titles)
+    with pytest.raises(StudyError, match=rf"states\.csv, line 3: {words}"):
+        _ = DrawnDesign(study(delivery={"states": path}, journey={"count": 3}))._descents(0, np.full((3, 6), 0.5))
 
 
 QUICK: dict[str, Any] = tomllib.loads(template()) | {"design": {}, "journey": {"touchdowns": 1}}
@@ -318,7 +354,7 @@ REGION = {"x": [-0.1, 0.05], "y": [0.0, 0.02]}
 def drawn(run_count: int = 240, seed: int = 1, **changes: dict[str, Any]) -> Study:
     """The template with so many runs out of the sequence, and with other keys in its tables."""
     tables = QUICK | {name: {**QUICK.get(name, {}), **keys} for name, keys in changes.items()}
-    tables["design"] = {**tables["design"], "run_count": run_count}
+    tables["design"], tables["monte_carlo"] = {**tables["design"], "run_count": run_count}, {"sample_count": 0}
     return check_tables(tables | {"seed": seed}, Path())
 
 

@@ -4,7 +4,7 @@ STUDY = """
 seed = 4
 lander = { shape = "box", edges = [0.12, 0.1, 0.08], mass = 0.4, restitution = 0.9 }
 contact = { pair_rule = "mean", steps_per_contact = 20.0 }
-journey = { count = 6, duration = 100_000.0, hop_height = 0.2 }
+journey = { count = 6, duration = 100_000.0, hop_height = 0.2, emulated_count = 40 }
 site = { body = "dimorphos" }
 campaign = { retry_count = 20 }
 [bed]

@@ -22,12 +22,13 @@ from lithobrake.pipeline.planning.expected_width import law_before
 from lithobrake.pipeline.planning.plan import plan_lines
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.site import Site, with_site_gravity
-from lithobrake.pipeline.sky_at_rest import Days, rows_of, sky_dependencies, where_it_stands
+from lithobrake.pipeline.sky_at_rest import Days, refuse_hidden_orbiter, rows_of, sky_dependencies, where_it_stands
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, didymos, dimorphos, fly
 from lithobrake.smallbody.built_in_bodies import top_shape
 from lithobrake.study import Study, StudyError, StudySource, check_tables
+from lithobrake.vocabulary.number_words import duration
 from lithobrake.vocabulary.quantities import SIDES, SKY
 
 from ...paper_tables import paper_tables, with_keys
@@ -68,6 +69,17 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResults, np.nd
     states = write_states(folder / "states.csv", away=(3, 9))
     run_without_emulator(tables(delivery={"states": str(folder / "states.csv")}), folder / "out", report=True)
     return lithobrake.open_study(folder / "out"), states
+
+
+@pytest.mark.parametrize("number", [0, 3])
+def test_the_words_of_a_journey_count_from_its_delivery(flown: tuple[StudyResults, np.ndarray], number: int) -> None:
+    """Lander 3 never touches down, and its table counts from delivery as well."""
+    results, _ = flown
+    track, begins = results.journey(number).track, results.arcs["begin_s"][results.arcs["sample"] == number]
+    descent, time = -begins[0], results.journeys["time_s"][number]
+    assert (descent > 60.0) == (number == 0)
+    assert [one.begin for one in track.touchdowns][:1] == ([descent] if number == 0 else [])
+    assert f"{track.end.label.capitalize()} {duration(descent + time)} after delivery" in track.lines()[-1]
 
 
 def test_every_state_is_one_journey_with_one_end(flown: tuple[StudyResults, np.ndarray]) -> None:
@@ -395,9 +407,13 @@ def test_an_orbiter_on_a_circle_or_in_a_table_is_seen_from_below_it(tmp_path: Pa
     study, site = sky_study(sky={"orbiter": {"states": str(table)}})
     (row,) = rows_of(BALL, [lander(100.0)], "orbiter", where_it_stands(study, site, "orbiter"), 0.0, 90.0)
     assert row[3] == pytest.approx((50.0 + 150.0) / 400.0)
+    refuse_hidden_orbiter(site)
     before = sky_dependencies(study)
     table.write_text(table.read_text().replace("400,", "500,"))
     assert sky_dependencies(study) != before
+    table.write_text(table.read_text().replace("500,1,0.1,", "500,0.01,0.01,"))
+    with pytest.raises(StudyError, match=r"orbiter\.csv, line 4 lies .* m below the ground; allowed: above it"):
+        refuse_hidden_orbiter(Site(study))
 
 
 def write_sky_kernel(path: Path) -> dict[int, np.ndarray]:
@@ -442,7 +458,7 @@ def test_kernels_tell_where_sun_earth_and_orbiter_stand(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("sky", "words"), [
-    ({"date": "soon"}, "allowed: a UTC date and time such as"),
+    ({"date": "soon"}, "allowed: a date and time of the years 1900 to 2999 such as"),
     ({"date": "2027-04-20", "orbit": ORBIT}, "site.pole_right_ascension_deg is missing"),
     ({"date": "2027-04-20"}, "sky.orbit is missing"),
     ({"date": "2027-04-20", "until": "2027-04-19", "orbit": ORBIT}, "allowed: later than sky.date"),
@@ -452,6 +468,7 @@ def test_kernels_tell_where_sun_earth_and_orbiter_stand(tmp_path: Path) -> None:
     ({"orbiter": {"altitude": 1.0, "kernel_name": "HERA"}}, "sky.orbiter.altitude and sky.orbiter.kernel_name"),
     ({"orbiter": {"kernel_name": "HERA"}}, "site.kernels is missing"),
     ({"orbiter": {"states": "nowhere.csv"}}, "cannot be read"),
+    ({"orbiter": {"states": str(Path(__file__))}}, "sky.orbiter.states: test_delivered_journeys.py, line 1"),
     ({"orbiter": {"states": "x", "inclination_deg": 3.0}}, "is that of a circle"),
     ({"sun_latitude_deg": 3.0, "beam_deg": 30.0}, "sky.beam_deg is of Earth and the orbiter"),
     ({"earth_latitude_deg": 3.0, "beam_deg": 91.0}, "above 0 and at most 90"),

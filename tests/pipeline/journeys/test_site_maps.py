@@ -222,7 +222,7 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
     # Counter-clockwise, as GeoJSON has it: the area by the trapezoids is above 0.
     area = sum(0.5 * (a[0] - b[0]) * (a[1] + b[1]) for a, b in pairwise(ring))
     assert area == pytest.approx((cell.east_deg - cell.west_deg) * (cell.north_deg - cell.south_deg))
-    radius = float(polygons["crs"]["properties"]["name"].split('sphere",')[1].split(",")[0])
+    radius = float(polygons["body_frame"].split('sphere",')[1].split(",")[0])
     assert radius == pytest.approx((0.75 * job_of(source_of()).site.body.shape.volume / math.pi) ** (1 / 3), rel=1e-6)
     assert site_lines(site_map)[0] == site_map.statement
     assert site_map.level == LEVEL

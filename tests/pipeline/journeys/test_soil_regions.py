@@ -264,7 +264,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "a name": ({"elsewhere": {"slope_deg": [0, 1], "grain": FRICTION}}, r"soil\.elsewhere is no name"),
     "a range": ({"a": {"slope_deg": [0, 1], "grain": {"restitution": 1.5}}},
                 r"soil\.a\.grain\.restitution is 1\.5; allowed"),
-    "soft": ({"a": {"slope_deg": [0, 1], "grain": {"young_modulus": 1e-3}}}, r"soil\.a: impact\.speed reaches"),
+    "soft": ({"a": {"slope_deg": [0, 1], "grain": {"young_modulus": 1e-3}}}, r"soil\.a: delivery\.speed reaches"),
     "no file": ({"a": {"facets": "/nowhere.csv", "grain": FRICTION}}, r"soil\.a\.facets: /nowhere\.csv: No such file"),
 }  # fmt: skip
 
@@ -289,7 +289,7 @@ def test_regions_without_ground_are_refused_before_anything_runs(body_file: Path
     count = 8 * FREQUENCY**2
     (tmp_path / "ponds.csv").write_text(f"{count}\n")
     with pytest.raises(StudyError, match=rf"soil\.a\.facets has {count}; allowed: 0 to {count - 1}"):
-        soils(body_file, {"a": {"facets": str(tmp_path / "ponds.csv"), "grain": FRICTION}}).refuse("study.toml")
+        soils(body_file, {"a": {"facets": str(tmp_path / "ponds.csv"), "grain": FRICTION}}).refuse()
     hidden = {"a": SINK, "b": {"latitude_deg": [-30.0, -20.0], "grain": FRICTION}}
     with pytest.raises(StudyError, match=r"^study\.toml: soil\.b holds no ground of this body"):
         run_touchdowns(tables(body_file, hidden), tmp_path / "out")

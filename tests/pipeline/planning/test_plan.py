@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake.campaign import Record, RunStatus, available_cores
+from lithobrake.campaign import Ledger, Record, RunStatus, available_cores
 from lithobrake.cli import app
 from lithobrake.pipeline import Plan, StudyFolder, plan_lines, plan_study, stage_keys
 from lithobrake.pipeline.design.dependencies import pour_seed
@@ -174,6 +174,24 @@ def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> N
     (out / "thesis.tex").touch()
     with pytest.raises(ValueError, match=r"holds thesis\.tex, and no study made it; choose another folder"):
         plan_study(study, out)
+
+
+def test_journeys_that_go_on_are_to_be_made_as_those_that_have_not_begun(tmp_path: Path) -> None:
+    """Of nine one has failed, one has ended at rest, one aloft; four go on after one touchdown, two have none."""
+    few = with_keys(load_tables(SCENARIOS / "quick.toml"), {"journey": {"count": 9}, "bed": {"bed_count": 9}})
+    study = with_site_gravity(check_tables(few, SCENARIOS))
+    design, folder = DrawnDesign(study), StudyFolder.only_read(tmp_path)
+    later = [(f"later {one}", {**design.rows[one], "touchdown": 1.0, "impact.speed": 0.01}, 1, 0) for one in range(4)]
+    with Ledger(tmp_path / "runs.sqlite") as ledger:
+        ledger.queue([(key, row, 1, 0) for key, row in zip(design.keys, design.rows, strict=True)], version="")
+        for number, key in enumerate(design.keys[:7]):
+            ended = {"status": "done", "outcome": "captured" if number == 4 else "clear", "outputs": {}, "attempts": 1}
+            ledger.finish(key, ended if number < 6 else {"status": "failed", "reason": "of a test", "attempts": 9})
+        ledger.queue(later, version="", adds=True)
+    plan = plan_for(study, folder, 1)
+    assert plan.made["journeys to rest"] == (6, 6)
+    assert ", 6 journeys to rest" in plan_lines(plan)[1]
+    assert "touchdowns each; 7 first touchdowns are known" in "\n".join(plan_lines(plan))
 
 
 def test_the_command_says_what_is_planned(tmp_path: Path) -> None:

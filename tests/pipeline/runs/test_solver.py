@@ -13,7 +13,7 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms
 from lithobrake.pipeline.runs.energy_bound import energy_bound, energy_warning, gyrations
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.runs.solver import SolverModel
+from lithobrake.pipeline.runs.solver import FunctionModel, SolverModel
 from lithobrake.results import open_study
 from lithobrake.study import Study, StudySource, check_tables
 from lithobrake.touchdown.lander_model import lander
@@ -84,6 +84,12 @@ def test_numbers_printed_with_six_digits_agree() -> None:
 def test_a_lander_that_leaves_and_contradicts_itself_is_a_failed_run(outputs: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said):
         made(outputs)
+
+
+@pytest.mark.parametrize("value", [None, "0.07", True, np.True_])
+def test_what_is_no_number_of_a_function_is_named(value: Any) -> None:
+    with pytest.raises(ValueError, match=r"the model gave .* for speed_out; allowed: a number"):
+        FunctionModel(lambda *_: {"outputs": {**CLEAR, "speed_out": value}})({}, 1)
 
 
 @pytest.mark.parametrize("outcome", ["captured", "left_sideways", "time_limit"])
@@ -208,7 +214,9 @@ def test_a_study_of_a_lander_with_parts_has_their_numbers_among_its_inputs(tmp_p
     text = few_grains(30, 0.8, 0.05, "0.6").replace("[surface]", PARTS + "[surface]")
     text = text.replace('restitution = { distribution = "uniform", lower = 0.5, upper = 0.8 }', "restitution = 0.7")
     path = tmp_path / "study.toml"
-    path.write_text(f"seed = 5\n{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 3\n")
+    path.write_text(
+        f"seed = 5\n{text}[journey]\ntouchdowns = 1\n[design]\nrun_count = 3\n[monte_carlo]\nsample_count = 0\n"
+    )
     run_study(StudySource.read(path), tmp_path / "out", until="runs", worker_count=1)
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path / "out"), "drawn")
     assert runs.run_count == 3

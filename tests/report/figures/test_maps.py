@@ -9,12 +9,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
 
+from lithobrake.analysis import highest_density
+from lithobrake.pipeline.answer.run_answers import rest_regions
 from lithobrake.report.figures.ground_map import (
     GroundMap,
     MapPanel,
     cell_counts,
     density_norm,
     draw_cells,
+    fill_regions,
     mark_site,
     panel_around,
     step_of,
@@ -127,6 +130,22 @@ def test_the_map_is_in_metres_with_its_regions_and_says_what_lies_outside() -> N
     ]  # fmt: skip
     FigureCanvasAgg(figure).draw()
     assert not figure.legends[0].get_window_extent().overlaps(axes.get_window_extent())
+
+
+@pytest.mark.parametrize("middle", [60.0, 180.0])
+def test_a_region_is_filled_whole_wherever_its_edge_crosses(middle: float) -> None:
+    random, radius = np.random.default_rng(4), 80.0
+    places = np.column_stack([np.full(60, radius), *(8.0 * random.standard_normal((2, 60)))])
+    turn = np.radians(middle)
+    around = np.array([[np.cos(turn), np.sin(turn), 0.0], [-np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
+    (region,), axes = rest_regions(highest_density(places @ around, [0.95])), Figure().add_subplot()
+    fill_regions(axes, [region], GroundMap(5.0, middle, radius), GREEN)
+    (patch,) = axes.patches
+    corners = [polygon.T for polygon in patch.get_path().to_polygons(closed_only=False)]
+    filled = abs(sum(0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) for x, y in corners))
+    # The map keeps areas; the sphere of the points is a little larger than that of the map.
+    assert filled == pytest.approx(region.area_m2, rel=0.03)
+    assert len(corners) == len(region.island_extents_m)
 
 
 def test_places_all_around_the_body_are_on_both_its_halves() -> None:

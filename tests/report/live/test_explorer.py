@@ -1,6 +1,5 @@
 """The explorer evaluates the emulator that Python evaluates, and its shares are those of the study."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +27,12 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.runs.energy_bound import bound_numbers, energy_bound
 from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.live.explorer import packed, script_data
+from lithobrake.results.named_emulator import allowed_motion
 from lithobrake.results.page_data import PageData
 from lithobrake.study import check_tables
 
 from ...pipeline.synthetic_lander import synthetic_tables
+from ...quick_studies import quick_studies
 from ...synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG
 from ..page_scripts import answer_of, explorer_data, needs_node
 
@@ -47,13 +48,14 @@ BEGIN = "const law = new Law(unpack(given.law), given.facts);"
 
 @pytest.fixture(scope="module")
 def model() -> Emulator:
-    """An emulator whose location, scale and outcomes follow the inputs."""
+    """An emulator of landings whose law is known."""
     x, y, outcome, bed = STRONG.study(200, 20, 5)
     upper = [SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf]
-    return emulator.fit(
-        dict(INPUTS), x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0], upper=upper,
-        riders=["azimuth_out"], output_names=list(OUTPUT_NAMES),
-    )  # fmt: skip
+    with quick_studies():
+        return emulator.fit(
+            dict(INPUTS), x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0], upper=upper,
+            riders=["azimuth_out"], output_names=list(OUTPUT_NAMES),
+        )  # fmt: skip
 
 
 def given_of(models: list[Emulator], **facts: Any) -> dict[str, Any]:
@@ -61,46 +63,6 @@ def given_of(models: list[Emulator], **facts: Any) -> dict[str, Any]:
     tables = {name: np.asarray(table, dtype=float) for name, table in law_tables(models).items()}
     names = list(models[0].outcome_names)
     return {"law": packed(tables), "facts": FACTS | {"outcomeNames": names} | facts}
-
-
-@needs_node
-@pytest.mark.parametrize("widths", [(np.inf,) * 5, (2.0,) * 5, (0.4, np.inf, np.inf, 0.8, np.inf)])
-def test_a_draw_of_the_browser_is_that_of_python(model: Emulator, widths: tuple[float, ...]) -> None:
-    wide = replace(model, choices=replace(model.choices, widths=widths))
-    models, random = [wide, *wide.refits(2, seed=3)], np.random.default_rng(2)
-    x = np.column_stack([law.ppf(random.random(40)) for law in INPUTS.values()])
-    given = given_of(models)
-    assert {rung for ladder in wide.choices.location for rung in ladder}, "the law has to follow the inputs"
-    columns = [OUTPUT_NAMES.index(name) for name in ("speed_out", "elevation_out", "spin_out")]
-    for number, one in enumerate(models):
-        drawn = one.draw(x, 5, seed=9)
-        # The same numbers in the same order as Emulator.draw takes them.
-        stream = np.random.default_rng(9)
-        numbers = {"outcome": stream.random((40, 5)), "row": stream.random((40, 5))}
-        numbers["normal"] = stream.standard_normal((40, 5, 3))
-        program = (
-            BEGIN
-            + """
-          law.energyBoundAt = () => [given.limit, 0];
-          return given.x.map((x, p) => {
-            const point = law.pointAt(Float64Array.from(x, (one, input) => law.germOf(input, one)));
-            point.upper.set(law.upper);
-            return given.outcome[p].map((one, d) => {
-              const y = new Float64Array(3);
-              const row = law.draw(given.refit, point, one, given.row[p][d], given.normal[p][d], 0, y);
-              return [row, ...y];
-            });
-          });"""
-        )
-        found = np.array(answer_of(LAW, program, given | {name: value.tolist() for name, value in numbers.items()} | {
-            "x": x.tolist(), "refit": number, "limit": SPEED_LIMIT}))  # fmt: skip
-        left = drawn.row >= 0
-        places = np.nonzero(one.runs.has_outputs)[0]
-        assert left.any()
-        assert not left.all()
-        assert np.array_equal(places[found[left][:, 0].astype(int)], drawn.row[left])
-        assert np.array_equal(-1 - found[~left][:, 0], drawn.outcome[~left])
-        assert found[left][:, 1:] == pytest.approx(drawn.y[left][:, columns], rel=EXACT, abs=0.0)
 
 
 @needs_node
@@ -150,21 +112,25 @@ def test_the_energy_bound_is_that_of_python(model: Emulator, changes: dict[str, 
     given = given_of([model], bound=bound_numbers(DrawnDesign(study), 0.3), inputNames=list(fixed))
     found = answer_of(LAW, f"{BEGIN} return law.energyBoundAt(given.values);", given | {"values": [*fixed.values()]})
     assert found == pytest.approx([bound.speed[0], bound.gyration[0]], rel=EXACT)
+    values = {name: np.array([value]) for name, value in fixed.items()}
+    assert allowed_motion(given["facts"]["bound"], values, 1) == pytest.approx(
+        np.column_stack([bound.speed, bound.spin()]), rel=EXACT)  # fmt: skip
 
 
 @needs_node
-@pytest.mark.parametrize("share", [0.5, 0.96, 0.03])
-def test_an_interval_is_that_of_python(share: float) -> None:
+@pytest.mark.parametrize(("share", "run_count"), [(0.5, 40), (0.96, 40), (0.03, 40), (0.03, 9), (0.96, 9)])
+def test_an_interval_is_that_of_python(share: float, run_count: int) -> None:
     random = np.random.default_rng(6)
     known = random.integers(400, 500, 50)
     for spread in (0.0, 0.02):
         returns = random.binomial(known, np.clip(share + spread * random.standard_normal(50), 0.0, 1.0))
         found = answer_of(
             ALL,
-            "return refitInterval(Float64Array.from(given.returns), Float64Array.from(given.known), 12, given.reach);",
-            {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11)},
+            """const [returns, known] = [given.returns, given.known].map((list) => Float64Array.from(list));
+            return refitInterval(returns, known, 12, given.reach, given.runs);""",
+            {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11), "runs": run_count},
         )
-        known_to_python = refit_interval(returns, known, 12)
+        known_to_python = refit_interval(returns, known, 12, run_count)
         bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]
         assert found == pytest.approx(bounds, rel=EXACT)
 

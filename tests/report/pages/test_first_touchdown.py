@@ -119,6 +119,7 @@ def test_warnings_name_few_beds_and_what_the_summary_warns_of(first: PageData) -
     assert [words[:20] for words in few[1:3]] == ["The study has only 6", "The emulator is off."]
     calm = changed(first, site={"gravity_warning": None}, emulator={"warning": None}, runs={"warning": None})
     assert page_warnings(calm) == []
+    assert page_warnings(changed(calm, site={"cautions": ("One path.",)})) == ["One path."]
 
 
 def test_the_first_warning_of_the_page_is_that_of_missing_landings(first: PageData, first_page: str) -> None:

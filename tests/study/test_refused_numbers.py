@@ -1,0 +1,67 @@
+"""Numbers that are finite and absurd, and files without end: refused when the study is read, by what they would do."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from lithobrake.study import checks
+
+from .test_study import problems, table
+
+REGION = {"latitude_deg": [0.0, 90.0], "grain": {"friction": 0.4}}
+PART = {"shape": "box", "edges": [0.1, 0.1, 0.1], "mass": 0.1, "centre": [0.0, 0.0, 0.1]}
+MANY = [1.0 + 1e-3 * number for number in range(1500)]
+
+
+@pytest.mark.parametrize(("changes", "words"), [
+    ({"impact.spin_x": 1e9}, ["rad/s, at which the tip of the lander moves at", "allowed: at most 1000 m/s"]),
+    # Each of them may pass by itself.
+    ({"impact.spin_z": table("normal", mean=0.0, std=1e6)}, ["impact.spin_x, impact.spin_y and impact.spin_z reach"]),
+    ({"impact.spin_y": 500.0}, ["grain.young_modulus down to", "m deep", "lower the spin"]),
+    ({"impact.spin_y": 500.0, "soil.soft": {**REGION, "grain": {"young_modulus": 10.0}}}, ["lower the spin"]),
+    ({"grain.surface_energy": 1e6}, ["two grains pull each other", "surface_energy is in J/m2"]),
+    ({"soil.a": {**REGION, "grain": {"surface_energy": 1e6}}}, ["soil.a: grain.surface_energy reaches 1e+06 J/m2"]),
+    ({"soil.a": {**REGION, "grain": {"young_modulus": 1e15}}}, ["soil.a: grain.young_modulus reaches 1e+15 Pa"]),
+    ({"grain.young_modulus": table("log_uniform", lower=2e5, upper=1e40)}, ["grain.young_modulus reaches 1e+40 Pa"]),
+    ({"grain.density": 2e306}, ["write a number below 1e+100 in size"]),
+    ({"lander.part": {"boom": {**PART, "orientation": [1e-200, 0, 0, 0]}}}, ["length 1e-200", "0.001 to 1000"]),
+    ({"aim.grid": {f"delivery.{key}": MANY for key in ("speed", "incidence_deg", "spin_x")}}, ["3375000000 aims"]),
+    ({"site.body": "dimorphos", "site.rotation": {"days": 1000.0, "spin": [2e-3, 2e-3, 2e-3]}},
+     ["2.99e+05 rad", "site.rotation.days = 66.8", "lower the days or the spin"]),
+])  # fmt: skip
+def test_absurd_numbers_are_refused_by_what_they_do(changes: dict[str, Any], words: list[str]) -> None:
+    said = " ".join(problems(changes))
+    assert [word for word in words if word not in said] == []
+
+
+def test_a_spin_that_the_contact_carries_is_no_problem() -> None:
+    assert problems({"impact.spin_x": table("uniform", lower=-0.1, upper=0.1)}) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes")
+@pytest.mark.parametrize("changes", [
+    {"soil.ponds": {"facets": "pipe", "grain": {"friction": 0.4}}},
+    {"delivery": {"states": "pipe", "frame": "body_fixed", "latitude_deg": 0.0, "longitude_deg": 0.0}, "impact": {}},
+])  # fmt: skip
+def test_a_pipe_is_not_waited_for(changes: dict[str, Any], tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    assert "it is no regular file" in " ".join(problems(changes, tmp_path))
+
+
+def test_what_samples_and_answers_need_is_missed_before_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "at least 8" in " ".join(
+        problems({"expansion": None, "design.run_count": 4, "monte_carlo.sample_count": 100})
+    )
+    assert problems({"expansion": None, "design.run_count": 8, "monte_carlo.sample_count": 100}) == []
+    monkeypatch.setattr(checks, "find_spec", lambda name: None)
+    said = problems({"solver": {"command": "python3 x.py", "answer": "a.yaml"}})
+    assert any('PyYAML is not installed: pip install "lithobrake[yaml]"' in one for one in said)
+
+
+def test_keys_are_named_as_the_file_has_them() -> None:
+    keys = {"impact.speed": None, "design.run_count": None, "delivery.speed": 900.0, "journey.count": 3}
+    said = problems({**keys, "journey.touchdowns": 1, "bed.bed_count": 12})
+    assert any(one.startswith("study.toml: delivery.speed reaches 900 m/s") for one in said)
+    assert any("bed.bed_count is 12, and journey.count 3" in one for one in said)
