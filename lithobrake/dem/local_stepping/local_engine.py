@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions, Step
+from lithobrake.dem.bodies.arrays import Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
@@ -60,18 +60,6 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
     )  # fmt: skip
 
 
-def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
-    """Sum up what the contacts did to every body when they were last looked at. Writes to bodies."""
-    touching = np.flatnonzero(pairs.overlap > 0.0)
-    members = np.column_stack([pairs.first, pairs.second])[touching]
-    # Sums run in the order of the pairs, of each the first body before the second; a plane takes none.
-    moved, force = members >= 0, reactions.force[touching]
-    torque, other_torque = reactions.first_torque[touching], reactions.second_torque[touching]
-    bodies.force[:], bodies.torque[:] = 0.0, 0.0
-    np.add.at(bodies.force, members[moved], np.stack([-force, force], axis=1)[moved])
-    np.add.at(bodies.torque, members[moved], np.stack([-torque, other_torque], axis=1)[moved])
-
-
 class LocalEngine:
     """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
@@ -82,7 +70,6 @@ class LocalEngine:
         self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
         self.cells = cells_of(engine.bodies, engine.skin)
         self.record = new_record()
-        self.summed = True  # the forces on each body stand in the engine's arrays
         self.plans: Plans
         self.agenda: Agenda
         engine.list_neighbours()
@@ -141,14 +128,7 @@ class LocalEngine:
             else:
                 break
         self.time = end
-        self.summed = False
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
-
-    def sum_forces(self) -> None:
-        """Let the engine's arrays have the forces that the contacts had when they were last looked at."""
-        if not self.summed:
-            sum_forces(self.engine.bodies, self.pairs, self.reactions)
-            self.summed = True
 
     def work_since_looks(self) -> float:
         """Return what contacts have done to their bodies since they were last looked at [J], as steady forces."""
@@ -188,7 +168,6 @@ class LocalEngine:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
         self.hold(0.0, 0.0)
-        self.sum_forces()
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         # Slots were filled as pairs were met; sums of forces at common steps run in the order of the bodies.
