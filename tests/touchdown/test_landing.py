@@ -28,7 +28,7 @@ def ball(material=BOUNCY, mass=0.3):
 
 
 def test_bouncy_ball_rebounds_and_tells_of_it(bed):
-    outcome = land(bed, ball(), landing(), frame_count=6)
+    outcome = land(bed, ball(), landing(), frame_count=4)
     assert (outcome.status, set(outcome.outputs)) == ("clear", set(OUTPUTS))
     out = outcome.outputs
     velocity = np.array([out["velocity_out_x"], out["velocity_out_y"], out["velocity_out_z"]])
@@ -42,8 +42,7 @@ def test_bouncy_ball_rebounds_and_tells_of_it(bed):
     assert out["contact_duration"] > 0.0
     assert out["penetration"] > 0.0
     assert out["peak_acceleration"] > 0.3 / out["contact_duration"]
-    # A landing that is looked at less often than six times has as many frames as looks.
-    assert 4 <= len(outcome.frames["time"]) <= 12
+    assert 4 <= len(outcome.frames["time"]) <= 8
     assert outcome.frames["position"].shape[1:] == (25, 3)
 
 
@@ -232,7 +231,7 @@ def test_a_lander_needs_a_mass():
 
 def test_contacts_at_steps_of_their_own_tell_the_same_story(bed):
     local = ContactModel(steps_per_contact=30.0, stepping="local")
-    found = [land(bed, ball(), landing(contact=local), frame_count=6) for _ in range(2)]
+    found = [land(bed, ball(), landing(contact=local), frame_count=4) for _ in range(2)]
     one, again = (outcome.outputs for outcome in found)
     assert one == again
     together = land(bed, ball(), landing(contact=ContactModel(steps_per_contact=60.0, stepping="global"))).outputs
@@ -240,7 +239,7 @@ def test_contacts_at_steps_of_their_own_tell_the_same_story(bed):
     # What the first blow decides agrees; what follows it is chance.
     assert one["peak_acceleration"] == pytest.approx(together["peak_acceleration"], rel=0.05)
     assert one["energy_lost"] == pytest.approx(together["energy_lost"], rel=0.05)
-    assert 4 <= len(found[0].frames["time"]) <= 12
+    assert 4 <= len(found[0].frames["time"]) <= 8
     assert (np.diff(found[0].frames["time"]) > 0.0).all()
 
 
