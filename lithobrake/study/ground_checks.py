@@ -8,7 +8,7 @@ from pathlib import Path
 from lithobrake.geometry.bed_limits import BOULDER_REACH, longest_reach
 from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSection, facet_numbers
 from lithobrake.study.lander_checks import NAME
-from lithobrake.study.quantity import median, usual_reach
+from lithobrake.study.quantity import Scalar, median, usual_reach
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
@@ -59,9 +59,7 @@ def material_problems(study: Study, region: str | None = None) -> Iterator[str]:
     there = study if region is None else study.on_soil(region)
     yield from contact_problems(there)
     yield from cohesion_problems(there)
-    # The median of some distributions takes SciPy, and hardly any study is near.
-    if usual_reach(there.grain.young_modulus)[1] > STIFFER * usual_reach(study.grain.young_modulus)[0]:
-        yield from stiffness_problems(there, median(study.grain.young_modulus))
+    yield from stiffness_problems(there, study.grain.young_modulus)
 
 
 def contact_problems(study: Study) -> Iterator[str]:
@@ -107,12 +105,13 @@ def cohesion_problems(study: Study) -> Iterator[str]:
         )
 
 
-def stiffness_problems(study: Study, poured: float) -> Iterator[str]:
-    """Grains so much stiffer than those that a bed is poured with, of a Young's modulus [Pa], that it cannot take them
-    on.
+def stiffness_problems(study: Study, modulus: Scalar) -> Iterator[str]:
+    """Grains so much stiffer than those that a bed is poured with, at the median of a Young's modulus [Pa], that it
+    cannot take them on.
     """
     highest = usual_reach(study.grain.young_modulus)[1]
-    if highest > STIFFER * poured:
+    # The median of some distributions takes SciPy, and hardly any study is near.
+    if highest > STIFFER * usual_reach(modulus)[0] and highest > STIFFER * (poured := median(modulus)):
         yield (
             f"grain.young_modulus reaches {highest:.3g} Pa, and beds are poured with the median of [grain], "
             f"{poured:.3g} Pa; allowed: at most {STIFFER * poured:.3g} Pa, {STIFFER:g} times as much, as contacts of "
