@@ -33,6 +33,8 @@ class BedNumbers:
     """smallest depth without boundary reflections during the first impact [m]"""
     large_enough: bool
     """whether the bed has that width and depth"""
+    ground: str | None = None
+    """kind of ground; null without [ground]"""
 
 
 @dataclass(frozen=True)

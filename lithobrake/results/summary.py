@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
-from lithobrake.results import dispersion, journey_results, model_results, run_results
+from lithobrake.results import dispersion, ground_results, journey_results, model_results, run_results
 from lithobrake.results.questions import AimResults, LimitStateResult
 from lithobrake.results.site_results import BedNumbers, SiteResults
 from lithobrake.results.study_files import json_values, results_in
@@ -65,6 +65,12 @@ class Results:
     sides: Mapping[str, journey_results.SideResults]
     """by the side of the lander that faces the ground at the first touchdown; empty for a sphere, a cube, and if
     attitudes are not known"""
+    over_grounds: ground_results.OverGrounds | None
+    """with ground.unknown = "everywhere": what one of the grounds would give; null without"""
+    ground_curve: ground_results.GroundCurve | None
+    """with [ground] and grains of several sizes: how journeys end against the size of the grains; null without"""
+    grounds: Mapping[str, ground_results.GroundKindResults]
+    """with [ground]: by kind of ground, in the order of the study file; empty without"""
     soils: Mapping[str, journey_results.SoilResults]
     """with [soil]: by region of the body, in the order of the study file, and `elsewhere`; empty without"""
     sky: Mapping[str, journey_results.SkyResults]

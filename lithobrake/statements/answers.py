@@ -7,23 +7,24 @@ from lithobrake.statements import labels, touchdowns
 from lithobrake.statements.captions import place_words
 from lithobrake.statements.ends import (
     Scope,
-    at_rest,
     hard_ground_ends,
     held_over,
     journey_counts,
     journey_ends,
     landing_ends,
     landing_warnings,
+    rest_over,
     returning,
     sample_ends,
     unknown_outcome,
 )
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.expansion import TellingNumbers, error_words, noise, telling_sentences
+from lithobrake.statements.grounds import by_kind, one_ground, over_grounds
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
 from lithobrake.statements.limits import rare_warnings
 from lithobrake.vocabulary.constants import CENTIMETRES
-from lithobrake.vocabulary.number_words import LEVEL, fixed, number, part, percent, time_limit, with_interval
+from lithobrake.vocabulary.number_words import fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 if TYPE_CHECKING:
@@ -55,7 +56,8 @@ def _main_answer(scope: Scope, results: "Results") -> list[str]:
         ends = [*journey_ends(scope, results), *rest_sentences(results.rest)]
     else:
         ends = landing_ends(scope, results)
-    return [*ends, *sky(results.sky), *soils(results.soils)]
+    grounds = [*over_grounds(results.over_grounds), *by_kind(results.grounds)] or one_ground(results.beds)
+    return [*ends, *grounds, *sky(results.sky), *soils(results.soils)]
 
 
 def study_headline(scope: Scope, results: "Results") -> list[str]:
@@ -85,9 +87,8 @@ def page_answer(data: "PageData") -> str:
     """The answer in one sentence, as a page begins."""
     results = data.results
     if data.to_rest:
-        rests = results.ends[JourneyEnd.AT_REST].share
         journey = data.study["journey"]
-        return f"{at_rest(rests, journey['duration'], level=LEVEL, touchdowns=journey['touchdowns'])}."
+        return f"{rest_over(results, journey['duration'], journey['touchdowns'])}."
     if data.journeys is None:
         return results.answer[0]
     alone = "other beds, impact points or attitudes would change it"

@@ -236,9 +236,18 @@ def _other_ways(
 def journey_ends(scope: Scope, results: "Results") -> list[str]:
     """How many landers come to rest, from how many journeys, and how the others end."""
     rests = results.ends[JourneyEnd.AT_REST].share
-    main = at_rest(rests, scope.journey_time, level=LEVEL, touchdowns=scope.touchdowns)
+    main = rest_over(results, scope.journey_time, scope.touchdowns)
     said = f"{main} ({journey_counts(results)}).{_others(results.ends)}"
     return [said] if rests.why_missing is None else [said, rests.why_missing]
+
+
+def rest_over(results: "Results", limit: float, touchdowns: int | None) -> str:
+    """The fraction at rest within a time [s]; where the ground is unknown its interval is that of one ground."""
+    over, where = results.over_grounds, ""
+    share = results.ends[JourneyEnd.AT_REST].share
+    if over is not None:
+        share, where = over.at_rest, " over the grounds that the study allows"
+    return at_rest(share, limit, where, level=LEVEL, touchdowns=touchdowns)
 
 
 def journey_counts(results: "Results") -> str:

@@ -39,14 +39,14 @@ def times_and_distances(rest: "JourneyRest") -> list[str]:
     if not (rest.time_s.median.is_known and rest.distance_m.median.is_known):
         return []
     return [
-        f"Time from the first touchdown to rest: median {_time(rest.time_s.median)}, 95 % within "
-        f"{_time(rest.time_s.q95)}. Contacts: median {quantile(rest.contacts.median)}, 95 % at most "
+        f"Time from the first touchdown to rest: median {time_words(rest.time_s.median)}, 95 % within "
+        f"{time_words(rest.time_s.q95)}. Contacts: median {quantile(rest.contacts.median)}, 95 % at most "
         f"{quantile(rest.contacts.q95)}. Distance from the aim point: median {quantile(rest.distance_m.median)} m, "
         f"95 % within {quantile(rest.distance_m.q95)} m."
     ]
 
 
-def _time(one: Estimate) -> str:
+def time_words(one: Estimate) -> str:
     """A time with its interval, in minutes below two hours."""
     size, unit = (MINUTE, "min") if one.value < 2.0 * HOUR else (HOUR, "h")
     return f"{quantile(one, size)} {unit}"

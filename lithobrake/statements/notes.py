@@ -194,6 +194,14 @@ def delivery(found: "DeliveryResults") -> str:
     return " ".join([*said, *(as_sentence(region(one, "the first impacts")) for one in found.regions)])
 
 
+def grounds() -> str:
+    """What becomes of the landers on each kind of ground."""
+    return (
+        "Probabilities are those of the study file. The last row is of a body with one of these grounds throughout: "
+        f"{in_brackets(LEVEL, ', of one such ground; in the other rows that of the mean over its beds')}"
+    )
+
+
 def soils() -> str:
     """What becomes of the landers by the soil that they come down on."""
     return (

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 
 from lithobrake.files.reading import open_regular
 from lithobrake.study.checks import problems
+from lithobrake.study.ground_beds import laid_out
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
@@ -181,9 +182,15 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
         study = Study.model_validate(_absolute(tables, folder)).with_function(function).of_file(name)
     except ValidationError as error:
         raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
-    if found := [study.said(text) for text in problems(study)]:
+    study, found = laid_out(study, _bed_of(tables))
+    if found := [study.said(text) for text in found or problems(study)]:
         raise StudyError(found)
     return study
+
+
+def _bed_of(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+    bed = tables.get("bed")
+    return bed if isinstance(bed, Mapping) else {}
 
 
 def known_keys() -> dict[str, tuple[str, ...]]:

@@ -18,6 +18,7 @@ from lithobrake.study.delivery_sections import (
     delivered_tables,
     journey_tables,
 )
+from lithobrake.study.ground_kinds import GroundSection, ground_tables
 from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole, median
 from lithobrake.vocabulary.file_names import STUDY_FILE
@@ -34,6 +35,7 @@ class Study(Section):
     """Seed of all random numbers of the study."""
     bed: ground_sections.BedSection
     grain: ground_sections.GrainSection
+    ground: GroundSection | None = None
     soil: dict[str, ground_sections.SoilSection] = Field(default={})
     lander: LanderSection
     delivery: DeliverySection | None = None
@@ -67,7 +69,7 @@ class Study(Section):
         if isinstance(impact := filled.get("impact"), Mapping) and impact.get("pointing_error_deg") is not None:
             # An error of pointing is about an attitude that is given, and a random one has none.
             filled["impact"] = {"orientation": (1.0, 0.0, 0.0, 0.0), **impact}
-        return filled
+        return ground_tables(filled)
 
     def with_function(self, identity: str | None) -> "Study":
         """The same study, its touchdowns made by a Python function of this identity in place of the soil."""

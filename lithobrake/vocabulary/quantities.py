@@ -60,6 +60,9 @@ ORIENTATION_OUT = ("orientation_out_w", "orientation_out_x", "orientation_out_y"
 OVER_RIM = "over_rim"
 # What is left of a journey [s], at most, for one of its touchdowns.
 TIME_LEFT = "journey.time_left"
+# The kind of ground of a bed, by its place in the study file, and the mean diameter of its grains [m]: inputs of a
+# touchdown where the ground is unknown.
+GROUND_KIND, GROUND_SIZE = "ground.kind", "ground.grain_size"
 # The acceleration of a touchdown, by the keys of the study file.
 GROUND = ("surface.gravity", "surface.slope_deg", "surface.slope_azimuth_deg")
 # Of touchdowns that are followed to rest: see Landing.hop_height.

@@ -22,6 +22,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import (
 from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends
 from lithobrake.pipeline.answer.expansion_results import expansion_results
 from lithobrake.pipeline.answer.followed_landers import followed_results
+from lithobrake.pipeline.answer.ground_answers import ground_curve, kind_results, over_grounds
 from lithobrake.pipeline.answer.journey_ends import (
     JourneyTable,
     end_shares,
@@ -92,15 +93,17 @@ def _plain(value: Any) -> Any:
     return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
-def bed_results(job: Job, name: str) -> BedNumbers:
-    """A bed of the study, and how large the first impact asks it to be."""
+def bed_results(job: Job, number: int, name: str) -> BedNumbers:
+    """The bed of a number in a file of the study, and how large the first impact asks it to be."""
     from lithobrake.touchdown import smallest_bed
 
     bed, values = stored_bed(job.folder / name), job.design.medians
     width, depth = smallest_bed(
         lander(job.study, values), grain(values), float(bed.grain_diameter), values[IMPACT_SPEED]
     )  # fmt: skip
+    grounds = job.design.grounds
     return BedNumbers(
+        ground=grounds[number].kind if grounds else None,
         solid_fraction=float(bed.solid_fraction),
         coordination_number=float(bed.coordination_number),
         surface_height_m=float(bed.surface_height),
@@ -176,7 +179,7 @@ def _without_landers(job: Job) -> Results:
         answer=(),
         headline=(),
         units={name: TOUCHDOWN[name].units for name in OUTPUTS},
-        beds=tuple(bed_results(job, name) for name in bed_files(study)),
+        beds=tuple(bed_results(job, *one) for one in enumerate(bed_files(study))),
         site=site_results(job.site),
         ends={},
         journeys=0,
@@ -192,6 +195,9 @@ def _without_landers(job: Job) -> Results:
         runs=RunResults(0, 0, {}, MissingLandings(0, 0.0, {}), None, 0, None, None),
         outputs_of_runs={},
         sides={},
+        over_grounds=None,
+        ground_curve=None,
+        grounds={},
         soils={},
         sky={},
         limit_states={},
@@ -231,6 +237,9 @@ def _of_landers(job: Job, found: Results) -> Results:
         runs=estimates.runs,
         outputs_of_runs=output_ranges(distinct),
         sides=with_journeys(study, dict(estimates.sides), runs, touchdowns, landed),
+        over_grounds=over_grounds(job.design, table),
+        ground_curve=ground_curve(job.design, table),
+        grounds=kind_results(job.design, table),
         soils=soil_shares(job, table),
         sky=sky_results(study, folder, table),
         emulated=emulated,

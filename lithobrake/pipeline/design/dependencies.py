@@ -31,7 +31,17 @@ def bed_dependencies(study: Study) -> dict[str, Any]:
         # Options of the touchdown alone: a change of these pours no bed again.
         "contact": study.contact.model_dump(exclude={"stepping", "resolved_speed", "held_speed"}),
         "engine": engine_hash(),
+        **_ground_dependencies(study),
     }
+
+
+def _ground_dependencies(study: Study) -> dict[str, Any]:
+    """What the grounds of the beds depend on, as JSON values; empty where all beds have one."""
+    if study.ground is None:
+        return {}
+    found = study.ground.model_dump(exclude_none=True)
+    # Each bed has one of the draws of this seed, whatever their number.
+    return {"ground": found, "ground_seed": study.seed}
 
 
 def bed_setting(study: Study) -> dict[str, Any]:

@@ -19,11 +19,14 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
+from lithobrake.study.ground_beds import Ground, grounds, of_ground
 from lithobrake.study.ground_sections import MOST_BEDS
-from lithobrake.study.quantity import uncertain, usual_reach
+from lithobrake.study.quantity import Uncertain, uncertain, usual_reach
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.quantities import (
     ARRIVAL,
+    GROUND_KIND,
+    GROUND_SIZE,
     IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     ORIENTATION,
@@ -164,7 +167,7 @@ class DrawnDesign:
         """The numbers of [grain] that runs draw, by dotted key, [run_count], in whatever region they come down."""
         first, last = int(runs.min()), int(runs.max())
         count = last + 1 - first
-        rows = self.rows_at([0] * count, self._points(count, skip=first))
+        rows = self._rows_of_points([0] * count, self._points(count, skip=first))
         names = [name for name in rows[0] if name.startswith(GRAIN)]
         return {name: np.array([row[name] for row in rows])[runs - first] for name in names}
 
@@ -238,6 +241,40 @@ class DrawnDesign:
 
     def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
+        return [row | self.ground_of(bed, row) for bed, row in zip(beds, self._rows_of_points(beds, x), strict=True)]
+
+    @cached_property
+    def grounds(self) -> list[Ground]:
+        """The ground of each bed, by its number; empty where all beds have one."""
+        return grounds(self.study)
+
+    def ground_of(self, bed: int, row: Row) -> Row:
+        """What a touchdown reads of the ground of a bed; row: with the numbers of [grain] that its lander drew."""
+        if self.study.ground is None:
+            return {}
+        ground, found = self.grounds[bed], {"bed": float(bed)}
+        kind, own = self.study.ground.kind[ground.kind], self.inputs
+        for key, value in ({} if kind.grain is None else kind.grain.values()).items():
+            name = f"{GRAIN}{key}"
+            # An uncertain number of the kind stands where its lander stands in that of [grain].
+            part = float(own[name].cdf(np.array(row[name]))) if isinstance(value, Uncertain) else 0.0
+            found[name] = float(value.to_chaos().ppf(part)) if isinstance(value, Uncertain) else value
+        return found | {GROUND_KIND: float(ground.number), GROUND_SIZE: ground.size}
+
+    def region_of(self, bed: int) -> tuple[Interval, Interval] | None:
+        """The part of a bed in which places are drawn, see place_region."""
+        if self.study.ground is None:
+            return self.region
+        if bed not in self._regions:
+            self._regions[bed] = place_region(of_ground(self.study, self.grounds[bed]))
+        return self._regions[bed]
+
+    @cached_property
+    def _regions(self) -> dict[int, tuple[Interval, Interval] | None]:
+        return {}
+
+    def _rows_of_points(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
+        """The same on the ground of [grain]."""
         rows, known = [], self.study.touchdown_medians()
         # A point has the inputs first, then what a run draws, then what a release draws: each zip takes the part that
         # it needs.
@@ -245,7 +282,7 @@ class DrawnDesign:
             soil = dict(zip(self.inputs, point, strict=False))
             uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=False))
             row = known | soil | {"bed": float(bed)} | _arrival(self.study, uniform)
-            for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.region or (), strict=False):
+            for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.region_of(bed) or (), strict=False):
                 row[name] = low + uniform[coordinate] * (high - low)
             rows.append(row)
         return rows

@@ -54,6 +54,7 @@ class LandingRows:
         if number == 0:
             return row | self._ground(impacts, place, row, row[IMPACT_AZIMUTH])
         x, y, turn, *_ = touchdown_uniforms(self.design.study.seed, journey, number)
+        row = row | self._patch(lander, journey, impacts.position[place])
         azimuth, row = 360.0 * turn, row | self._soil(journey, impacts.position[place])
         attitude, axes = impacts.attitude[place], impacts.axes[place]
         if attitude is None:
@@ -85,10 +86,27 @@ class LandingRows:
 
     def _place(self, x: float, y: float, row: Row) -> tuple[float, float]:
         """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""
-        if self.design.region is None:
+        region = self.design.region_of(int(row["bed"]))
+        if region is None:
             return row[PLACE[0]], row[PLACE[1]]
-        (west, east), (south, north) = self.design.region
+        (west, east), (south, north) = region
         return west + x * (east - west), south + y * (north - south)
+
+    def _patch(self, lander: int, journey: int, place: np.ndarray) -> Row:
+        """The bed that a lander meets at a place [m], [3], where the ground is patchy, and what it reads of its ground.
+
+        Patches are the cubes of a grid that is fixed to the body; each has one bed for each lander.
+        """
+        ground = self.design.study.ground
+        if ground is None or ground.unknown != "patchy":
+            return {}
+        here, first = (np.floor(one / ground.patch).astype(int).tolist() for one in (place, self.begin.origin[lander]))
+        bed = int(self.begin.rows[lander]["bed"])
+        if here != first:
+            seed = hashed_seed(self.design.study.seed, "patch", journey, *here)
+            bed = int(np.random.default_rng(seed).integers(self.design.study.bed_count))
+        own = {name: float(values[0]) for name, values in self.design.own_soils(np.array([journey])).items()}
+        return own | self.design.ground_of(bed, own)
 
     @cached_property
     def _soils(self) -> Soils:

@@ -12,6 +12,7 @@ from lithobrake.pipeline.design.dependencies import bed_files, pour_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job
 from lithobrake.study import Study
+from lithobrake.study.ground_beds import on_ground
 from lithobrake.touchdown import touchdown_model
 from lithobrake.touchdown.soil import boulders, grain, grain_sizes
 from lithobrake.touchdown.study_keys import by_study_keys
@@ -198,6 +199,7 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
     """What the bed of a number follows from, uncertain quantities at their median."""
     from lithobrake.touchdown import BedRecipe
 
+    study = on_ground(study, index)
     values = study.touchdown_medians()
     return BedRecipe(
         grain_count=study.bed.grain_count,

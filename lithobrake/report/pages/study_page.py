@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import Content, PageSection, PageTable, Plot
+from lithobrake.report.figures.ground_figure import GroundPoints, ground_figure
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import bed_figure
 from lithobrake.report.figures.option_figures import aim_figure, rare_figure
@@ -35,7 +36,7 @@ from lithobrake.report.tables import dispersion_tables as dispersion
 from lithobrake.report.tables import journey_tables
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.results.page_data import PageData, PageJourneys
-from lithobrake.statements import captions
+from lithobrake.statements import captions, grounds
 from lithobrake.statements import journeys as words
 from lithobrake.statements.answers import page_answer, page_details, page_tiles, page_warnings
 from lithobrake.statements.labels import END_WORDS, GROUND_WORDS
@@ -109,10 +110,15 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
     ]
     title = "Sources of variance of outcome, time and distance"
     why = [Plot("end_variance", title, words.end_variance(results), lambda: _draw_ends(data)), variance_plot(data)]
+    if results.ground_curve is not None:
+        caption = grounds.curve_caption()
+        why = [Plot("grounds", "The answer against the size of the grains", caption, lambda: _draw_sizes(data)), *why]
     return [
         PageSection("Where", where),
         PageSection("When", when, [journey_tables.rest_table(journeys)]),
-        PageSection("Why", why, [journey_tables.sides_table(data, journeys)]),
+        PageSection(
+            "Why", why, [journey_tables.grounds_table(data, journeys), journey_tables.sides_table(data, journeys)]
+        ),
         PageSection("How sure", tables=[journey_tables.ends_table(data, journeys)]),
         PageSection("Method"),
     ]
@@ -204,6 +210,27 @@ def _of_rest(journeys: PageJourneys, name: str) -> np.ndarray:
     """A number of the landers at rest, shape [lander]."""
     values: np.ndarray = journeys.table[name][journeys.table["end"] == JourneyEnd.AT_REST]
     return values
+
+
+def _draw_sizes(data: PageData) -> "Figure":
+    """How the journeys end against the size of the grains."""
+    results, journeys = data.results, data.journeys
+    assert journeys is not None
+    assert results.ground_curve is not None
+    (factor, unit), table = words.time_unit(journeys.rest), journeys.table
+    met = np.unique(table["bed"]).astype(int)
+    rests = table["end"] == JourneyEnd.AT_REST
+    of_bed = [table["bed"] == bed for bed in met]
+    points = GroundPoints(
+        kind=np.array([results.beds[bed].ground for bed in met]),
+        size=np.array([results.beds[bed].mean_diameter_m for bed in met]),
+        journeys=np.array([float(own.sum()) for own in of_bed]),
+        at_rest=np.array([float(rests[own].mean()) for own in of_bed]),
+        time=np.array([np.median(table["time_s"][own & rests] / factor) if (own & rests).any() else np.nan
+                       for own in of_bed]),
+    )  # fmt: skip
+    ranges = {name: one.grain_size_m for name, one in results.grounds.items()}
+    return ground_figure(results.ground_curve, points, ranges, unit, factor)
 
 
 def _draw_counts(journeys: PageJourneys) -> "Figure":

@@ -4,7 +4,8 @@ from lithobrake.report.content import PageTable
 from lithobrake.results.journey_results import RestQuantiles
 from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import notes
-from lithobrake.statements.journeys import time_unit
+from lithobrake.statements.grounds import sizes
+from lithobrake.statements.journeys import sides_down, time_unit
 from lithobrake.statements.labels import END_WORDS, quantile
 from lithobrake.vocabulary.constants import MINUTE
 from lithobrake.vocabulary.number_words import LEVEL, at_level, number, percent, with_interval
@@ -78,6 +79,26 @@ def sides_table(data: PageData, journeys: PageJourneys) -> PageTable:
     ]  # fmt: skip
     note = notes.sides(LEVEL)
     return PageTable("By the side that faces the ground", columns, rows, note, frozenset(columns[1:]))
+
+
+def grounds_table(data: PageData, journeys: PageJourneys) -> PageTable:
+    """What becomes of the landers on each kind of ground; none for a study of one ground."""
+    size, unit = time_unit(journeys.rest)
+    columns = ["kind of ground", "probability", "beds", "grains [m]", "journeys", "at rest", f"median time [{unit}]"]
+    columns += ["median distance [m]", "side down"]
+    rows = [
+        [
+            name, percent(one.weight), str(one.beds), sizes(one.grain_size_m), str(one.journeys),
+            with_interval(one.at_rest.share), quantile(one.time_s, size), quantile(one.distance_m), sides_down(one.faces),
+        ]
+        for name, one in data.results.grounds.items()
+    ]  # fmt: skip
+    over = data.results.over_grounds
+    if over is not None and rows:
+        sides = ", ".join(f"{face} {with_interval(one)}" for face, one in over.faces.items())
+        last = [with_interval(over.at_rest), quantile(over.time_s, size), quantile(over.distance_m), sides]
+        rows.append(["one of these, unknown which", percent(1.0), "", "", "", *last])
+    return PageTable("By kind of ground", columns, rows, notes.grounds(), frozenset(columns[1:]))
 
 
 def soils_table(data: PageData) -> PageTable:

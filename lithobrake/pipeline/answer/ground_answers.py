@@ -1,0 +1,83 @@
+"""How journeys ended over the grounds that a study allows, and on each kind of them."""
+
+import numpy as np
+
+from lithobrake.analysis.ground_spread import median_over_grounds, share_over_grounds
+from lithobrake.analysis.output_estimates import quantile_estimate
+from lithobrake.analysis.smooth_curve import curve_sizes, median_curve, share_curve
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
+from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.results.ground_results import GroundCurve, GroundKindResults, OverGrounds
+from lithobrake.vocabulary.number_words import MEDIAN
+
+# Beds of fewer grounds show no curve.
+FEWEST_OF_CURVE = 6
+
+
+def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None:
+    """What one of the grounds would give; None where all landers have the same ground, or each place its own."""
+    ground, rests = design.study.ground, table.rests
+    if ground is None or ground.unknown != "everywhere" or not len(table.end):
+        return None
+    why, faces = why_no_interval(design.study), table.face[rests]
+    has_sides = len(faces) > 0 and bool((faces != "").all())
+    return OverGrounds(
+        at_rest=share_over_grounds(rests.astype(float), table.bed, why=why),
+        time_s=median_over_grounds(np.where(rests, table.numbers["time_s"], np.nan), table.bed, why=why),
+        distance_m=median_over_grounds(np.where(rests, table.numbers["distance"], np.nan), table.bed, why=why),
+        faces={
+            str(face): share_over_grounds((faces == face).astype(float), table.bed[rests], why=why)
+            for face in (np.unique(faces) if has_sides else ())
+        },
+    )
+
+
+def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None:
+    """How journeys end against the size of the grains; None where it is one, or nobody rests."""
+    rests = table.rests
+    if design.study.ground is None or not rests.any():
+        return None
+    size, seed = np.array([one.size for one in design.grounds])[table.bed], design.study.seed
+    if size.min() == size.max() or len(np.unique(table.bed)) < FEWEST_OF_CURVE:
+        return None
+    time, faces = np.where(rests, table.numbers["time_s"], np.nan), table.face[rests]
+    names = np.unique(faces) if bool((faces != "").all()) else ()
+    # The sizes of the curve are those of all beds, also where nobody rests on some.
+    curves = {
+        str(name): share_curve(np.where(rests, table.face == name, np.nan), size, table.bed, seed) for name in names
+    }
+    return GroundCurve(
+        grain_size_m=tuple(curve_sizes(size).tolist()),
+        at_rest=tuple(share_curve(rests.astype(float), size, table.bed, seed)),
+        time_s=tuple(median_curve(time, size, table.bed, seed)),
+        faces={name: tuple(one) for name, one in curves.items()},
+    )
+
+
+def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKindResults]:
+    """By kind, in the order of the study file; empty for a study of one ground."""
+    if design.study.ground is None:
+        return {}
+    why, found = why_no_interval(design.study), {}
+    kinds, sizes = (np.array([getattr(one, name) for one in design.grounds]) for name in ("kind", "size"))
+    for name, kind in design.study.ground.kind.items():
+        own, beds = kinds[table.bed] == name, np.flatnonzero(kinds == name)
+        here = table.taken(np.flatnonzero(own))
+        if not len(here.end):
+            continue
+        time, distance = (np.where(here.rests, here.numbers[one], np.nan) for one in ("time_s", "distance"))
+        faces = here.face[here.rests]
+        found[name] = GroundKindResults(
+            weight=kind.weight,
+            beds=len(np.unique(here.bed)),
+            journeys=len(here.end),
+            grain_size_m=(float(sizes[beds].min()), float(sizes[beds].max())),
+            at_rest=end_share(here.rests, here.bed, why),
+            time_s=quantile_estimate(time, here.bed, MEDIAN, why=why),
+            distance_m=quantile_estimate(distance, here.bed, MEDIAN, why=why),
+            faces={
+                str(face): end_share(faces == face, here.bed[here.rests], why) for face in np.unique(faces[faces != ""])
+            },
+        )
+    return found

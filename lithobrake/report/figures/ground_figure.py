@@ -1,0 +1,101 @@
+"""How journeys end against the size of the grains, with the grounds that the study allows below."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lithobrake.report.figures.share_figures import AT_REST
+from lithobrake.report.figures.style import INK, QUIET
+from lithobrake.results.ground_results import GroundCurve
+from lithobrake.results.run_results import Share
+from lithobrake.vocabulary.array_types import Array
+
+# Of kinds of ground, and of sides: markers tell kinds apart, and lines sides.
+MARKERS = "osD^vP"
+LINES = ("-", "--", ":", "-.")
+# Areas of the marker of a bed, for one journey [points2].
+AREA = 9.0
+
+
+@dataclass(frozen=True)
+class GroundPoints:
+    """The beds of a study: kind, mean grain diameter [m], number of journeys, fraction of them at rest and median time
+    to rest [the unit of the axis], [bed_count] each."""
+
+    kind: NDArray[np.str_]
+    size: Array
+    journeys: Array
+    at_rest: Array
+    time: Array
+
+
+def ground_figure(
+    curve: GroundCurve, points: GroundPoints, ranges: Mapping[str, tuple[float, float]], unit: str, factor: float
+) -> Figure:  # fmt: skip
+    """Draw fraction at rest, median time and sides down against the mean grain diameter.
+
+    ranges: from where to where the sizes of each kind reach [m]; unit: of times, which are factor seconds.
+    """
+    figure = Figure(figsize=(9.2, 3.5))
+    size = np.array(curve.grain_size_m)
+    titles = ("at rest [%]", f"median time to rest [{unit}]", "side down [% of those at rest]")
+    panels = [figure.add_axes((0.065 + 0.325 * place, 0.32, 0.27, 0.58)) for place in range(3)]
+    for axes, title in zip(panels, titles, strict=True):
+        axes.set_xscale("log")
+        axes.set_title(title, fontsize=9, loc="left")
+        axes.grid(visible=True)
+        axes.set_xlim(size[0] / 1.12, size[-1] * 1.12)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter("")
+    _line(panels[0], size, curve.at_rest, 100.0)
+    _line(panels[1], size, curve.time_s, 1.0 / factor)
+    for (side, one), style in zip(sorted(curve.faces.items()), LINES * 2, strict=False):
+        _line(panels[2], size, one, 100.0, style, side)
+    for number, kind in enumerate(ranges):
+        own, marker = points.kind == kind, MARKERS[number % len(MARKERS)]
+        for axes, values in ((panels[0], 100.0 * points.at_rest), (panels[1], points.time)):
+            axes.scatter(
+                points.size[own], values[own], AREA * points.journeys[own], marker=marker, facecolor="none",
+                edgecolor=QUIET, linewidth=0.9, zorder=2,
+            )  # fmt: skip
+    panels[0].set_ylim(-3.0, 104.0)
+    panels[1].set_ylim(bottom=0.0)
+    panels[2].set_ylim(-3.0, 104.0)
+    if curve.faces:
+        panels[2].legend(fontsize=8, loc="best", title="down", title_fontsize=8)
+    for axes in panels:
+        _draw_ranges(axes, ranges, points)
+    figure.text(0.5, 0.015, "mean diameter of the grains [m]", ha="center", fontsize=9)
+    return figure
+
+
+def _line(
+    axes: Axes, size: Array, curve: tuple[Share, ...], factor: float, style: str = "-", label: str = ""
+) -> None:  # fmt: skip
+    """A curve, and its bounds as a band."""
+    lower, value, upper = (
+        [np.nan if end is None else factor * end for end in ends]
+        for ends in zip(*((one.lower, one.value, one.upper) for one in curve), strict=True)
+    )
+    colour = AT_REST if not label else INK
+    axes.fill_between(size, lower, upper, color=colour, alpha=0.18 if not label else 0.1, linewidth=0.0)
+    axes.plot(size, value, style, color=colour, linewidth=1.6, label=label or None)
+
+
+def _draw_ranges(axes: Axes, ranges: Mapping[str, tuple[float, float]], points: GroundPoints) -> None:
+    """Below an axis the sizes that each kind allows, a line each with the beds on it as marks."""
+    for number, (kind, (low, high)) in enumerate(ranges.items()):
+        place = -0.2 - 0.085 * number
+        trans = axes.get_xaxis_transform()
+        axes.plot([low, high], [place, place], color=INK, linewidth=1.2, transform=trans, clip_on=False)
+        own = points.size[points.kind == kind]
+        axes.plot(
+            own, np.full(len(own), place), "|", color=INK, markersize=6, markeredgewidth=1.0, transform=trans,
+            clip_on=False,
+        )  # fmt: skip
+        if axes is axes.figure.axes[0]:
+            axes.text(-0.02, place, kind, ha="right", va="center_baseline", fontsize=8, transform=axes.transAxes)

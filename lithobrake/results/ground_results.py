@@ -1,0 +1,62 @@
+"""Results over the grounds that a study allows, and on each kind of ground."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lithobrake.results.run_results import CountedShare, Number, Share
+from lithobrake.vocabulary.plain_text import short_repr
+
+
+@dataclass(frozen=True)
+class OverGrounds:
+    """What a body with one ground throughout would give, where nobody knows which: each value is that over all grounds
+    of the study, and its bounds hold that of one ground with the probability of the level."""
+
+    at_rest: Share
+    """fraction of the landers that comes to rest"""
+    time_s: Number
+    """median time from the first touchdown to rest [s]"""
+    distance_m: Number
+    """median distance from the aim point of those at rest [m]"""
+    faces: Mapping[str, Share]
+    """by the side of the lander that is down: fraction of the landers at rest; empty for a sphere"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class GroundCurve:
+    """How journeys end against the mean grain diameter of their beds: smooth curves, a value for each diameter; bounds
+    hold over resampled beds."""
+
+    grain_size_m: tuple[float, ...]
+    """mean grain diameters [m]"""
+    at_rest: tuple[Share, ...]
+    """fraction of the landers that comes to rest"""
+    time_s: tuple[Number, ...]
+    """median time from the first touchdown to rest [s]"""
+    faces: Mapping[str, tuple[Share, ...]]
+    """by the side of the lander that is down: fraction of the landers at rest; empty for a sphere"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
+class GroundKindResults:
+    """The journeys on one kind of ground; with ground.unknown = "patchy" those that ended there."""
+
+    weight: float
+    """probability of the kind, by the study file"""
+    beds: int
+    """beds of this kind that landers met"""
+    journeys: int
+    """journeys on them"""
+    grain_size_m: tuple[float, float]
+    """smallest and largest mean grain diameter of the beds of this kind [m]"""
+    at_rest: CountedShare
+    """fraction of these landers that comes to rest"""
+    time_s: Number
+    """median time from the first touchdown to rest of these landers [s]"""
+    distance_m: Number
+    """median distance from the aim point of those at rest [m]"""
+    faces: Mapping[str, CountedShare]
+    """by the side of the lander that is down: fraction of the landers at rest; empty for a sphere"""
+    __repr__ = short_repr

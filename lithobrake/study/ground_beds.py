@@ -1,0 +1,167 @@
+"""The ground of each bed of a study whose ground is unknown: its kind, its grains, and the bed that these ask for."""
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lithobrake.files.reading import hashed_seed
+from lithobrake.study import lander_checks
+from lithobrake.study.checks import narrowest_period
+from lithobrake.study.ground_kinds import GroundKind
+from lithobrake.study.ground_sections import BedSection, Between, Constant
+from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
+from lithobrake.study.study import Study
+
+# What follows from the grains, and no file of a study with [ground] gives.
+FOLLOWING = ("grain_count", "width", "diameter", "boulders")
+# Depth of a bed, over the mean diameter of its grains and over the largest diameter of the lander, at least: grains
+# some three deep, and as far to the floor as in the beds of docs/validation/bed_size.md.
+DEPTH_IN_GRAINS, DEPTH_IN_LANDERS = 2.2, 0.6
+SOLID_FRACTION = 0.6
+# Blocks of rock over the largest diameter of the lander, where a study gives no size.
+ROCK_IN_LANDERS = 3.0
+# Grains of a bed at most: more take hours a touchdown.
+MOST_GRAINS = 5000
+# Weights that add up to 1 do so but for the rounding of what a person writes.
+ROUNDING = 1e-6
+DRAWN = ("kind", "size", "ratio")
+
+
+class Ground(NamedTuple):
+    """The ground of a bed. number: of the kind, from 0, in the order of the file; size, mean diameter of its grains
+    [m]; ratio: of the largest to the smallest."""
+
+    kind: str
+    number: int
+    size: float
+    ratio: float
+
+
+def grounds(study: Study) -> list[Ground]:
+    """The ground of each bed, by its number; another number of beds changes none. Empty without [ground]."""
+    if study.ground is None:
+        return []
+    from lithobrake.chaos import Uniform, sobol_sequence
+
+    uniform = dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
+    points = sobol_sequence(uniform, study.bed_count, hashed_seed(study.seed, "ground"))
+    return [_drawn(study, *point) for point in points.tolist()]
+
+
+def _drawn(study: Study, kind: float, size: float, ratio: float) -> Ground:
+    """The ground that three numbers between 0 and 1 draw."""
+    assert study.ground is not None
+    names = list(study.ground.kind)
+    below = np.cumsum([study.ground.kind[name].weight for name in names])
+    number = min(int(np.searchsorted(below, kind, side="right")), len(names) - 1)
+    one = study.ground.kind[names[number]]
+    return Ground(names[number], number, _at(grain_size(study, one), size), _at(one.size_ratio, ratio))
+
+
+def _at(value: Scalar, part: float) -> float:
+    return float(value.to_chaos().ppf(part)) if isinstance(value, Uncertain) else value
+
+
+def grain_size(study: Study, kind: GroundKind) -> Scalar:
+    """Mean diameter of the grains of a kind [m]."""
+    if kind.grain_size is not None:
+        return kind.grain_size
+    return ROCK_IN_LANDERS * 2.0 * lander_checks.main_radius(study.lander)
+
+
+def on_ground(study: Study, bed: int) -> Study:
+    """The study with the bed and the grains of the ground of one of its beds; as it is without [ground]."""
+    return study if study.ground is None else of_ground(study, grounds(study)[bed])
+
+
+def of_ground(study: Study, ground: Ground) -> Study:
+    assert study.ground is not None
+    kind = study.ground.kind[ground.kind]
+    own = {} if kind.grain is None else kind.grain.values()
+    study = study.model_copy(update={"grain": study.grain.model_copy(update=own)})
+    return study.model_copy(update={"bed": _bed(study, kind, ground)})
+
+
+def typical(study: Study) -> Study:
+    """The study with the bed of its likeliest kind of ground, at the median of its sizes."""
+    assert study.ground is not None
+    kinds = study.ground.kind
+    name = max(kinds, key=lambda one: kinds[one].weight)
+    number, kind = list(kinds).index(name), kinds[name]
+    return of_ground(study, Ground(name, number, median(grain_size(study, kind)), median(kind.size_ratio)))
+
+
+def _bed(study: Study, kind: GroundKind, ground: Ground) -> BedSection:
+    """The bed that grains ask for: as wide as lander and grains need before the ground repeats, and as deep."""
+    smallest = 2.0 * ground.size / (1.0 + ground.ratio)
+    sizes: Constant | Between = Constant(distribution="constant", value=ground.size)
+    if ground.ratio > 1.0:
+        sizes = Between(distribution="uniform", lower=smallest, upper=ground.ratio * smallest)
+    bed = study.bed.model_copy(update={"diameter": sizes, "boulders": kind.boulders})
+    # The number of boulders, on which the width depends, follows from the width.
+    for _ in range(2):
+        width = math.ceil(1e3 * narrowest_period(study.model_copy(update={"bed": bed}))) / 1e3
+        bed = bed.model_copy(update={"width": (width, width)})
+    depth = max(DEPTH_IN_GRAINS * ground.size, DEPTH_IN_LANDERS * 2.0 * lander_checks.main_radius(study.lander))
+    # Of sizes that are uniform between two ends.
+    mean_cube = ground.size * (smallest**2 + (ground.ratio * smallest) ** 2) / 2.0
+    count = math.ceil(SOLID_FRACTION * depth * width**2 / (math.pi / 6.0 * mean_cube))
+    return bed.model_copy(update={"grain_count": max(count, 10)})
+
+
+def laid_out(study: Study, given: Mapping[str, Any]) -> tuple[Study, list[str]]:
+    """The study with the bed of its typical ground, and what is wrong with its grounds; given: the table [bed]."""
+    if study.ground is None:
+        return study, []
+    wrong = [*lander_checks.shape_problems("lander", study.lander), *lander_checks.part_problems(study.lander)]
+    try:
+        wrong = wrong or list(_ground_problems(study, given))
+    except (ValueError, OSError) as error:
+        # Of a mesh, whose size the beds depend on.
+        wrong = [f"lander.file, or that of a part: {error}"]
+    return (study, wrong) if wrong else (typical(study), [])
+
+
+def _ground_problems(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
+    """One sentence for each thing that is wrong with [ground]; given: the table [bed] of the file."""
+    assert study.ground is not None
+    for key in FOLLOWING:
+        if key in given:
+            yield f"bed.{key} stands beside [ground], whose kinds have grains and beds of their own; leave it out"
+    if not study.ground.kind:
+        yield "[ground] has no kind; allowed: at least one table [ground.kind.NAME] with its weight and grain_size"
+        return
+    if study.bed.sides == "walls":
+        yield 'bed.sides is "walls"; allowed with [ground] is "periodic", as its beds have no walls; leave it out'
+    total = math.fsum(kind.weight for kind in study.ground.kind.values())
+    if abs(total - 1.0) > ROUNDING:
+        weights = ", ".join(f"{name} {kind.weight:g}" for name, kind in study.ground.kind.items())
+        yield f"the weights of the kinds of ground add up to {total:.6g} ({weights}); allowed: 1; change them"
+    for name, kind in study.ground.kind.items():
+        yield from _kind_problems(study, name, kind)
+
+
+def _kind_problems(study: Study, name: str, kind: GroundKind) -> Iterator[str]:
+    key = f"ground.kind.{name}"
+    largest = 2.0 * lander_checks.main_radius(study.lander)
+    if kind.grain_size is None and not kind.rock:
+        yield f"{key}.grain_size is missing; write the mean diameter of its grains in m, or rock = true"
+        return
+    if kind.rock and kind.boulders is not None:
+        yield f"{key} is rock and has boulders; allowed: one of the two; leave the other out"
+    smallest, most = usual_reach(grain_size(study, kind))
+    if kind.rock and smallest < largest:
+        yield (
+            f"{key}.grain_size reaches down to {smallest:g} m and is rock; allowed: blocks of at least {largest:.3g} "
+            "m, the largest diameter of the lander; raise it, or write rock = false"
+        )
+    for size in (smallest, most):
+        ground = Ground(name, 0, size, usual_reach(kind.size_ratio)[1])
+        grains = _bed(study, kind, ground).grain_count
+        if grains > MOST_GRAINS:
+            yield (
+                f"{key}.grain_size reaches down to {size:g} m, and a bed of such grains has {grains}; allowed: at most "
+                f"{MOST_GRAINS} grains; raise it"
+            )

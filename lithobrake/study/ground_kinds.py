@@ -1,0 +1,60 @@
+"""The tables of the study file that say what the ground may be: kinds, each with its grains and its weight."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from lithobrake.study.ground_sections import BoulderSection, SoilGrainSection
+from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section
+
+Length = Annotated[Scalar, MaybeUncertain("m", above=0)]
+# What stands in [bed] until the grains are known: its schema needs it.
+PLACEHOLDER: Mapping[str, Any] = MappingProxyType(
+    {"grain_count": 10, "width": (1.0, 1.0), "diameter": {"distribution": "constant", "value": 0.1}}
+)
+
+
+class GroundKind(Section):
+    """A kind of ground. There may be any number of kinds, each in a table [ground.kind.NAME] of its own. Width, depth
+    and number of grains of its beds follow from the grains and the lander; `lithobrake plan` prints them."""
+
+    weight: Annotated[float, Number("", above=0, at_most=1)] = Field(examples=["1.0"])
+    """Probability of this kind. The weights of all kinds add up to 1."""
+    grain_size: Length | None = Field(
+        default=None, examples=['{ distribution = "log_uniform", lower = 0.06, upper = 0.4 }']
+    )
+    """Mean diameter of the grains of a bed, of the spheres of equal volume; if uncertain, it is sampled once for each
+    bed. Absent: of rock, three times the largest diameter of the lander."""
+    size_ratio: Annotated[Scalar, MaybeUncertain("", at_least=1, at_most=20)] = 1.0
+    """Largest diameter of the grains of a bed over the smallest; the diameters are uniform between. If uncertain, it is
+    sampled once for each bed."""
+    rock: bool = False
+    """Bare rock: blocks far larger than the lander, which their weight holds in place. Its roughness is that of their
+    faces and edges."""
+    boulders: BoulderSection | None = None
+    """Boulders among the grains, as bed.boulders."""
+    grain: SoilGrainSection | None = None
+    """Material of the grains of this kind where it differs from [grain]."""
+
+
+class GroundSection(Section):
+    """What the ground may be, in place of the sizes of [bed]: each bed is of a kind that is sampled by its weight, with
+    grains of a size of its own. Answers then hold over all grounds that the study allows, and their intervals include
+    that the ground is unknown."""
+
+    unknown: Literal["everywhere", "patchy"] = "everywhere"
+    """"everywhere": the body has one ground, and nobody knows which: each bed stands for a body of its own, and a
+    lander stays on its bed. "patchy": the ground differs from place to place, and a lander that flies farther than
+    ground.patch meets another bed."""
+    patch: Annotated[float, Number("m", above=0)] = Field(default=20.0, examples=["20.0"])
+    """Distance over the ground after which a lander meets another bed, if ground.unknown = "patchy"."""
+    kind: dict[str, GroundKind] = Field(default={})
+
+
+def ground_tables(tables: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a study with a [bed] for the schema where [ground] gives what it takes."""
+    if tables.get("ground") is None or not isinstance(bed := tables.get("bed", {}), Mapping):
+        return tables
+    return tables | {"bed": {**PLACEHOLDER, **bed}}
