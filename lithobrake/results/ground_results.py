@@ -24,6 +24,16 @@ class OverGrounds:
 
 
 @dataclass(frozen=True)
+class FinerGround:
+    """Ground whose grains are finer than any that are simulated: beds of the finest stand for it."""
+
+    finest_m: float
+    """mean diameter of these beds [m]"""
+    share: float
+    """share of the ground, by the weights and sizes of the study file"""
+
+
+@dataclass(frozen=True)
 class GroundCurve:
     """How journeys end against the mean grain diameter of their beds: smooth curves, a value for each diameter; bounds
     hold over resampled beds."""
@@ -34,8 +44,8 @@ class GroundCurve:
     """fraction of the landers that comes to rest"""
     time_s: tuple[Number, ...]
     """median time from the first touchdown to rest [s]"""
-    faces: Mapping[str, tuple[Share, ...]]
-    """by the side of the lander that is down: fraction of the landers at rest; empty for a sphere"""
+    axes: Mapping[str, tuple[Share, ...]]
+    """by the axis of the lander that points up or down: fraction of the landers at rest; empty for a sphere"""
     __repr__ = short_repr
 
 

@@ -67,6 +67,8 @@ class Results:
     attitudes are not known"""
     over_grounds: ground_results.OverGrounds | None
     """with ground.unknown = "everywhere": what one of the grounds would give; null without"""
+    finer_ground: ground_results.FinerGround | None
+    """with [ground]: ground that is finer than any bed; null without"""
     ground_curve: ground_results.GroundCurve | None
     """with [ground] and grains of several sizes: how journeys end against the size of the grains; null without"""
     grounds: Mapping[str, ground_results.GroundKindResults]

@@ -20,7 +20,7 @@ from lithobrake.statements.ends import (
 )
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.expansion import TellingNumbers, error_words, noise, telling_sentences
-from lithobrake.statements.grounds import by_kind, one_ground, over_grounds
+from lithobrake.statements.grounds import by_kind, finer, one_ground, over_grounds
 from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
 from lithobrake.statements.limits import rare_warnings
 from lithobrake.vocabulary.constants import CENTIMETRES
@@ -56,7 +56,8 @@ def _main_answer(scope: Scope, results: "Results") -> list[str]:
         ends = [*journey_ends(scope, results), *rest_sentences(results.rest)]
     else:
         ends = landing_ends(scope, results)
-    grounds = [*over_grounds(results.over_grounds), *by_kind(results.grounds)] or one_ground(results.beds)
+    grounds = [*over_grounds(results.over_grounds), *by_kind(results.grounds), *finer(results.finer_ground)]
+    grounds = grounds or one_ground(results.beds)
     return [*ends, *grounds, *sky(results.sky), *soils(results.soils)]
 
 

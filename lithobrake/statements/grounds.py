@@ -9,7 +9,7 @@ from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import LEVEL, number, percent, span, with_interval
 
 if TYPE_CHECKING:
-    from lithobrake.results.ground_results import GroundKindResults, OverGrounds
+    from lithobrake.results.ground_results import FinerGround, GroundKindResults, OverGrounds
     from lithobrake.results.site_results import BedNumbers
 
 
@@ -43,6 +43,17 @@ def by_kind(found: "Mapping[str, GroundKindResults]") -> list[str]:
         for name, one in found.items()
     ]
     return [f"By kind of ground: {'; '.join(listed)}."] if listed else []
+
+
+def finer(found: "FinerGround | None") -> list[str]:
+    """For how much of the ground coarser beds stand."""
+    if found is None:
+        return []
+    size = number(found.finest_m, 2)
+    return [
+        f"Beds of grains of {size} m stand for all finer ground, {percent(found.share)} of what the study allows; "
+        "finer grains could change the answer."
+    ]
 
 
 def curve_caption() -> str:

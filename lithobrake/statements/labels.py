@@ -16,7 +16,7 @@ from lithobrake.vocabulary.outcomes import (
     SampleOutcome,
     TouchdownOutcome,
 )
-from lithobrake.vocabulary.quantities import TOUCHDOWN
+from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
@@ -40,6 +40,8 @@ PART_KEY = r"lander\.part\.(?P<part>[\w-]+)\.(?P<key>\w+)"
 # A number of a region with a soil of its own.
 REGION_KEY = r"soil\.(?P<name>[\w-]+)\.(?P<key>grain\.\w+)"
 INPUT_LABELS = {
+    GROUND_SIZE: "mean diameter, grains",
+    GROUND_KIND: "kind of ground",
     **{f"grain.{name}": f"{known.label}, grains" for name, known in PROPERTIES.items()},
     **{f"lander.{name}": f"{PROPERTIES[name].label}, lander" for name in SURFACE_PROPERTIES},
     "lander.mass": "mass of the lander",
@@ -66,7 +68,7 @@ INPUT_LABELS = {
     "surface.slope_azimuth_deg": "azimuth of the slope",
 }
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
-WHOLE_WORDS = {"impact.speed": "impact speed"}
+WHOLE_WORDS = {"impact.speed": "impact speed", GROUND_SIZE: "grain size", GROUND_KIND: "kind of ground"}
 # How a run ended, beside a number.
 RUN_WORDS = {outcome.value: outcome.label for outcome in TouchdownOutcome} | {FAILED: FAILED}
 # How a journey ended, as short as it has to be in a legend.

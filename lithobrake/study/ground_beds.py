@@ -9,6 +9,7 @@ import numpy as np
 from lithobrake.files.reading import hashed_seed
 from lithobrake.study import lander_checks
 from lithobrake.study.checks import narrowest_period
+from lithobrake.study.ground_checks import material_problems
 from lithobrake.study.ground_kinds import GroundKind
 from lithobrake.study.ground_sections import BedSection, Between, Constant
 from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
@@ -22,6 +23,8 @@ DEPTH_IN_GRAINS, DEPTH_IN_LANDERS = 2.2, 0.6
 SOLID_FRACTION = 0.6
 # Blocks of rock over the largest diameter of the lander, where a study gives no size.
 ROCK_IN_LANDERS = 3.0
+# Finest grains that are simulated, over the largest diameter of the lander, where a study does not say.
+FINEST_IN_LANDERS = 0.25
 # Grains of a bed at most: more take hours a touchdown.
 MOST_GRAINS = 5000
 # Weights that add up to 1 do so but for the rounding of what a person writes.
@@ -57,11 +60,31 @@ def _drawn(study: Study, kind: float, size: float, ratio: float) -> Ground:
     below = np.cumsum([study.ground.kind[name].weight for name in names])
     number = min(int(np.searchsorted(below, kind, side="right")), len(names) - 1)
     one = study.ground.kind[names[number]]
-    return Ground(names[number], number, _at(grain_size(study, one), size), _at(one.size_ratio, ratio))
+    drawn = max(_at(grain_size(study, one), size), finest(study))
+    return Ground(names[number], number, drawn, _at(one.size_ratio, ratio))
 
 
 def _at(value: Scalar, part: float) -> float:
     return float(value.to_chaos().ppf(part)) if isinstance(value, Uncertain) else value
+
+
+def finest(study: Study) -> float:
+    """Smallest mean diameter of grains that are simulated [m]."""
+    assert study.ground is not None
+    if study.ground.finest is not None:
+        return study.ground.finest
+    return FINEST_IN_LANDERS * 2.0 * lander_checks.main_radius(study.lander)
+
+
+def finer_share(study: Study) -> float:
+    """The share of the ground whose grains are finer than any that are simulated."""
+    assert study.ground is not None
+    least, found = finest(study), 0.0
+    for kind in study.ground.kind.values():
+        size = grain_size(study, kind)
+        below = float(size.to_chaos().cdf(np.array(least))) if isinstance(size, Uncertain) else float(size < least)
+        found += kind.weight * below
+    return found
 
 
 def grain_size(study: Study, kind: GroundKind) -> Scalar:
@@ -90,7 +113,8 @@ def typical(study: Study) -> Study:
     kinds = study.ground.kind
     name = max(kinds, key=lambda one: kinds[one].weight)
     number, kind = list(kinds).index(name), kinds[name]
-    return of_ground(study, Ground(name, number, median(grain_size(study, kind)), median(kind.size_ratio)))
+    size = max(median(grain_size(study, kind)), finest(study))
+    return of_ground(study, Ground(name, number, size, median(kind.size_ratio)))
 
 
 def _bed(study: Study, kind: GroundKind, ground: Ground) -> BedSection:
@@ -151,17 +175,33 @@ def _kind_problems(study: Study, name: str, kind: GroundKind) -> Iterator[str]:
         return
     if kind.rock and kind.boulders is not None:
         yield f"{key} is rock and has boulders; allowed: one of the two; leave the other out"
-    smallest, most = usual_reach(grain_size(study, kind))
+    smallest, most = (max(end, finest(study)) for end in usual_reach(grain_size(study, kind)))
     if kind.rock and smallest < largest:
         yield (
             f"{key}.grain_size reaches down to {smallest:g} m and is rock; allowed: blocks of at least {largest:.3g} "
             "m, the largest diameter of the lander; raise it, or write rock = false"
         )
-    for size in (smallest, most):
+    for size in sorted({smallest, most}):
         ground = Ground(name, 0, size, usual_reach(kind.size_ratio)[1])
-        grains = _bed(study, kind, ground).grain_count
-        if grains > MOST_GRAINS:
+        found = of_ground(study, ground)
+        if found.bed.grain_count > MOST_GRAINS:
             yield (
-                f"{key}.grain_size reaches down to {size:g} m, and a bed of such grains has {grains}; allowed: at most "
-                f"{MOST_GRAINS} grains; raise it"
+                f"{key}.grain_size reaches to {size:g} m, and a bed of such grains has {found.bed.grain_count}; "
+                f"allowed: at most {MOST_GRAINS} grains; raise it, or ground.finest"
+            )
+            return
+        problems = list(material_problems(found)) if study.has_soil else []
+        if problems:
+            yield from (f"{key}: {text}" for text in problems)
+            return
+    yield from _material_problems(study, key, kind)
+
+
+def _material_problems(study: Study, key: str, kind: GroundKind) -> Iterator[str]:
+    """A material that is uncertain where that of [grain], whose draws it follows, is one number."""
+    for name, value in ({} if kind.grain is None else kind.grain.values()).items():
+        if isinstance(value, Uncertain) and not isinstance(getattr(study.grain, name), Uncertain):
+            yield (
+                f"{key}.grain.{name} is uncertain and grain.{name} is not; allowed: both, as a lander draws one "
+                f"quantile for both, or a number in {key}.grain; make grain.{name} uncertain"
             )

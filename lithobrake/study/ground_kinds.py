@@ -5,9 +5,12 @@ from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
+from pydantic_core import PydanticCustomError
 
+from lithobrake.study.ground_presets import GROUND_PRESETS
 from lithobrake.study.ground_sections import BoulderSection, SoilGrainSection
 from lithobrake.study.quantity import MaybeUncertain, Number, Scalar, Section
+from lithobrake.vocabulary.plain_text import closest, show
 
 Length = Annotated[Scalar, MaybeUncertain("m", above=0)]
 # What stands in [bed] until the grains are known: its schema needs it.
@@ -26,7 +29,7 @@ class GroundKind(Section):
         default=None, examples=['{ distribution = "log_uniform", lower = 0.06, upper = 0.4 }']
     )
     """Mean diameter of the grains of a bed, of the spheres of equal volume; if uncertain, it is sampled once for each
-    bed. Absent: of rock, three times the largest diameter of the lander."""
+    bed, and at least ground.finest. Absent: of rock, three times the largest diameter of the lander."""
     size_ratio: Annotated[Scalar, MaybeUncertain("", at_least=1, at_most=20)] = 1.0
     """Largest diameter of the grains of a bed over the smallest; the diameters are uniform between. If uncertain, it is
     sampled once for each bed."""
@@ -50,11 +53,21 @@ class GroundSection(Section):
     ground.patch meets another bed."""
     patch: Annotated[float, Number("m", above=0)] = Field(default=20.0, examples=["20.0"])
     """Distance over the ground after which a lander meets another bed, if ground.unknown = "patchy"."""
+    finest: Annotated[float, Number("m", above=0)] | None = None
+    """Smallest mean diameter of grains that are simulated: beds of this size stand for finer ground, and the answer
+    says for how much of it. Absent: a quarter of the largest diameter of the lander."""
     kind: dict[str, GroundKind] = Field(default={})
 
 
 def ground_tables(tables: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a study with a [bed] for the schema where [ground] gives what it takes."""
-    if tables.get("ground") is None or not isinstance(bed := tables.get("bed", {}), Mapping):
+    """The tables of a study, whose ground may be a name of GROUND_PRESETS, with a [bed] for the schema."""
+    ground = tables.get("ground")
+    if ground is None or not isinstance(bed := tables.get("bed", {}), Mapping):
         return tables
-    return tables | {"bed": {**PLACEHOLDER, **bed}}
+    if isinstance(ground, str):
+        if ground.lower() not in GROUND_PRESETS:
+            names = ", ".join(GROUND_PRESETS)
+            text = f"is {show(ground)}; allowed: a table [ground], or a name out of {names}"
+            raise PydanticCustomError("quantity", "{text}", {"text": f"{text}{closest(ground, GROUND_PRESETS)}"})
+        ground = GROUND_PRESETS[ground.lower()]
+    return tables | {"ground": ground, "bed": {**PLACEHOLDER, **bed}}

@@ -8,7 +8,9 @@ from lithobrake.analysis.smooth_curve import curve_sizes, median_curve, share_cu
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.results.ground_results import GroundCurve, GroundKindResults, OverGrounds
+from lithobrake.results.ground_results import FinerGround, GroundCurve, GroundKindResults, OverGrounds
+from lithobrake.study import Study
+from lithobrake.study.ground_beds import finer_share, finest
 from lithobrake.vocabulary.number_words import MEDIAN
 
 # Beds of fewer grounds show no curve.
@@ -33,6 +35,13 @@ def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None
     )
 
 
+def finer_ground(study: Study) -> FinerGround | None:
+    """Ground finer than any bed; None where there is none."""
+    if study.ground is None or (share := finer_share(study)) == 0.0:
+        return None
+    return FinerGround(finest(study), share)
+
+
 def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None:
     """How journeys end against the size of the grains; None where it is one, or nobody rests."""
     rests = table.rests
@@ -41,17 +50,17 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
     size, seed = np.array([one.size for one in design.grounds])[table.bed], design.study.seed
     if size.min() == size.max() or len(np.unique(table.bed)) < FEWEST_OF_CURVE:
         return None
-    time, faces = np.where(rests, table.numbers["time_s"], np.nan), table.face[rests]
-    names = np.unique(faces) if bool((faces != "").all()) else ()
+    time = np.where(rests, table.numbers["time_s"], np.nan)
+    # Opposite sides together: of most landers they are alike.
+    axis = np.char.lstrip(table.face.astype(str), "+-")
+    names = np.unique(axis[rests]) if bool((axis[rests] != "").all()) else ()
     # The sizes of the curve are those of all beds, also where nobody rests on some.
-    curves = {
-        str(name): share_curve(np.where(rests, table.face == name, np.nan), size, table.bed, seed) for name in names
-    }
+    curves = {str(name): share_curve(np.where(rests, axis == name, np.nan), size, table.bed, seed) for name in names}
     return GroundCurve(
         grain_size_m=tuple(curve_sizes(size).tolist()),
         at_rest=tuple(share_curve(rests.astype(float), size, table.bed, seed)),
         time_s=tuple(median_curve(time, size, table.bed, seed)),
-        faces={name: tuple(one) for name, one in curves.items()},
+        axes={name: tuple(one) for name, one in curves.items()},
     )
 
 

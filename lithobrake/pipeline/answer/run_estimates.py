@@ -45,7 +45,7 @@ MISSING = "missing"
 # These add up to 1; every other share holds some of them.
 PARTS = (*FlightStatus, CAPTURED)
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
-SOIL = ("grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
+SOIL = ("ground.", "grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
 Inputs = dict[str, tuple["Distribution", np.ndarray]]
 ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
@@ -193,7 +193,13 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
         drawn = job.design.delivered_rows
         values |= {name: np.array([row[name] for row in drawn]) for name in job.design.soil_inputs}
     found = {name: (law, values[name]) for name, law in (job.design.soil_inputs | told).items()}
-    return found | _soil_inputs(job, runs)
+    return _ground_inputs(job, runs) | found | _soil_inputs(job, runs)
+
+
+def _ground_inputs(job: Job, runs: DesignRuns) -> Inputs:
+    """Kind and grain size of the ground of the beds, with their laws; nothing where there is one ground."""
+    numbers = {name: values for name, values in job.design.ground_numbers.items() if np.ptp(runs.inputs[name]) > 0.0}
+    return {name: (Empirical(values), runs.inputs[name]) for name, values in numbers.items()}
 
 
 def _soil_inputs(job: Job, runs: DesignRuns) -> Inputs:

@@ -22,7 +22,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import (
 from lithobrake.pipeline.answer.emulated_ends import Refits, emulated_ends
 from lithobrake.pipeline.answer.expansion_results import expansion_results
 from lithobrake.pipeline.answer.followed_landers import followed_results
-from lithobrake.pipeline.answer.ground_answers import ground_curve, kind_results, over_grounds
+from lithobrake.pipeline.answer.ground_answers import finer_ground, ground_curve, kind_results, over_grounds
 from lithobrake.pipeline.answer.journey_ends import (
     JourneyTable,
     end_shares,
@@ -196,6 +196,7 @@ def _without_landers(job: Job) -> Results:
         outputs_of_runs={},
         sides={},
         over_grounds=None,
+        finer_ground=None,
         ground_curve=None,
         grounds={},
         soils={},
@@ -238,6 +239,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         outputs_of_runs=output_ranges(distinct),
         sides=with_journeys(study, dict(estimates.sides), runs, touchdowns, landed),
         over_grounds=over_grounds(job.design, table),
+        finer_ground=finer_ground(study),
         ground_curve=ground_curve(job.design, table),
         grounds=kind_results(job.design, table),
         soils=soil_shares(job, table),

@@ -261,6 +261,43 @@ class DrawnDesign:
             found[name] = float(value.to_chaos().ppf(part)) if isinstance(value, Uncertain) else value
         return found | {GROUND_KIND: float(ground.number), GROUND_SIZE: ground.size}
 
+    @cached_property
+    def ground_inputs(self) -> "dict[str, Distribution]":
+        """What tells the grounds of the beds apart, with laws over their ranges; empty where they have one."""
+        from lithobrake.chaos import LogUniform
+
+        found: dict[str, Distribution] = {}
+        for name, values in self.ground_numbers.items():
+            low, high = min(values), max(values)
+            if low < high:
+                found[name] = (LogUniform if name == GROUND_SIZE else Uniform)(low, high)
+        return found
+
+    @property
+    def ground_numbers(self) -> dict[str, list[float]]:
+        """The kind of ground of each bed, by its place in the file, and the mean diameter of its grains [m]."""
+        if self.study.ground is None:
+            return {}
+        return {
+            GROUND_KIND: [float(one.number) for one in self.grounds],
+            GROUND_SIZE: [one.size for one in self.grounds],
+        }
+
+    def bed_at(self, journey: int, bed: int, first: np.ndarray, place: np.ndarray) -> int:
+        """The bed that a lander meets at a place [m], [3], of one that first met a bed at another place.
+
+        Where the ground is patchy, patches are the cubes of a grid that is fixed to the body; each has one bed for each
+        lander.
+        """
+        ground = self.study.ground
+        if ground is None or ground.unknown != "patchy":
+            return bed
+        here, there = (np.floor(one / ground.patch).astype(int).tolist() for one in (place, first))
+        if here == there:
+            return bed
+        chance = np.random.default_rng(hashed_seed(self.study.seed, "patch", journey, *here))
+        return int(chance.integers(self.study.bed_count))
+
     def region_of(self, bed: int) -> tuple[Interval, Interval] | None:
         """The part of a bed in which places are drawn, see place_region."""
         if self.study.ground is None:

@@ -42,7 +42,7 @@ class EmulatedTouchdowns:
     def answers(self, impacts: ImpactStates) -> Answers:
         """Draw how each touchdown ends; nothing is known of those beyond the ranges of the emulator."""
         which, number = impacts.lander, int(impacts.number[0])
-        soil = {name: values[which] for name, values in self.soil.items()} | self._met(impacts)
+        soil = {name: values[which] for name, values in self.soil.items()} | self._patches(impacts) | self._met(impacts)
         # The emulator reads the size of the acceleration and the slope, for which any azimuth will do.
         ground = [
             ground_inputs(one, 0.0, friction)
@@ -59,6 +59,20 @@ class EmulatedTouchdowns:
         self.beyond[which] = np.where(beyond == "", self.beyond[which], beyond)
         seed = hashed_seed(self.emulator.design.study.seed, self.title, number)
         return self.emulator.answers(inputs, impacts.local_spin, self.begin.refit[which], seed)
+
+    def _patches(self, impacts: ImpactStates) -> dict[str, np.ndarray]:
+        """What landers read of the ground of other patches than their first, [count] each; nothing of one ground."""
+        design, begin = self.emulator.design, self.begin
+        if design.study.ground is None or design.study.ground.unknown != "patchy":
+            return {}
+        own = {name: values[impacts.lander] for name, values in self._own_soils.items()}
+        rows = []
+        for place, lander in enumerate(impacts.lander.tolist()):
+            first = int(begin.rows[lander]["bed"])
+            bed = design.bed_at(int(begin.number[lander]), first, begin.origin[lander], impacts.position[place])
+            mine = {name: float(values[place]) for name, values in own.items()}
+            rows.append(mine | design.ground_of(bed, mine))
+        return {name: np.array([row[name] for row in rows]) for name in self.soil if name in rows[0]}
 
     def _met(self, impacts: ImpactStates) -> dict[str, np.ndarray]:
         """Soils of the regions that landers touch down in; nothing where all ground is what a lander met first."""

@@ -93,18 +93,10 @@ class LandingRows:
         return west + x * (east - west), south + y * (north - south)
 
     def _patch(self, lander: int, journey: int, place: np.ndarray) -> Row:
-        """The bed that a lander meets at a place [m], [3], where the ground is patchy, and what it reads of its ground.
-
-        Patches are the cubes of a grid that is fixed to the body; each has one bed for each lander.
-        """
-        ground = self.design.study.ground
-        if ground is None or ground.unknown != "patchy":
+        """The bed that a lander meets at a place [m], [3], and what it reads of its ground; nothing of one ground."""
+        if self.design.study.ground is None:
             return {}
-        here, first = (np.floor(one / ground.patch).astype(int).tolist() for one in (place, self.begin.origin[lander]))
-        bed = int(self.begin.rows[lander]["bed"])
-        if here != first:
-            seed = hashed_seed(self.design.study.seed, "patch", journey, *here)
-            bed = int(np.random.default_rng(seed).integers(self.design.study.bed_count))
+        bed = self.design.bed_at(journey, int(self.begin.rows[lander]["bed"]), self.begin.origin[lander], place)
         own = {name: float(values[0]) for name, values in self.design.own_soils(np.array([journey])).items()}
         return own | self.design.ground_of(bed, own)
 

@@ -185,10 +185,11 @@ class ExpectedSoil:
     landings: "tuple[tuple[Lander, Landing], ...]"
 
     @classmethod
-    def of(cls, design: DrawnDesign, kept_count: int) -> "ExpectedSoil":
+    def of(cls, design: DrawnDesign, kept_count: int, bed: int = 0) -> "ExpectedSoil":
+        """The bed of a number."""
         from lithobrake.touchdown.grains import make_grain
 
-        study, recipe = design.study, bed_recipe(design.study, 0)
+        study, recipe = design.study, bed_recipe(design.study, bed)
         generator = np.random.default_rng(recipe.seed)
         diameters = recipe.sizes.draw((np.arange(GRAIN_COUNT) + 0.5) / GRAIN_COUNT).tolist()
         grains = tuple(make_grain(generator, recipe.cloud_point_count, size) for size in diameters)

@@ -73,6 +73,7 @@ class Plan:
     tile: planned_ground.PlannedTile | None = None
     ground: planned_ground.PlannedGround | None = None
     soils: planned_ground.PlannedSoils | None = None
+    kinds: tuple[planned_ground.PlannedKind, ...] = ()
     delivery: str | None = None
     inference: ExpectedInference | None = None
 
@@ -104,6 +105,7 @@ def plan_lines(plan: Plan) -> list[str]:
     lines += [_site(plan.site_slope_deg)]
     lines += [plan.ground.line()] if plan.ground else []
     lines += [plan.soils.line()] if plan.soils else []
+    lines += [kind.line() for kind in plan.kinds]
     lines += [plan.delivery] if plan.delivery else []
     lines += [plan.tile.line()] if plan.tile else []
     lines += [plan.grains.line()] if plan.grains else []

@@ -1,7 +1,7 @@
 """The beds, the ground and the soils of a study before it runs."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,10 +16,11 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
+from lithobrake.study.ground_beds import of_ground
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.touchdown.soil import boulders, grain_sizes
 from lithobrake.touchdown.study_keys import by_study_keys
-from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN, percent
+from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN, counted, percent
 from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
 # Of grains that are larger than the diameter that is told.
@@ -70,7 +71,7 @@ class PlannedTile:
 
 def planned_tile(study: Study) -> PlannedTile | None:
     """The tile of a study's ground; None where it does not repeat, or there is none."""
-    if not study.has_soil or study.bed.sides == "walls":
+    if not study.has_soil or study.bed.sides == "walls" or study.ground is not None:
         return None
     return PlannedTile(study.bed.width, max(narrowest_period(study), smallest_width(study)))
 
@@ -127,7 +128,7 @@ def planned_boulders(study: Study) -> PlannedBoulders | None:
 
 def planned_grains(study: Study) -> PlannedGrains | None:
     """The grains of a study's beds; None where they all have one size, or there are none."""
-    if not study.has_soil:
+    if not study.has_soil or study.ground is not None:
         return None
     sizes = grain_sizes(study)
     if sizes.lower == sizes.upper:
@@ -135,6 +136,64 @@ def planned_grains(study: Study) -> PlannedGrains | None:
     large = float(sizes.draw(np.array([1.0 - LARGE_FRACTION]))[0])
     count = study.bed.grain_count / math.prod(study.bed.width)
     return PlannedGrains(sizes.lower, sizes.upper, sizes.mean_diameter, large, count)
+
+
+@dataclass(frozen=True)
+class PlannedKind:
+    """The beds of a kind of ground. sizes: mean diameters of their grains [m]; grains: in a bed; widths: after which
+    one repeats [m]; journey_s: CPU time of the touchdowns of a journey there [s], None where nobody knows."""
+
+    kind: str
+    probability: float
+    beds: int
+    sizes: tuple[float, float]
+    grains: tuple[int, int]
+    widths: tuple[float, float]
+    journey_s: tuple[float, float] | None
+
+    def line(self) -> str:
+        low, high = self.sizes
+        sizes = f"{low:.3g} m" if low == high else f"{low:.3g} to {high:.3g} m"
+        few, many = self.grains
+        count = f"{few}" if few == many else f"{few} to {many}"
+        narrow, wide = self.widths
+        widths = f"{narrow:.3g} m" if narrow == wide else f"{narrow:.3g} to {wide:.3g} m"
+        cost = (
+            "" if self.journey_s is None else f"; a journey costs {self.journey_s[0]:.2g} to {self.journey_s[1]:.2g} s"
+        )
+        return (
+            f"Ground {self.kind}: {percent(self.probability)}, {counted(self.beds, 'bed')} of {count} grains of "
+            f"{sizes}, which {'repeat' if self.beds > 1 else 'repeats'} after {widths}{cost}."
+        )
+
+
+def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float] | None]) -> tuple[PlannedKind, ...]:
+    """The kinds of ground of a study, those that have a bed; none of a study of one ground.
+
+    price: CPU time [s] of a journey on the bed of a number.
+    """
+    study, found = design.study, []
+    if study.ground is None or not study.has_soil:
+        return ()
+    for name, kind in study.ground.kind.items():
+        beds = [number for number, one in enumerate(design.grounds) if one.kind == name]
+        made = [of_ground(study, design.grounds[number]).bed for number in beds]
+        if not made:
+            continue
+        sizes = [design.grounds[number].size for number in beds]
+        middle = beds[int(np.argsort(sizes)[len(sizes) // 2])]
+        grains, widths = [one.grain_count for one in made], [one.width[0] for one in made]
+        ends = ((min(sizes), max(sizes)), (min(grains), max(grains)), (min(widths), max(widths)))
+        found.append(PlannedKind(name, kind.weight, len(beds), *ends, price(middle)))
+    return tuple(found)
+
+
+def median_bed(design: DrawnDesign) -> int:
+    """The bed with the median number of grains: what it costs is what beds cost in the mean."""
+    if not design.grounds:
+        return 0
+    counts = [of_ground(design.study, one).bed.grain_count for one in design.grounds]
+    return int(np.argsort(counts)[len(counts) // 2])
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,12 @@ from lithobrake.pipeline.planning.known_journeys import journeys_under_way
 from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
 from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
+    median_bed,
     planned_beds,
     planned_boulders,
     planned_grains,
     planned_ground,
+    planned_kinds,
     planned_soils,
     planned_tile,
 )
@@ -85,7 +87,7 @@ def plan_of(
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds, journeys_under_way(design, folder, known))
-    soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count)
+    soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count, median_bed(design))
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_time.expected_bytes(largest, runs[-1], soil), _free(folder.path)
@@ -111,8 +113,17 @@ def plan_of(
         tile=planned_tile(study),
         ground=planned_ground(design),
         soils=planned_soils(design.site),
+        kinds=planned_kinds(design, lambda bed: _price(design, runs[-1].kept_count, bed)),
         delivery=_delivery(design),
     )
+
+
+def _price(design: DrawnDesign, kept_count: int, bed: int) -> tuple[float, float] | None:
+    """CPU time [s] of the touchdowns of a journey on the bed of a number."""
+    if design.study.journey.touchdowns == 1:
+        return None
+    pace = expected_time.machine_pace() or 1.0
+    return expected_time.journey_time(ExpectedSoil.of(design, kept_count, bed), pace)
 
 
 def _made(

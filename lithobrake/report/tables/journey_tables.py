@@ -89,7 +89,8 @@ def grounds_table(data: PageData, journeys: PageJourneys) -> PageTable:
     rows = [
         [
             name, percent(one.weight), str(one.beds), sizes(one.grain_size_m), str(one.journeys),
-            with_interval(one.at_rest.share), quantile(one.time_s, size), quantile(one.distance_m), sides_down(one.faces),
+            with_interval(one.at_rest.share), quantile(one.time_s, size), quantile(one.distance_m),
+            sides_down(one.faces),
         ]
         for name, one in data.results.grounds.items()
     ]  # fmt: skip
