@@ -83,6 +83,8 @@ def finer_share(study: Study) -> float:
     for kind in study.ground.kind.values():
         size = grain_size(study, kind)
         below = float(size.to_chaos().cdf(np.array(least))) if isinstance(size, Uncertain) else float(size < least)
+        # Laws with ends go on in a straight line beyond them.
+        below = min(max(below, 0.0), 1.0)
         found += kind.weight * below
     return found
 

@@ -10,6 +10,7 @@ from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSecti
 from lithobrake.study.lander_checks import NAME
 from lithobrake.study.quantity import Scalar, median, usual_reach
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
 # A lander heavier than so many of the largest grains outweighs every bed that a study may have; one lighter than the
@@ -276,8 +277,12 @@ def soil_problems(study: Study) -> Iterator[str]:
             "design.side_runs is true and makes first touchdowns again on a second soil, and [soil] gives regions "
             "their own; leave one of the two out"
         )
+    kinds = () if study.ground is None else tuple(study.ground.kind)
     for name, soil in study.soil.items():
         yield from _region_problems(name, soil)
+        if soil.ground is not None and soil.ground not in kinds:
+            allowed = f"a kind of [ground]: {', '.join(kinds)}" if kinds else "nothing without [ground.kind.NAME]"
+            yield f"soil.{name}.ground is {show(soil.ground)}; allowed: {allowed}{closest(soil.ground, kinds)}"
         if study.has_soil:
             # Problems of [grain] itself are reported already, and would be repeated for each region.
             known, found = list(material_problems(study)), material_problems(study, name)
@@ -294,7 +299,7 @@ def _region_problems(name: str, soil: SoilSection) -> Iterator[str]:
         )
     if not soil.has_bounds:
         yield f"{key} has no bounds; allowed: one at least of latitude_deg, longitude_deg, slope_deg, facets; add it"
-    if not soil.grain.values():
+    if not soil.grain.values() and soil.ground is None:
         yield f"{key}.grain is empty, so its soil is that of [grain]; write what differs there, or leave {key} out"
     if soil.longitude_deg is not None:
         west, east = soil.longitude_deg

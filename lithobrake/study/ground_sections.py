@@ -208,7 +208,9 @@ class SoilSection(Section):
     facets: str | None = Field(default=None, examples=['"ponds.csv"'])
     """Text file, relative to the study file, with the numbers of its facets in the shape of the body, from 0, one per
     line."""
-    grain: SoilGrainSection
+    ground: str | None = Field(default=None, examples=['"gravel"'])
+    """Kind of ground of the region, by its name in [ground.kind.NAME]: a touchdown in it meets a bed of this kind."""
+    grain: SoilGrainSection = SoilGrainSection()
 
     @model_validator(mode="before")
     @classmethod

@@ -77,6 +77,7 @@ def test_finer_ground_is_stood_for_by_the_finest_beds() -> None:
     assert min(one.size for one in grounds(whole)) == 0.04
     # Half of four octaves of half of the ground.
     assert finer_share(whole) == pytest.approx(0.25)
+    assert finer_share(study()) == 0.0
     assert finest(study()) == pytest.approx(0.25 * math.hypot(0.1, 0.1, 0.227))
 
 
@@ -115,6 +116,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"ground": {"kind": KINDS, "unknown": "nowhere"}}, "ground.unknown is"),
     ({"ground": {"kind": KINDS, "patch": 0.0}}, "ground.patch is 0"),
     ({"ground": {"kind": KINDS, "pach": 1.0}}, "ground.pach is not a known key; did you mean patch?"),
+    ({"soil": {"pond": {"slope_deg": [0.0, 5.0], "ground": "gravle"}}}, "soil.pond.ground is \"gravle\"; allowed: a kind"),
     ({"bed": {"grain_count": 96}}, "bed.grain_count stands beside [ground]"),
     ({"bed": {"sides": "walls"}}, 'bed.sides is "walls"; allowed with [ground] is "periodic"'),
     ({"lander": {"shape": "hull", "file": "absent.obj", "mass": 2.0}}, "absent.obj"),

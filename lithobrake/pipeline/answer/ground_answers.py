@@ -47,7 +47,7 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
     rests = table.rests
     if design.study.ground is None or not rests.any():
         return None
-    size, seed = np.array([one.size for one in design.grounds])[table.bed], design.study.seed
+    size, seed = np.array([one.size for one in design.grounds.each])[table.bed], design.study.seed
     if size.min() == size.max() or len(np.unique(table.bed)) < FEWEST_OF_CURVE:
         return None
     time = np.where(rests, table.numbers["time_s"], np.nan)
@@ -69,7 +69,7 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
     if design.study.ground is None:
         return {}
     why, found = why_no_interval(design.study), {}
-    kinds, sizes = (np.array([getattr(one, name) for one in design.grounds]) for name in ("kind", "size"))
+    kinds, sizes = (np.array([getattr(one, name) for one in design.grounds.each]) for name in ("kind", "size"))
     for name, kind in design.study.ground.kind.items():
         own, beds = kinds[table.bed] == name, np.flatnonzero(kinds == name)
         here = table.taken(np.flatnonzero(own))

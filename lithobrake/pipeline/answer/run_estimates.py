@@ -46,6 +46,8 @@ MISSING = "missing"
 PARTS = (*FlightStatus, CAPTURED)
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
 SOIL = ("ground.", "grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
+# Of an input, for terms of first and second degree.
+FEWEST_VALUES = 3
 Inputs = dict[str, tuple["Distribution", np.ndarray]]
 ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
@@ -198,8 +200,12 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
 
 def _ground_inputs(job: Job, runs: DesignRuns) -> Inputs:
     """Kind and grain size of the ground of the beds, with their laws; nothing where there is one ground."""
-    numbers = {name: values for name, values in job.design.ground_numbers.items() if np.ptp(runs.inputs[name]) > 0.0}
-    return {name: (Empirical(values), runs.inputs[name]) for name, values in numbers.items()}
+    # Terms of second degree tell three kinds apart; of two the grain size tells which it is.
+    return {
+        name: (Empirical(values), runs.inputs[name])
+        for name, values in job.design.grounds.numbers.items()
+        if len(np.unique(runs.inputs[name])) >= FEWEST_VALUES
+    }
 
 
 def _soil_inputs(job: Job, runs: DesignRuns) -> Inputs:

@@ -101,7 +101,7 @@ def bed_results(job: Job, number: int, name: str) -> BedNumbers:
     width, depth = smallest_bed(
         lander(job.study, values), grain(values), float(bed.grain_diameter), values[IMPACT_SPEED]
     )  # fmt: skip
-    grounds = job.design.grounds
+    grounds = job.design.grounds.each
     return BedNumbers(
         ground=grounds[number].kind if grounds else None,
         solid_fraction=float(bed.solid_fraction),

@@ -12,6 +12,7 @@ from lithobrake.chaos import Uniform
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
+from lithobrake.pipeline.design.bed_grounds import BedGrounds
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.descents import RELEASE, Descents
 from lithobrake.pipeline.design.random_inputs import given_attitude
@@ -19,14 +20,11 @@ from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
-from lithobrake.study.ground_beds import Ground, grounds, of_ground
 from lithobrake.study.ground_sections import MOST_BEDS
-from lithobrake.study.quantity import Uncertain, uncertain, usual_reach
+from lithobrake.study.quantity import uncertain, usual_reach
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.quantities import (
     ARRIVAL,
-    GROUND_KIND,
-    GROUND_SIZE,
     IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     ORIENTATION,
@@ -241,74 +239,12 @@ class DrawnDesign:
 
     def rows_at(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
         """All inputs of the runs on these beds [run_count] at these points [run_count, coordinate_count]."""
-        return [row | self.ground_of(bed, row) for bed, row in zip(beds, self._rows_of_points(beds, x), strict=True)]
+        return [row | self.grounds.of(bed, row) for bed, row in zip(beds, self._rows_of_points(beds, x), strict=True)]
 
     @cached_property
-    def grounds(self) -> list[Ground]:
-        """The ground of each bed, by its number; empty where all beds have one."""
-        return grounds(self.study)
-
-    def ground_of(self, bed: int, row: Row) -> Row:
-        """What a touchdown reads of the ground of a bed; row: with the numbers of [grain] that its lander drew."""
-        if self.study.ground is None:
-            return {}
-        ground, found = self.grounds[bed], {"bed": float(bed)}
-        kind, own = self.study.ground.kind[ground.kind], self.inputs
-        for key, value in ({} if kind.grain is None else kind.grain.values()).items():
-            name = f"{GRAIN}{key}"
-            # An uncertain number of the kind stands where its lander stands in that of [grain].
-            part = float(own[name].cdf(np.array(row[name]))) if isinstance(value, Uncertain) else 0.0
-            found[name] = float(value.to_chaos().ppf(part)) if isinstance(value, Uncertain) else value
-        return found | {GROUND_KIND: float(ground.number), GROUND_SIZE: ground.size}
-
-    @cached_property
-    def ground_inputs(self) -> "dict[str, Distribution]":
-        """What tells the grounds of the beds apart, with laws over their ranges; empty where they have one."""
-        from lithobrake.chaos import LogUniform
-
-        found: dict[str, Distribution] = {}
-        for name, values in self.ground_numbers.items():
-            low, high = min(values), max(values)
-            if low < high:
-                found[name] = (LogUniform if name == GROUND_SIZE else Uniform)(low, high)
-        return found
-
-    @property
-    def ground_numbers(self) -> dict[str, list[float]]:
-        """The kind of ground of each bed, by its place in the file, and the mean diameter of its grains [m]."""
-        if self.study.ground is None:
-            return {}
-        return {
-            GROUND_KIND: [float(one.number) for one in self.grounds],
-            GROUND_SIZE: [one.size for one in self.grounds],
-        }
-
-    def bed_at(self, journey: int, bed: int, first: np.ndarray, place: np.ndarray) -> int:
-        """The bed that a lander meets at a place [m], [3], of one that first met a bed at another place.
-
-        Where the ground is patchy, patches are the cubes of a grid that is fixed to the body; each has one bed for each
-        lander.
-        """
-        ground = self.study.ground
-        if ground is None or ground.unknown != "patchy":
-            return bed
-        here, there = (np.floor(one / ground.patch).astype(int).tolist() for one in (place, first))
-        if here == there:
-            return bed
-        chance = np.random.default_rng(hashed_seed(self.study.seed, "patch", journey, *here))
-        return int(chance.integers(self.study.bed_count))
-
-    def region_of(self, bed: int) -> tuple[Interval, Interval] | None:
-        """The part of a bed in which places are drawn, see place_region."""
-        if self.study.ground is None:
-            return self.region
-        if bed not in self._regions:
-            self._regions[bed] = place_region(of_ground(self.study, self.grounds[bed]))
-        return self._regions[bed]
-
-    @cached_property
-    def _regions(self) -> dict[int, tuple[Interval, Interval] | None]:
-        return {}
+    def grounds(self) -> BedGrounds:
+        """The ground of each bed."""
+        return BedGrounds(self.site, self.inputs)
 
     def _rows_of_points(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
         """The same on the ground of [grain]."""
@@ -319,17 +255,36 @@ class DrawnDesign:
             soil = dict(zip(self.inputs, point, strict=False))
             uniform = dict(zip(DRAWN, point[len(self.inputs) :], strict=False))
             row = known | soil | {"bed": float(bed)} | _arrival(self.study, uniform)
-            for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.region_of(bed) or (), strict=False):
+            for name, coordinate, (low, high) in zip(PLACE, DRAWN[:2], self.grounds.region(bed) or (), strict=False):
                 row[name] = low + uniform[coordinate] * (high - low)
             rows.append(row)
         return rows
 
     def _first_touchdowns(self, rows: list[Row], first: int, descents: Descents | None) -> list[Row]:
         """Rows of landers, numbered from `first` on, as first touchdowns on the ground that they meet."""
-        delivered = self._delivered(rows, first)
+        delivered = self._delivered(self._on_their_ground(rows, first, descents), first)
         if descents is not None:
             return descents.first_touchdowns(delivered)
         return on_local_ground(self.site, delivered, first)
+
+    def _on_their_ground(self, rows: list[Row], first: int, descents: Descents | None) -> list[Row]:
+        """The same, each on a bed that the place of its first touchdown may have."""
+        if self.study.ground is None or not rows:
+            return rows
+        if descents is None:
+            sampled = self.site.sampled(first + len(rows))
+            places = self.site.frames({key: values[first:] for key, values in sampled.items()})[0]
+        else:
+            places = descents.flights.position
+        found = []
+        for number, (row, place) in enumerate(zip(rows, places, strict=True), start=first):
+            before = int(row["bed"])
+            bed = self.grounds.bed_at(number, before, place, place)
+            if bed != before:
+                own = {name: float(values[0]) for name, values in self.own_soils(np.array([number])).items()}
+                row = row | own | self.grounds.of(bed, own) | self.grounds.moved(row, bed)
+            found.append(row)
+        return found
 
     def _delivered(self, rows: list[Row], first: int) -> list[Row]:
         """Rows of landers before it is known which ground they meet."""

@@ -117,6 +117,10 @@ class Soils:
         numbers = self._numbers(points.reshape(-1, 3), facets.ravel())
         return latitude, longitude, numbers.reshape(facets.shape)
 
+    def slope_deg(self, place: np.ndarray) -> float:
+        """Slope of the facet of a place on the ground [m], [3], at its centre [deg]."""
+        return float(self._slopes_deg(self._shape.nearest(place[None])[1])[0])
+
     def refuse(self) -> None:
         """Raise StudyError for regions in which this body has no ground."""
         if not self.site.study.soil:

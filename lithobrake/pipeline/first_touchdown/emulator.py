@@ -68,7 +68,7 @@ def fit_emulator(job: Job) -> None:
 
 def inputs_met(design: DrawnDesign, runs: DesignRuns) -> "dict[str, Distribution]":
     """The inputs of touchdowns with their laws: those of the study; of what landers meet on their way, its range."""
-    found = design.ground_inputs | design.inputs
+    found = design.grounds.laws | design.inputs
     for name in design.met_on_the_way:
         reaches = design.reaches_met(name) or [(float(runs.inputs[name].min()), float(runs.inputs[name].max()))]
         ends = [end for reach in reaches for end in reach]

@@ -63,15 +63,15 @@ class EmulatedTouchdowns:
     def _patches(self, impacts: ImpactStates) -> dict[str, np.ndarray]:
         """What landers read of the ground of other patches than their first, [count] each; nothing of one ground."""
         design, begin = self.emulator.design, self.begin
-        if design.study.ground is None or design.study.ground.unknown != "patchy":
+        if design.study.ground is None:
             return {}
         own = {name: values[impacts.lander] for name, values in self._own_soils.items()}
         rows = []
         for place, lander in enumerate(impacts.lander.tolist()):
             first = int(begin.rows[lander]["bed"])
-            bed = design.bed_at(int(begin.number[lander]), first, begin.origin[lander], impacts.position[place])
+            bed = design.grounds.bed_at(int(begin.number[lander]), first, begin.origin[lander], impacts.position[place])
             mine = {name: float(values[place]) for name, values in own.items()}
-            rows.append(mine | design.ground_of(bed, mine))
+            rows.append(mine | design.grounds.of(bed, mine))
         return {name: np.array([row[name] for row in rows]) for name in self.soil if name in rows[0]}
 
     def _met(self, impacts: ImpactStates) -> dict[str, np.ndarray]:

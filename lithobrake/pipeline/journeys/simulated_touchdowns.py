@@ -86,7 +86,7 @@ class LandingRows:
 
     def _place(self, x: float, y: float, row: Row) -> tuple[float, float]:
         """Where on its bed a lander comes down [m], of two uniform numbers; always at one place without a region."""
-        region = self.design.region_of(int(row["bed"]))
+        region = self.design.grounds.region(int(row["bed"]))
         if region is None:
             return row[PLACE[0]], row[PLACE[1]]
         (west, east), (south, north) = region
@@ -96,9 +96,9 @@ class LandingRows:
         """The bed that a lander meets at a place [m], [3], and what it reads of its ground; nothing of one ground."""
         if self.design.study.ground is None:
             return {}
-        bed = self.design.bed_at(journey, int(self.begin.rows[lander]["bed"]), self.begin.origin[lander], place)
+        bed = self.design.grounds.bed_at(journey, int(self.begin.rows[lander]["bed"]), self.begin.origin[lander], place)
         own = {name: float(values[0]) for name, values in self.design.own_soils(np.array([journey])).items()}
-        return own | self.design.ground_of(bed, own)
+        return own | self.design.grounds.of(bed, own)
 
     @cached_property
     def _soils(self) -> Soils:

@@ -176,11 +176,11 @@ def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float
     if study.ground is None or not study.has_soil:
         return ()
     for name, kind in study.ground.kind.items():
-        beds = [number for number, one in enumerate(design.grounds) if one.kind == name]
-        made = [of_ground(study, design.grounds[number]).bed for number in beds]
+        beds = [number for number, one in enumerate(design.grounds.each) if one.kind == name]
+        made = [of_ground(study, design.grounds.each[number]).bed for number in beds]
         if not made:
             continue
-        sizes = [design.grounds[number].size for number in beds]
+        sizes = [design.grounds.each[number].size for number in beds]
         middle = beds[int(np.argsort(sizes)[len(sizes) // 2])]
         grains, widths = [one.grain_count for one in made], [one.width[0] for one in made]
         ends = ((min(sizes), max(sizes)), (min(grains), max(grains)), (min(widths), max(widths)))
@@ -190,9 +190,9 @@ def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float
 
 def median_bed(design: DrawnDesign) -> int:
     """The bed with the median number of grains: what it costs is what beds cost in the mean."""
-    if not design.grounds:
+    if not design.grounds.each:
         return 0
-    counts = [of_ground(design.study, one).bed.grain_count for one in design.grounds]
+    counts = [of_ground(design.study, one).bed.grain_count for one in design.grounds.each]
     return int(np.argsort(counts)[len(counts) // 2])
 
 
