@@ -17,9 +17,9 @@ import csv
 import json
 import re
 import runpy
-import statistics
 from collections.abc import Iterator
 from pathlib import Path
+from statistics import fmean, median
 from textwrap import dedent
 from typing import Any
 
@@ -30,7 +30,7 @@ COMMENT = re.compile(r"<!-- numbers:(.*?)-->", flags=re.DOTALL)
 # Where the text of a comment begins: behind an empty line, at an item of a list, behind another comment.
 BEGINNING = re.compile(r"\n[ \t]*\n|\n\s*- |-->\n|\A")
 # Code, equations, addresses and keys of references have numbers that nobody measured.
-OTHER = re.compile(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)|\[[A-Z][\w-]*-\d{4}\w?\]")
+OTHER = re.compile(r"^```\w*$|`[^`]*`|\$[^$]*\$|\]\([^)]*\)|\[[A-Z][\w-]*-\d{4}\w?\]", flags=re.MULTILINE)
 # A sign behind a digit, a letter or a bracket is a dash.
 NUMBER = re.compile(r"(?<![\w.])(?:(?<![\d)%])[-+])?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
 THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}(?!\d))")
@@ -68,6 +68,16 @@ def ends(values: Any) -> tuple[float, float]:
     return min(found), max(found)
 
 
+def percent(estimate: Kept) -> list[float]:
+    """A share and its bounds, in per cent."""
+    return [100.0 * estimate[key] for key in ("share", "lower", "upper")]
+
+
+def interval(estimate: Kept, unit: float = 1.0) -> list[float]:
+    """A value and its bounds, in a unit."""
+    return [estimate[key] / unit for key in ("value", "lower", "upper")]
+
+
 def flat(value: Any) -> Iterator[Any]:
     """The values of lists within lists."""
     if isinstance(value, (list, tuple)):
@@ -95,7 +105,7 @@ def agrees(shown: str, value: Any) -> bool:
 
 def sourced(text: str) -> Iterator[tuple[int, list[str], list[Any]]]:
     """The line of each comment of a page, the numbers of the text before it, and their values."""
-    names: dict[str, Any] = {"kept": kept, "those": those, "ends": ends, **vars(statistics)}
+    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, percent, interval, median, fmean)}
     for comment in COMMENT.finditer(text):
         before = text[: comment.start()].rstrip()
         begin = max(match.end() for match in BEGINNING.finditer(before))
