@@ -19,7 +19,7 @@ import re
 import runpy
 from collections.abc import Iterator
 from pathlib import Path
-from statistics import fmean, median
+from statistics import fmean, median, stdev
 from textwrap import dedent
 from typing import Any
 
@@ -43,11 +43,25 @@ class Kept(dict[str, Any]):
 
 
 def kept(path: str) -> Any:
-    """What a committed file has: a document, or the rows of a table with numbers where they are some."""
+    """What a committed file has: a document, or the rows of a table with numbers where they are some.
+
+    Of a page that a script writes: the rows of all its tables, as text.
+    """
+    if path.endswith(".md"):
+        return page_rows((ROOT / path).read_text(encoding="utf-8"))
     with (ROOT / path).open(newline="", encoding="utf-8") as file:
         if path.endswith(".csv"):
             return [Kept({key: number(cell) for key, cell in row.items()}) for row in csv.DictReader(file)]
         return json.load(file, object_hook=Kept)
+
+
+def page_rows(text: str) -> list[Kept]:
+    """The rows of the tables of a page by their heads."""
+    found: list[Kept] = []
+    for table in re.findall(r"(?:^\|.*\n)+", text, flags=re.MULTILINE):
+        heads, _, *lines = ([cell.strip() for cell in line.strip("| \n").split("|")] for line in table.splitlines())
+        found += [Kept(zip(heads, line, strict=False)) for line in lines]
+    return found
 
 
 def number(cell: str) -> float | str:
@@ -59,7 +73,7 @@ def number(cell: str) -> float | str:
 
 def those(rows: list[Kept], **values: Any) -> list[Kept]:
     """The rows that have these values."""
-    return [row for row in rows if all(row[key] == value for key, value in values.items())]
+    return [row for row in rows if all(row.get(key) == value for key, value in values.items())]
 
 
 def ends(values: Any) -> tuple[float, float]:
@@ -92,6 +106,11 @@ def numbers_of(text: str) -> list[str]:
     return NUMBER.findall(THOUSANDS.sub("", OTHER.sub(" ", text)))
 
 
+def figures(text: str) -> list[float]:
+    """The numbers of a cell of a page."""
+    return [float(one) for one in numbers_of(text)]
+
+
 def agrees(shown: str, value: Any) -> bool:
     """Whether a value is the number that is shown, to its digits; zeros that end a whole number may be rounded ones."""
     if value is ...:
@@ -105,7 +124,7 @@ def agrees(shown: str, value: Any) -> bool:
 
 def sourced(text: str) -> Iterator[tuple[int, list[str], list[Any]]]:
     """The line of each comment of a page, the numbers of the text before it, and their values."""
-    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, percent, interval, median, fmean)}
+    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, percent, interval, figures, median, fmean, stdev)}
     for comment in COMMENT.finditer(text):
         before = text[: comment.start()].rstrip()
         begin = max(match.end() for match in BEGINNING.finditer(before))
