@@ -82,6 +82,12 @@ def ends(values: Any) -> tuple[float, float]:
     return min(found), max(found)
 
 
+def span(values: Any, digits: int) -> list[float]:
+    """The smallest and the largest value, one value where they are the same to so many decimals."""
+    found = ends(values)
+    return [found[0]] if f"{found[0]:.{digits}f}" == f"{found[1]:.{digits}f}" else list(found)
+
+
 def percent(estimate: Kept) -> list[float]:
     """A share and its bounds, in per cent."""
     return [100.0 * estimate[key] for key in ("share", "lower", "upper")]
@@ -124,7 +130,7 @@ def agrees(shown: str, value: Any) -> bool:
 
 def sourced(text: str) -> Iterator[tuple[int, list[str], list[Any]]]:
     """The line of each comment of a page, the numbers of the text before it, and their values."""
-    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, percent, interval, figures, median, fmean, stdev)}
+    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, span, percent, interval, figures, median, fmean, stdev)}
     for comment in COMMENT.finditer(text):
         before = text[: comment.start()].rstrip()
         begin = max(match.end() for match in BEGINNING.finditer(before))
