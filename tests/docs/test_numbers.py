@@ -166,6 +166,14 @@ def test_the_table_of_times_is_what_its_script_makes(monkeypatch: pytest.MonkeyP
     assert page == script["page"](), "make it again with: python benchmarks/write_times.py"
 
 
+def test_the_tables_of_what_is_left_out_are_those_of_their_script(capsys: pytest.CaptureFixture[str]) -> None:
+    runpy.run_path(str(ROOT / "validation" / "experiments" / "left_out.py"), run_name="__main__")
+    rows = [line.strip() for line in capsys.readouterr().out.splitlines() if line.startswith("|")]
+    page = (ROOT / "docs" / "what_the_model_leaves_out.md").read_text(encoding="utf-8").splitlines()
+    assert len(rows) > 20
+    assert [row for row in rows if row not in page] == []
+
+
 @pytest.mark.parametrize(
     ("shown", "value", "same"),
     [
