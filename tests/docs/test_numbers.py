@@ -130,7 +130,8 @@ def agrees(shown: str, value: Any) -> bool:
 
 def sourced(text: str) -> Iterator[tuple[int, list[str], list[Any]]]:
     """The line of each comment of a page, the numbers of the text before it, and their values."""
-    names: dict[str, Any] = {one.__name__: one for one in (kept, those, ends, span, percent, interval, figures, median, fmean, stdev)}
+    known = (kept, those, ends, span, percent, interval, figures, median, fmean, stdev)
+    names: dict[str, Any] = {one.__name__: one for one in known}
     for comment in COMMENT.finditer(text):
         before = text[: comment.start()].rstrip()
         begin = max(match.end() for match in BEGINNING.finditer(before))

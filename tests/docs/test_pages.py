@@ -238,7 +238,7 @@ def words(line: str) -> list[str]:
 
 
 def not_printed(shown: str, printed: str) -> list[str]:
-    """The lines of an output on a page that nobody printed; what follows "..." in a line, or stands for lines, is cut."""
+    """The lines of an output on a page that were not printed; what follows "..." in a line is cut, and "..." lines."""
     found = [words(line) for line in printed.splitlines()]
     begins = {line: words(line.partition("...")[0]) for line in shown.splitlines()}
     return [line for line, begin in begins.items()
