@@ -118,12 +118,16 @@ def figures(text: str) -> list[float]:
 
 
 def agrees(shown: str, value: Any) -> bool:
-    """Whether a value is the number that is shown, to its digits; zeros that end a whole number may be rounded ones."""
+    """Whether a value is the number that is shown, to its digits.
+
+    Zeros that end a whole number may be rounded ones, all but two digits, if the value is none of a count; not of 100.
+    """
     if value is ...:
         return True
     digits, _, power = shown.partition("e")
     decimals = len(digits.partition(".")[2])
-    zeros = 0 if "." in digits or isinstance(value, int) else len(digits) - len(digits.rstrip("0"))
+    whole = "." in digits or isinstance(value, int) or digits.strip("+-0") in ("", "1")
+    zeros = 0 if whole else min(len(digits) - len(digits.rstrip("0")), max(len(digits.strip("+-")) - 2, 0))
     unit = 10.0 ** (zeros - decimals + int(power or 0))
     return abs(float(shown) - value) <= 0.5 * unit * (1.0 + 1e-9)
 
@@ -180,7 +184,8 @@ def test_the_tables_of_what_is_left_out_are_those_of_their_script(capsys: pytest
     [
         ("0.71", 0.7149, True), ("0.71", 0.7151, False), ("5300", 5349.0, True), ("5300", 5351.0, False),
         ("240", 240, True), ("240", 241, False), ("2.5e4", 25_400.0, True), ("2.5e4", 25_600.0, False),
-        ("-3", -3.4, True), ("100", 99.9, True), ("13", 13.8, False),
+        ("-3", -3.4, True), ("100", 99.9, True), ("13", 13.8, False), ("100", 91.0, False), ("0", 0.6, False),
+        ("20000", 20_342.0, True), ("150", 146.2, True), ("150", 144.0, False), ("20", 20.6, False),
     ],
 )  # fmt: skip
 def test_a_value_agrees_to_the_digits_that_are_shown(shown: str, value: float, same: bool) -> None:
