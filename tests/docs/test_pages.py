@@ -142,6 +142,13 @@ def test_pictures_of_the_showcase_are_part_of_the_site(hooks: dict[str, Any]) ->
     assert (ROOT / "showcase/mission/figures/figure_1_ends.png").is_file()
 
 
+def test_sources_of_numbers_are_no_part_of_the_site(hooks: dict[str, Any]) -> None:
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="method.md"))
+    source = "- 3 of 4.\n  <!-- numbers:\n  a = 3\n  a, [4][0]\n  -->\n- More.\n<!-- not run: it takes minutes -->\n"
+    shown = hooks["on_page_markdown"](source, page=page)
+    assert shown == "- 3 of 4.\n- More.\n<!-- not run: it takes minutes -->\n"
+
+
 @pytest.mark.parametrize(("name", "is_left_out"), [("decisions/dem.md", True), ("method.md", False)])
 def test_decisions_are_not_searched(name: str, is_left_out: bool, hooks: dict[str, Any]) -> None:
     page = SimpleNamespace(file=SimpleNamespace(src_uri=name), meta={})
