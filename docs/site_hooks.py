@@ -14,7 +14,7 @@ from pymdownx.arithmatex import arithmatex_fenced_format
 
 SHOWCASE = Path(__file__).parents[1] / "showcase"
 # Says where numbers come from, for a test.
-SOURCES = re.compile(r"\n *<!-- numbers:.*?-->", flags=re.DOTALL)
+SOURCES = re.compile(r"\n *<!-- numbers\b.*?-->", flags=re.DOTALL)
 FIGURE = re.compile(r'<p>(<img [^>]*?src="([^"]+)"[^>]*>)</p>')
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\s*\\[(\[](.*?)\\[)\]]\s*</\1>([,.;:)]*)', flags=re.DOTALL)
 

@@ -25,6 +25,7 @@ from typing import Any
 import pytest
 import typer
 from blocks import PAGES, ROOT, Block, all_blocks, blocks
+from sources import wrong
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
@@ -227,16 +228,16 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run_script(path: Path) -> str:
-    """What a script prints, run as a reader would, one that has no worker processes without another start of Python."""
+def run_script(path: Path) -> tuple[str, dict[str, Any]]:
+    """What a script prints and defines, run as a reader would, without another start of Python if it has no workers."""
     if "__main__" not in path.read_text(encoding="utf-8"):
         with redirect_stdout(StringIO()) as printed:
-            assert runpy.run_path(str(path), run_name="__main__")
-        return printed.getvalue()
+            defined = runpy.run_path(str(path), run_name="__main__")
+        return printed.getvalue(), defined
     setting = {**os.environ, "PYTHONPATH": str(ROOT)}
     found = subprocess.run([sys.executable, path], env=setting, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stderr
-    return found.stdout
+    return found.stdout, {}
 
 
 def words(line: str) -> list[str]:
@@ -263,7 +264,8 @@ def test_python_of_a_page_runs_as_one_script(page: Path, workplace: Path) -> Non
             script += [""] * (block.line - 1 - len(script)) + block.text.splitlines()
     path = workplace / "page.py"
     path.write_text("\n".join(script) + "\n", encoding="utf-8")
-    printed = run_script(path)
+    printed, defined = run_script(path)
+    assert wrong(page.read_text(encoding="utf-8"), defined) == []
     for above, block in pairwise(blocks(page)):
         if (above.language, block.language) == ("python", "text") and not above.is_left_out:
             assert not_printed(block.text, printed) == [], f"{block}: printed was\n{printed}"
