@@ -17,7 +17,6 @@ import csv
 import json
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from statistics import fmean, median, stdev
 from textwrap import dedent
 from typing import Any

@@ -253,6 +253,17 @@ def not_printed(shown: str, printed: str) -> list[str]:
             if not any(one[: len(begin)] == begin if "..." in line else one == begin for one in found)]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("shown", "missing"),
+    [
+        ("ends at 4.1933333333333333 m\n...\nat rest\n", []), ("ends at ...\n", []), ("left 1e-22 kg\n", []),
+        ("ends at 4.194 m\nat rest\n", ["ends at 4.194 m"]), ("at rest again\n", ["at rest again"]),
+    ],
+)  # fmt: skip
+def test_an_output_that_nobody_printed_is_found(shown: str, missing: list[str]) -> None:
+    assert not_printed(shown, "ends at 4.193333333333336 m\nleft 3.1e-23 kg\nat rest\n") == missing
+
+
 @pytest.mark.parametrize("page", PAGES_WITH_PYTHON, ids=short)
 def test_python_of_a_page_runs_as_one_script(page: Path, workplace: Path) -> None:
     script: list[str] = []
