@@ -34,6 +34,22 @@ class FinerGround:
 
 
 @dataclass(frozen=True)
+class GroundBed:
+    """The journeys on one bed."""
+
+    kind: str
+    """kind of its ground"""
+    grain_size_m: float
+    """mean diameter of its grains [m]"""
+    journeys: int
+    """journeys on it"""
+    at_rest: float
+    """fraction of them at rest"""
+    time_s: float | None
+    """median time to rest of these [s]; null if none rests"""
+
+
+@dataclass(frozen=True)
 class GroundCurve:
     """How journeys end against the mean grain diameter of their beds: smooth curves, a value for each diameter; bounds
     hold over resampled beds."""
@@ -46,6 +62,8 @@ class GroundCurve:
     """median time from the first touchdown to rest [s]"""
     axes: Mapping[str, tuple[Share, ...]]
     """by the axis of the lander that points up or down: fraction of the landers at rest; empty for a sphere"""
+    beds: tuple[GroundBed, ...]
+    """the beds that landers met, in the order of their numbers"""
     __repr__ = short_repr
 
 

@@ -116,7 +116,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"ground": {"kind": KINDS, "unknown": "nowhere"}}, "ground.unknown is"),
     ({"ground": {"kind": KINDS, "patch": 0.0}}, "ground.patch is 0"),
     ({"ground": {"kind": KINDS, "pach": 1.0}}, "ground.pach is not a known key; did you mean patch?"),
-    ({"soil": {"pond": {"slope_deg": [0.0, 5.0], "ground": "gravle"}}}, "soil.pond.ground is \"gravle\"; allowed: a kind"),
+    ({"soil": {"pond": {"slope_deg": [0.0, 5.0], "ground": "gravle"}}}, 'ground is "gravle"; allowed: a kind of'),
     ({"bed": {"grain_count": 96}}, "bed.grain_count stands beside [ground]"),
     ({"bed": {"sides": "walls"}}, 'bed.sides is "walls"; allowed with [ground] is "periodic"'),
     ({"lander": {"shape": "hull", "file": "absent.obj", "mass": 2.0}}, "absent.obj"),

@@ -8,9 +8,9 @@ from lithobrake.analysis.smooth_curve import curve_sizes, median_curve, share_cu
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.results.ground_results import FinerGround, GroundCurve, GroundKindResults, OverGrounds
+from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
 from lithobrake.study import Study
-from lithobrake.study.ground_beds import finer_share, finest
+from lithobrake.study.ground_beds import Ground, finer_share, finest
 from lithobrake.vocabulary.number_words import MEDIAN
 
 # Beds of fewer grounds show no curve.
@@ -61,7 +61,15 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
         at_rest=tuple(share_curve(rests.astype(float), size, table.bed, seed)),
         time_s=tuple(median_curve(time, size, table.bed, seed)),
         axes={name: tuple(one) for name, one in curves.items()},
+        beds=tuple(_bed(design.grounds.each[bed], table.taken(table.bed == bed)) for bed in np.unique(table.bed)),
     )
+
+
+def _bed(ground: Ground, table: JourneyTable) -> GroundBed:
+    """The journeys on a bed of this ground."""
+    rests = table.rests
+    time = float(np.median(table.numbers["time_s"][rests])) if rests.any() else None
+    return GroundBed(ground.kind, ground.size, len(rests), float(rests.mean()), time)
 
 
 def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKindResults]:

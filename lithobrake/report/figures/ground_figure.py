@@ -1,12 +1,10 @@
 """How journeys end against the size of the grains, with the grounds that the study allows below."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from lithobrake.report.figures.share_figures import AT_REST
 from lithobrake.report.figures.style import INK, QUIET
@@ -23,20 +21,8 @@ TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
 AREA = 9.0
 
 
-@dataclass(frozen=True)
-class GroundPoints:
-    """The beds of a study: kind, mean grain diameter [m], number of journeys, fraction of them at rest and median time
-    to rest [the unit of the axis], [bed_count] each."""
-
-    kind: NDArray[np.str_]
-    size: Array
-    journeys: Array
-    at_rest: Array
-    time: Array
-
-
 def ground_figure(
-    curve: GroundCurve, points: GroundPoints, ranges: Mapping[str, tuple[float, float]], unit: str, factor: float
+    curve: GroundCurve, ranges: Mapping[str, tuple[float, float]], unit: str, factor: float
 ) -> Figure:  # fmt: skip
     """Draw fraction at rest, median time and sides down against the mean grain diameter.
 
@@ -46,7 +32,7 @@ def ground_figure(
     figure = Figure(figsize=(9.2, height))
     below = (0.62 + 0.2 * len(ranges)) / height
     size = np.array(curve.grain_size_m)
-    titles = ("at rest [%]", f"median time to rest [{unit}]", "axis that is upright [% of those at rest]")
+    titles = ("at rest [%]", f"median time to rest [{unit}]", "upright axis [% of those at rest]")
     panels = [figure.add_axes((0.065 + 0.325 * place, below, 0.27, 1.0 - below - 0.3 / height)) for place in range(3)]
     for axes, title in zip(panels, titles, strict=True):
         axes.set_xscale("log")
@@ -61,11 +47,13 @@ def ground_figure(
     for (axis, one), colour in zip(sorted(curve.axes.items()), COLOURS, strict=False):
         _line(panels[2], size, one, 100.0, colour, axis)
     for number, kind in enumerate(ranges):
-        own, marker = points.kind == kind, MARKERS[number % len(MARKERS)]
-        for axes, values in ((panels[0], 100.0 * points.at_rest), (panels[1], points.time)):
+        own = [bed for bed in curve.beds if bed.kind == kind]
+        at, area = [bed.grain_size_m for bed in own], [AREA * bed.journeys for bed in own]
+        times = [np.nan if bed.time_s is None else bed.time_s / factor for bed in own]
+        for axes, values in ((panels[0], [100.0 * bed.at_rest for bed in own]), (panels[1], times)):
             axes.scatter(
-                points.size[own], values[own], AREA * points.journeys[own], marker=marker, facecolor="none",
-                edgecolor=QUIET, linewidth=0.9, zorder=2,
+                at, values, area, marker=MARKERS[number % len(MARKERS)], facecolor="none", edgecolor=QUIET,
+                linewidth=0.9, zorder=2,
             )  # fmt: skip
     panels[0].set_ylim(-3.0, 104.0)
     panels[1].set_ylim(bottom=0.0)
@@ -73,7 +61,7 @@ def ground_figure(
     if curve.axes:
         panels[2].legend(fontsize=8, loc="best", ncols=3)
     for axes in panels:
-        _draw_ranges(axes, ranges, points)
+        _draw_ranges(axes, ranges, curve)
     figure.text(0.5, 0.06 / height, "mean diameter of the grains [m]", ha="center", fontsize=9)
     return figure
 
@@ -90,13 +78,13 @@ def _line(
     axes.plot(size, value, color=colour, linewidth=1.6, label=label)
 
 
-def _draw_ranges(axes: Axes, ranges: Mapping[str, tuple[float, float]], points: GroundPoints) -> None:
+def _draw_ranges(axes: Axes, ranges: Mapping[str, tuple[float, float]], curve: GroundCurve) -> None:
     """Below an axis the sizes that each kind allows, a line each with the beds on it as marks."""
     for number, (kind, (low, high)) in enumerate(ranges.items()):
         place = -0.19 - 0.1 * number
         trans = axes.get_xaxis_transform()
         axes.plot([low, high], [place, place], color=INK, linewidth=1.2, transform=trans, clip_on=False)
-        own = points.size[points.kind == kind]
+        own = [bed.grain_size_m for bed in curve.beds if bed.kind == kind]
         axes.plot(
             own, np.full(len(own), place), "|", color=INK, markersize=6, markeredgewidth=1.0, transform=trans,
             clip_on=False,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lithobrake.report.content import Content, PageSection, PageTable, Plot
-from lithobrake.report.figures.ground_figure import GroundPoints, ground_figure
+from lithobrake.report.figures.ground_figure import ground_figure
 from lithobrake.report.figures.hulls import scene
 from lithobrake.report.figures.landing_figure import bed_figure
 from lithobrake.report.figures.option_figures import aim_figure, rare_figure
@@ -217,20 +217,9 @@ def _draw_sizes(data: PageData) -> "Figure":
     results, journeys = data.results, data.journeys
     assert journeys is not None
     assert results.ground_curve is not None
-    (factor, unit), table = words.time_unit(journeys.rest), journeys.table
-    met = np.unique(table["bed"]).astype(int)
-    rests = table["end"] == JourneyEnd.AT_REST
-    of_bed = [table["bed"] == bed for bed in met]
-    points = GroundPoints(
-        kind=np.array([results.beds[bed].ground for bed in met]),
-        size=np.array([results.beds[bed].mean_diameter_m for bed in met]),
-        journeys=np.array([float(own.sum()) for own in of_bed]),
-        at_rest=np.array([float(rests[own].mean()) for own in of_bed]),
-        time=np.array([np.median(table["time_s"][own & rests] / factor) if (own & rests).any() else np.nan
-                       for own in of_bed]),
-    )  # fmt: skip
+    factor, unit = words.time_unit(journeys.rest)
     ranges = {name: one.grain_size_m for name, one in results.grounds.items()}
-    return ground_figure(results.ground_curve, points, ranges, unit, factor)
+    return ground_figure(results.ground_curve, ranges, unit, factor)
 
 
 def _draw_counts(journeys: PageJourneys) -> "Figure":
