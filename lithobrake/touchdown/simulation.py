@@ -66,8 +66,11 @@ def land(
             contact, speed = landing.contact, surface_speed(judge.motion, lander)
             interval, telling = look_interval(world, speed, lander, landing), max(speed, slowest)
             resolved, held = contact.resolved_speed * telling, contact.held_speed * telling
+            # Between two touches nothing but a hop has to be followed, and what it ends on is let go by the blow.
+            is_aloft = world.first_touch is not None and not world.is_touched
             world.run_locally(
-                interval, contact.steps_per_contact, resolved_speed=resolved, held_speed=held, reach=reach
+                interval, contact.steps_per_contact, resolved_speed=resolved, held_speed=held,
+                reach=0.0 if is_aloft else reach,
             )  # fmt: skip
         else:
             world.run(steps=max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT)))
