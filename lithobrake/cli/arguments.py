@@ -4,7 +4,9 @@ import errno
 import os
 import shlex
 import shutil
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,8 +18,8 @@ from lithobrake import __version__
 from lithobrake.vocabulary.callbacks import Progress
 from lithobrake.vocabulary.plain_text import plain, wrapped
 
-# 2 is the exit code of Click for wrong arguments, and 130 that of shells for a command ended by SIGINT (128 + 2).
-BAD_INPUT, INTERRUPTED = 2, 130
+# 2 is the exit code of Click for wrong arguments; those of shells for a command ended by a signal are 128 + its number.
+BAD_INPUT, INTERRUPTED, ENDED = 2, 128 + signal.SIGINT, 128 + signal.SIGTERM
 # Groups of commands in the help, in this order.
 START, RUN, LOOK = "Start", "Run a study", "Look at results"
 EXPORT, EXPERT = "Pass results on", "Expert: single stages and special questions"
@@ -55,11 +57,32 @@ Force = Annotated[bool, typer.Option("--force", help="Replace files that exist."
 StudyDirectory = Annotated[Path, typer.Argument(metavar="DIR", help="The folder of a study.", show_default=False)]
 
 
+class _Terminated(KeyboardInterrupt):
+    """SIGTERM, which `kill` and the schedulers of clusters send, ends a command in the same order as Ctrl-C."""
+
+
 @contextmanager
-def one_sentence() -> Iterator[None]:
-    """Turn an error that a user can fix into its sentence and exit code 2, and Ctrl-C into exit code 130."""
+def _ended_in_order() -> Iterator[None]:
+    def end(*_: object) -> NoReturn:
+        raise _Terminated
+
+    # Signals of a process belong to its main thread.
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, end)
     try:
         yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def one_sentence() -> Iterator[None]:
+    """Turn an error that a user can fix into its sentence and exit code 2, Ctrl-C into 130 and SIGTERM into 143."""
+    try:
+        with _ended_in_order():
+            yield
     # Any other exception is a fault of this program, and keeps its traceback.
     except (ValueError, FloatingPointError, ImportError, OSError) as error:
         full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EDQUOT)
@@ -68,9 +91,10 @@ def one_sentence() -> Iterator[None]:
         if isinstance(error, FileNotFoundError) and not _has_current_folder():
             leave("the current folder was removed; change to one that exists", BAD_INPUT)
         leave(f"{error}{remedy if full else ''}", BAD_INPUT)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         command = command_line(*sys.argv[1:])
-        leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", INTERRUPTED)
+        code = ENDED if isinstance(stop, _Terminated) else INTERRUPTED
+        leave(f"Stopped. Every finished run is kept; to continue, run the same command: {command}", code)
 
 
 def command(panel: str, example: str) -> Callable[[Callable[..., None]], Callable[..., None]]:

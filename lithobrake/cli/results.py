@@ -156,6 +156,8 @@ def film(
     from lithobrake.results import open_study
     from lithobrake.view import write_journey, write_motion
 
+    results = open_study(folder)
+    results.refuse_unknown_motion()
     # Before the landings, which take minutes.
     if journey is None:
         refuse_motion_file(path, force, seconds)
@@ -163,7 +165,6 @@ def film(
         refuse_journey_file(path, force, seconds=seconds)
     paths = [path]
     with arguments.shown_progress(what) as progress:
-        results = open_study(folder)
         if journey is None:
             write_motion(_landing(results, run, progress), path, seconds, progress)
         else:

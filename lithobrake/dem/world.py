@@ -198,7 +198,7 @@ class World(Observables):
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
 
         Raises StepTooLargeError where the time step is too large for a contact (it names the largest safe one), and
-        FloatingPointError where the motion diverged.
+        FloatingPointError where the motion diverged, or a body lies wholly behind a plane that meets it.
         """
         if (duration is None) == (steps is None):
             raise ValueError("World.run takes either duration [s] or steps: give one of them")
@@ -213,6 +213,7 @@ class World(Observables):
         self.time += taken * self.time_step
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
+        self._refuse_buried()
 
     def run_locally(
         self, duration: float, steps_per_contact: float, *, resolved_speed: float = 0.0, held_speed: float = 0.0,
@@ -227,7 +228,7 @@ class World(Observables):
         reach [m] of the watched body and slower than half of held_speed [m/s] stands still until a blow would make it
         that fast, or nothing carries it; with 0 nothing does.
         Raises ValueError for a duration below 0, less than 5 steps, or a held_speed without a watched body,
-        FloatingPointError where the motion diverged.
+        FloatingPointError where the motion diverged, or a body lies wholly behind a plane that meets it.
         """
         if not self.bodies:
             raise ValueError("World.run_locally has no body to move: add one first")
@@ -256,6 +257,20 @@ class World(Observables):
         if not local.run(duration):
             self._refuse(DIVERGED)
         self.time = local.time
+        self._refuse_buried()
+
+    def _refuse_buried(self) -> None:
+        """Raise FloatingPointError for a body that lies wholly behind a plane which meets it."""
+        engine = self._state.engine
+        assert engine is not None
+        depth = engine.planes.offset[:, None] - engine.planes.normal @ self._state.motion["position"].T
+        buried = np.argwhere(engine.planes.meets & (depth > engine.bodies.bounding_radius))
+        if len(buried):
+            plane, body = buried[0]
+            raise FloatingPointError(
+                f"body {body} lies {depth[plane, body]:.3g} m behind plane {plane} at t = {self.time:.6g} s, and no "
+                "contact is deeper than its body; take a stiffer material (young_modulus), or a lighter body"
+            )
 
     def _refuse(self, reason: int) -> None:
         if reason == STEP_TOO_LARGE:

@@ -98,7 +98,7 @@ class FileState(StrEnum):
     MISSING = "not there"
     EARLIER = "of an earlier setting or version"
     CHANGED = "changed after it was made"
-    FOREIGN = "not made by this study"
+    FOREIGN = "not noted as made by this study, as after a stage that did not end"
     # Of the stage at work, whose files are noted when all are there.
     NEW = "made by the stage at work"
 

@@ -241,18 +241,25 @@ class StudyResults(StudyTables):
             )
         return found[0]
 
+    def refuse_unknown_motion(self) -> None:
+        """Raise ValueError where a program or function of the study's own makes the touchdowns."""
+        made = self._noted_files()
+        if made and not any(file.startswith("beds/") for file in made):
+            raise ValueError(
+                f"{self.folder} shows no motion: a program or function of the study's own makes its touchdowns; "
+                "ask that program for its frames"
+            )
+
     def _bodies(self, name: str) -> "MovingBodies":
         from lithobrake.results.motions import MovingBodies
 
         path, made = self._file(name), self._noted_files()
         if made and name not in made and not path.exists():
+            self.refuse_unknown_motion()
             beds = sum(file.startswith("beds/") for file in made)
-            reason = (
-                f"its beds have the numbers 0 to {beds - 1}"
-                if beds
-                else "a program or function of its own makes its touchdowns; ask that program for its frames"
+            raise ValueError(
+                f"{path} is not there, and no stage of this study makes it: its beds have the numbers 0 to {beds - 1}"
             )
-            raise ValueError(f"{path} is not there, and no stage of this study makes it: {reason}")
         return MovingBodies.read(path, self.remedy)
 
     def __repr__(self) -> str:

@@ -112,7 +112,9 @@ def _condition(node: ast.expr, text: str) -> Condition:
             if name in TOUCHDOWN:
                 raise NoLimitStateError(f"{name} is a number: compare it, as in {name} > 0.1")
             if name not in FATES:
-                raise NoLimitStateError(f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}")
+                raise NoLimitStateError(
+                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}; a limit state describes one touchdown"
+                )
             return Word(name, True)
     words = ast.get_source_segment(text, node)
     raise NoLimitStateError(f"{words} is no condition: compare an output, or name what may happen")
@@ -145,7 +147,8 @@ def _side(node: ast.expr, text: str) -> str | float:
         if node.id in FATES:
             raise NoLimitStateError(f"{node.id} is true or false, and no number: write {node.id}, or not {node.id}")
         if node.id not in TOUCHDOWN:
-            raise NoLimitStateError(f"{node.id} is no output{closest(node.id, TOUCHDOWN)}: {', '.join(TOUCHDOWN)}")
+            near = closest(node.id, TOUCHDOWN)
+            raise NoLimitStateError(f"{node.id} is no output{near}; of a touchdown there are {', '.join(TOUCHDOWN)}")
         return node.id
     number = _number(node)
     if number is None:

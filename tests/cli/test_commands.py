@@ -8,6 +8,7 @@ import sys
 import time
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import typer
@@ -386,10 +387,15 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("seconds", ["nan", "0", "inf"])
-def test_a_film_without_a_length_is_refused_before_the_landing(seconds: str, tmp_path: Path) -> None:
+def test_a_film_without_a_length_is_refused_before_the_landing(
+    seconds: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Results that have a motion, and nothing else.
+    monkeypatch.setattr(
+        "lithobrake.results.open_study", lambda folder: SimpleNamespace(refuse_unknown_motion=lambda: None)
+    )
     words = ["film", str(tmp_path), "--journey", "1", "--out", str(tmp_path / "x.webp"), "--seconds", seconds]
     found = RUNNER.invoke(app, words)
-    # The folder, which is empty, is not looked at before.
     assert (found.exit_code, "allowed: a finite time above 0 s" in found.stderr) == (2, True)
 
 

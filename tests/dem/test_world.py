@@ -188,6 +188,25 @@ def test_motion_that_is_lost_is_told(shape, name, value):
         world.run(steps=5)
 
 
+@pytest.mark.parametrize("shape", [Sphere(0.1), Box((0.1, 0.2, 0.1))])
+@pytest.mark.parametrize("run", [lambda world: world.run(1.0), lambda world: world.run_locally(1.0, 25)])
+def test_no_contact_is_deeper_than_its_body(shape, run):
+    soft = Material(density=2500.0, young_modulus=1e6, poisson_ratio=0.25, restitution=0.5, friction=0.5)
+    world = World((0, 0, -1))
+    world.add_plane((0, 0, 0), (0, 0, 1), soft)
+    world.add_body(shape, soft, (0, 0, 0.2), mass=1e6)
+    with pytest.raises(FloatingPointError, match=r"body 0 lies 0\.\d+ m behind plane 0 .* take a stiffer material"):
+        run(world)
+
+
+def test_a_body_behind_a_plane_that_does_not_meet_it_is_free():
+    world = World((0, 0, -1))
+    world.add_plane((0, 0, 0), (0, 0, 1), ROCK, bodies=[])
+    world.add_body(Sphere(0.1), ROCK, (0, 0, -1))
+    world.run_locally(0.1, 25)
+    assert world.position[0, 2] == pytest.approx(-1.005)
+
+
 def test_many_bodies_at_once_are_those_added_one_by_one():
     generator = np.random.default_rng(4)
     shapes = [ConvexHull(0.1 * generator.normal(size=(14, 3))) for _ in range(5)] + [Sphere(0.1)]

@@ -112,7 +112,7 @@ def test_tables_that_are_none_are_refused_as_ever() -> None:
 REFUSED_CONDITIONS: list[tuple[str, str]] = [
     ("speed > 1", "speed is no output; did you mean speed_out?"), ("speed_out", "speed_out is a number: compare it"),
     ("returns > 1", "returns is true or false, and no number"),
-    ("retuns", "retuns is no name here; did you mean returns?"),
+    ("retuns", "retuns is no name here; did you mean returns?"), ("distance < 60", "distance is no output; of a touch"),
     ("speed_out == 0.1", "outputs are compared by <, <=, >, >="), ("1 < 2", "compares numbers alone"),
     ("speed_out > 1e999", "neither an output nor a finite number"),
     ("speed_out > 1j", "neither an output nor a finite number"),

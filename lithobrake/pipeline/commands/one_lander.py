@@ -109,8 +109,8 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
         return values
     if design.is_flown:
         raise ValueError(
-            f"--set names {', '.join(changed)}; allowed: nothing for landers that are flown to the ground "
-            "(delivery.states, delivery.release), which determine the first impact; change the study file"
+            f"--set names {', '.join(changed)}; allowed: nothing where a flight gives each lander its own impact and "
+            "ground (delivery.states, delivery.release); change the study file and land again"
         )
     if study.soil and any(key.startswith(GRAIN) for key in changed):
         raise ValueError(

@@ -296,7 +296,7 @@ def test_files_of_the_stage_at_work_are_its_own_before_they_are_noted() -> None:
         return StudyStatus(Path("out"), holder, None, state, None).to_json()["stages"][0]["files"]
 
     assert told(2) == {"beds/bed_0.h5": "made by the stage at work", "beds/bed_1.h5": "not there"}
-    assert told(1) == told(None) == {"beds/bed_0.h5": "not made by this study", "beds/bed_1.h5": "not there"}
+    assert told(1) == told(None) == {"beds/bed_0.h5": FileState.FOREIGN, "beds/bed_1.h5": "not there"}
 
 
 def test_looking_at_a_study_loads_nothing_heavy() -> None:

@@ -163,7 +163,7 @@ def test_beds_that_are_stopped_and_killed_end_with_the_same_bits(
     # Without a library nothing of what was stopped is found again but in the folder.
     monkeypatch.setenv(bed_library.SIZE_VARIABLE, "0")
     (tmp_path / "study.toml").write_text(TEXT)
-    for blow, code in ((signal.SIGINT, 130), (signal.SIGKILL, -9)):
+    for blow, code in ((signal.SIGTERM, 143), (signal.SIGKILL, -9)):
         process, limit = start(tmp_path), time.monotonic() + 120
         # Of three beds on two workers one is there, and the others are under way.
         while not list((tmp_path / "out" / "beds").glob("*.h5")) and time.monotonic() < limit:
@@ -171,6 +171,7 @@ def test_beds_that_are_stopped_and_killed_end_with_the_same_bits(
         process.send_signal(blow)
         said = process.communicate(timeout=60)[1]
         assert process.returncode == code, said
+        assert (code < 0) or "Every finished run is kept; to continue" in said
         for path in (tmp_path / "out" / "beds").glob("*.h5"):
             path.unlink()
     ended = start(tmp_path)
