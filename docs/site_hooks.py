@@ -13,6 +13,8 @@ from latex2mathml.converter import convert
 from pymdownx.arithmatex import arithmatex_fenced_format
 
 SHOWCASE = Path(__file__).parents[1] / "showcase"
+# Says where numbers come from, for a test.
+SOURCES = re.compile(r"\n *<!-- numbers\b.*?-->", flags=re.DOTALL)
 FIGURE = re.compile(r'<p>(<img [^>]*?src="([^"]+)"[^>]*>)</p>')
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\s*\\[(\[](.*?)\\[)\]]\s*</\1>([,.;:)]*)', flags=re.DOTALL)
 
@@ -35,9 +37,10 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Keep decisions out of the search, and let links to the showcase lead to its pictures within the site."""
+    """Keep decisions out of the search, let links to the showcase lead into the site, and drop sources of numbers."""
     if page.file.src_uri.startswith("decisions/"):
         page.meta["search"] = {"exclude": True}
+    markdown = SOURCES.sub("", markdown)
     return markdown.replace("](../showcase/", "](showcase/") if "/" not in page.file.src_uri else markdown
 
 

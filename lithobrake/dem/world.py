@@ -260,13 +260,16 @@ class World(Observables):
         self._refuse_buried()
 
     def _refuse_buried(self) -> None:
-        """Raise FloatingPointError for a body that lies wholly behind a plane which meets it."""
+        """Raise FloatingPointError for a body, but the watched one, that lies wholly behind a plane which meets it."""
         engine = self._state.engine
         assert engine is not None
         depth = engine.planes.offset[:, None] - engine.planes.normal @ self._state.motion["position"].T
-        buried = np.argwhere(engine.planes.meets & (depth > engine.bodies.bounding_radius))
-        if len(buried):
-            plane, body = buried[0]
+        buried = engine.planes.meets & (depth > engine.bodies.bounding_radius)
+        # Who watches a body sees by itself where that is.
+        if self._state.watched != NOTHING_WATCHED:
+            buried[:, self._state.watched] = False
+        if buried.any():
+            plane, body = np.argwhere(buried)[0]
             raise FloatingPointError(
                 f"body {body} lies {depth[plane, body]:.3g} m behind plane {plane} at t = {self.time:.6g} s, and no "
                 "contact is deeper than its body; take a stiffer material (young_modulus), or a lighter body"

@@ -113,7 +113,7 @@ def _condition(node: ast.expr, text: str) -> Condition:
                 raise NoLimitStateError(f"{name} is a number: compare it, as in {name} > 0.1")
             if name not in FATES:
                 raise NoLimitStateError(
-                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}; a limit state describes one touchdown"
+                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}; it describes one touchdown"
                 )
             return Word(name, True)
     words = ast.get_source_segment(text, node)

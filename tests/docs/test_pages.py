@@ -14,7 +14,10 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import redirect_stdout
 from importlib import import_module
+from io import StringIO
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -22,6 +25,7 @@ from typing import Any
 import pytest
 import typer
 from blocks import PAGES, ROOT, Block, all_blocks, blocks
+from sources import wrong
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
@@ -139,6 +143,13 @@ def test_pictures_of_the_showcase_are_part_of_the_site(hooks: dict[str, Any]) ->
     assert (ROOT / "showcase/mission/figures/figure_1_ends.png").is_file()
 
 
+def test_sources_of_numbers_are_no_part_of_the_site(hooks: dict[str, Any]) -> None:
+    page = SimpleNamespace(file=SimpleNamespace(src_uri="method.md"))
+    source = "- 3 of 4.\n  <!-- numbers:\n  a = 3\n  a, [4][0]\n  -->\n- More.\n<!-- not run: it takes minutes -->\n"
+    shown = hooks["on_page_markdown"](source, page=page)
+    assert shown == "- 3 of 4.\n- More.\n<!-- not run: it takes minutes -->\n"
+
+
 @pytest.mark.parametrize(("name", "is_left_out"), [("decisions/dem.md", True), ("method.md", False)])
 def test_decisions_are_not_searched(name: str, is_left_out: bool, hooks: dict[str, Any]) -> None:
     page = SimpleNamespace(file=SimpleNamespace(src_uri=name), meta={})
@@ -217,14 +228,40 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def run_script(path: Path) -> None:
-    """Run a script as a reader would, one that has no worker processes without another start of Python."""
+def run_script(path: Path) -> tuple[str, dict[str, Any]]:
+    """What a script prints and defines, run as a reader would, without another start of Python if it has no workers."""
     if "__main__" not in path.read_text(encoding="utf-8"):
-        assert runpy.run_path(str(path), run_name="__main__")
-        return
+        with redirect_stdout(StringIO()) as printed:
+            defined = runpy.run_path(str(path), run_name="__main__")
+        return printed.getvalue(), defined
     setting = {**os.environ, "PYTHONPATH": str(ROOT)}
     found = subprocess.run([sys.executable, path], env=setting, capture_output=True, text=True, check=False)
     assert found.returncode == 0, found.stderr
+    return found.stdout, {}
+
+
+def words(line: str) -> list[str]:
+    """The words of a line, numbers to four digits, since the last ones differ from machine to machine."""
+    return re.sub(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?", lambda one: f"{float(one[0]) + 1e-15:.4g}", line).split()
+
+
+def not_printed(shown: str, printed: str) -> list[str]:
+    """The lines of an output on a page that were not printed; what follows "..." in a line is cut, and "..." lines."""
+    found = [words(line) for line in printed.splitlines()]
+    begins = {line: words(line.partition("...")[0]) for line in shown.splitlines()}
+    return [line for line, begin in begins.items()
+            if not any(one[: len(begin)] == begin if "..." in line else one == begin for one in found)]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("shown", "missing"),
+    [
+        ("ends at 4.1933333333333333 m\n...\nat rest\n", []), ("ends at ...\n", []), ("left 1e-22 kg\n", []),
+        ("ends at 4.194 m\nat rest\n", ["ends at 4.194 m"]), ("at rest again\n", ["at rest again"]),
+    ],
+)  # fmt: skip
+def test_an_output_that_nobody_printed_is_found(shown: str, missing: list[str]) -> None:
+    assert not_printed(shown, "ends at 4.193333333333336 m\nleft 3.1e-23 kg\nat rest\n") == missing
 
 
 @pytest.mark.parametrize("page", PAGES_WITH_PYTHON, ids=short)
@@ -238,7 +275,11 @@ def test_python_of_a_page_runs_as_one_script(page: Path, workplace: Path) -> Non
             script += [""] * (block.line - 1 - len(script)) + block.text.splitlines()
     path = workplace / "page.py"
     path.write_text("\n".join(script) + "\n", encoding="utf-8")
-    run_script(path)
+    printed, defined = run_script(path)
+    assert wrong(page.read_text(encoding="utf-8"), defined) == []
+    for above, block in pairwise(blocks(page)):
+        if (above.language, block.language) == ("python", "text") and not above.is_left_out:
+            assert not_printed(block.text, printed) == [], f"{block}: printed was\n{printed}"
 
 
 def commands(block: Block) -> Iterator[list[str]]:
@@ -264,12 +305,16 @@ def test_commands_have_the_options_that_are_written() -> None:
 
 
 def test_commands_that_are_marked_run(workplace: Path) -> None:
-    marked = [block for block in all_blocks("sh") if block.remark == "run"]
+    marked = {block.page for block in all_blocks("sh") if block.remark == "run"}
     assert marked
-    for block in marked:
-        for words in commands(block):
-            found = CliRunner().invoke(app, words)
-            assert found.exit_code == 0, f"{block}: {found.output}"
+    for above, block in (pair for page in marked for pair in pairwise(blocks(page)) if pair[0].remark == "run"):
+        printed = ""
+        for arguments in commands(above):
+            found = CliRunner().invoke(app, arguments)
+            assert found.exit_code == 0, f"{above}: {found.output}"
+            printed += found.output
+        if block.language == "text":
+            assert not_printed(block.text, printed) == [], f"{block}: printed was\n{printed}"
 
 
 def test_scripts_that_are_named_exist() -> None:
