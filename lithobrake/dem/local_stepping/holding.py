@@ -27,7 +27,7 @@ CARRIED, DROPPED = 0.5, 0.3
 def hold(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:  # fmt: skip
-    """Hold a body; its contacts with planes and other held bodies wait. Writes to bodies, flight, plans and agenda."""
+    """Hold a body; its contacts with planes and other held bodies wait. Writes to bodies, flight and agenda."""
     velocity, momentum = row(bodies.velocity, body), row(bodies.angular_momentum, body)
     turning = dot(momentum, times(bodies.inverse_inertia, body, momentum))
     bodies.dragged[body] += 0.5 * (bodies.mass[body] * dot(velocity, velocity) + turning)
@@ -49,7 +49,7 @@ def hold(
 def let_go(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:  # fmt: skip
-    """Let a held body go on from rest. Writes to bodies, flight, plans and agenda."""
+    """Let a held body go on from rest. Writes to flight, plans and agenda."""
     flight.held[body] = False
     entry = flight.head[body]
     while entry >= 0:

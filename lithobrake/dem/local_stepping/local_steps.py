@@ -197,7 +197,10 @@ def push(bodies: Bodies, flight: Flight, body: int, sign: float, time: float, fo
 
 @kernel
 def count_contact(bodies: Bodies, flight: Flight, body: int, planned: float, interval: float) -> None:
-    """Count a contact that has begun or ended; what touches nothing feels exactly nothing. Writes to both."""
+    """Count a contact that has begun or ended; what touches nothing feels exactly nothing.
+
+    Writes to bodies and flight.
+    """
     if planned == 0.0 and interval > 0.0:
         flight.touching[body] += 1
     elif planned > 0.0 and interval == 0.0:
