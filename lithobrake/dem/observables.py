@@ -30,18 +30,18 @@ def kinetic(mass: Floats | float, velocity: Floats, spin: Floats, angular_moment
 
 
 def ledger(
-    moving: float, mass: Floats, position: Floats, gravity: Floats, pairs: Pairs, lost: Floats
+    moving: float, mass: Floats, position: Floats, gravity: Floats, pairs: Pairs, lost: Floats, released: float = 0.0
 ) -> dict[str, float]:
     """Return the energies [J] of a world from that of its motion, `moving`: kinetic, potential, elastic, cohesive, what
     damping, friction and rolling took, and the total.
 
     A Hertz contact holds 2/5 force times overlap, cohesion minus force times overlap, a spring half its force squared
-    over its stiffness.
+    over its stiffness. released: what contacts have given to the motion since they were last looked at [J].
     """
     potential = -float((mass[:, None] * position * gravity).sum())
     touching = pairs.tangential_stiffness > 0.0
     spring_square = (pairs.spring[touching] ** 2).sum(axis=1)
-    elastic = 0.4 * float((pairs.elastic_force * pairs.overlap).sum())
+    elastic = 0.4 * float((pairs.elastic_force * pairs.overlap).sum()) - released
     elastic += 0.5 * float((spring_square / pairs.tangential_stiffness[touching]).sum())
     twisting = pairs.twist_stiffness > 0.0
     elastic += 0.5 * float((pairs.twist[twisting] ** 2 / pairs.twist_stiffness[twisting]).sum())
@@ -223,4 +223,6 @@ class Observables:
         """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
         engine = self._read()
         kinetic = float(self.kinetic_energy.sum())
-        return ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses())
+        local = self._state.local
+        released = local.work_since_looks() if local is not None else 0.0
+        return ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses(), released)

@@ -84,8 +84,6 @@ class WorldState:
 
         Where nothing has been stepped yet, one on copies takes a step of no duration, with gravity and drag of `step`.
         """
-        if self.local is not None:
-            self.local.sum_forces()
         if self.engine is not None:
             return self.engine
         if self.reader is None:

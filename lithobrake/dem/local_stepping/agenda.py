@@ -6,16 +6,20 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
-from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, put, row
+from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, put, row, scaled
 from lithobrake.dem.local_stepping.cells import Cells
 from lithobrake.dem.local_stepping.free_motion import (
     Approach,
     Flight,
     Rules,
+    acceleration_of,
     closing_speed,
+    relative_surge,
     relative_weight,
     surface_speed,
+    surge_bound,
     time_to_close,
+    turning_rate,
     weight,
 )
 from lithobrake.vocabulary.array_types import Floats, Integers, Vector
@@ -24,6 +28,8 @@ from lithobrake.vocabulary.array_types import Floats, Integers, Vector
 # Half takes the least time: with a fifth, bodies are planned anew 2.7 times as often; with all of it, pairs are looked
 # at 13 % more often.
 NOTED_CHANGE = 0.5
+# The same of its acceleration, of which so much of gravity besides passes without notice.
+NOTED_WEIGHT = 0.02
 # A contact keeps its step until the one that it should have is below, or above, these parts of it.
 # Steps that follow the collision at every look are uneven, which costs a frictionless landing 5 % of its energy.
 SHORTER, LONGER = 0.8, 2.0
@@ -121,7 +127,7 @@ class Plans(NamedTuple):
     longest: Floats  # [pair_capacity], s, step at which sliding, tilting and damping are followed stably
     duration: Floats  # [pair_capacity], s (m/s)^(1/5), duration of a collision times the fifth root of its speed
     apart: Floats  # [pair_capacity, 3], m, from the first's centroid to the second's, at the last look
-    spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last kick
+    spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last look
     link: Integers  # [2 pair_capacity], next entry in the list of the first's, and of the second's pairs; -1: none
     free: Integers  # [pair_capacity], slots that are free
     free_count: Integers  # [1]
@@ -199,7 +205,7 @@ def closing_velocity(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> V
 def way_since(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> tuple[float, float]:
     """Return the way [m] of a body's surface up to now [s], and the speed [m/s] gained since it was moved, at most."""
     time = now - flight.time[body]
-    gained = 0.0 if flight.held[body] else time * weight(rules)
+    gained = 0.0 if flight.held[body] else time * surge_bound(bodies, flight, body, rules)
     return bodies.travel[body] + time * (surface_speed(bodies, flight, body) + gained), gained
 
 
@@ -217,7 +223,7 @@ def plan_apart(
     if second >= 0:
         way, gained = way_since(bodies, flight, second, now, rules)
         gap, speed = gap - way, speed + gained
-    acceleration = relative_weight(flight, first, second, rules)
+    acceleration = relative_surge(bodies, flight, first, second, rules)
     put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
 
 
@@ -236,17 +242,24 @@ def plan_search(bodies: Bodies, flight: Flight, agenda: Agenda, body: int, now: 
     """Make a body due when it could have left the reach of its list of neighbours. Writes to agenda."""
     left = 0.5 * rules.skin - (bodies.travel[body] - bodies.travel_listed[body])
     speed = surface_speed(bodies, flight, body) + flight.slack[body]
-    put_on(agenda, body, now + (time_to_close(left, speed, weight(rules)) if left > 0.0 else 0.0))
+    surge = surge_bound(bodies, flight, body, rules)
+    put_on(agenda, body, now + (time_to_close(left, speed, surge) if left > 0.0 else 0.0))
 
 
 @kernel
-def has_changed(bodies: Bodies, flight: Flight, body: int) -> bool:
-    """Tell whether a body was kicked so that the plans of its pairs hold no longer."""
-    change = minus(row(bodies.velocity, body), row(flight.velocity, body))
-    turn = minus(row(bodies.angular_momentum, body), row(flight.momentum, body))
-    turning = bodies.turning_radius[body] * flight.turning[body]
+def has_changed(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> bool:
+    """Tell whether contacts moved a body so that the plans of its pairs hold no longer."""
+    time, mass, turning = now - flight.planned[body], bodies.inverse_mass[body], flight.turning[body]
+    force, torque = row(flight.force, body), row(flight.torque, body)
+    expected = plus(row(flight.velocity, body), scaled(time, plus(rules.gravity, scaled(mass, force))))
+    change = minus(row(bodies.velocity, body), expected)
+    turn = minus(row(bodies.angular_momentum, body), plus(row(flight.momentum, body), scaled(time, torque)))
+    turning *= bodies.turning_radius[body]
     # Of a body that was never planned the change is not a number.
-    return not dot(change, change) ** 0.5 + turning * dot(turn, turn) ** 0.5 <= flight.slack[body]
+    if not dot(change, change) ** 0.5 + turning * dot(turn, turn) ** 0.5 <= flight.slack[body]:
+        return True
+    force, torque = minus(row(bodies.force, body), force), minus(row(bodies.torque, body), torque)
+    return mass * dot(force, force) ** 0.5 + turning * dot(torque, torque) ** 0.5 > flight.surge[body]
 
 
 @kernel
@@ -263,13 +276,19 @@ def touches(pairs: Pairs, flight: Flight, plans: Plans, body: int) -> bool:
 def replan(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
-    """Plan the pairs of a body anew after a kick. Writes to flight and agenda."""
+    """Plan the pairs of a body anew after a change of its motion. Writes to flight and agenda."""
     put(flight.velocity, body, row(bodies.velocity, body))
     put(flight.momentum, body, row(bodies.angular_momentum, body))
-    # What touches nothing is not kicked, and what begins to touch is planned anew.
-    flight.slack[body] = (
-        NOTED_CHANGE * surface_speed(bodies, flight, body) if touches(pairs, flight, plans, body) else 0.0
-    )
+    put(flight.force, body, row(bodies.force, body))
+    put(flight.torque, body, row(bodies.torque, body))
+    flight.planned[body] = now
+    # What touches nothing is not pushed, and what begins to touch is planned anew.
+    flight.slack[body], flight.surge[body] = 0.0, 0.0
+    if touches(pairs, flight, plans, body):
+        along = acceleration_of(bodies, flight, body, rules)
+        surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body)
+        flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)
+        flight.surge[body] = NOTED_CHANGE * surge + NOTED_WEIGHT * weight(rules)
     plan_search(bodies, flight, agenda, body, now, rules)
     entry = flight.head[body]
     while entry >= 0:

@@ -1,4 +1,4 @@
-"""Bodies in free motion between two kicks, and when two of them could touch."""
+"""Bodies in motion under steady forces between two looks, and when two of them could touch."""
 
 from typing import NamedTuple
 
@@ -18,19 +18,22 @@ LARGEST_TURN = 0.2
 
 
 class Flight(NamedTuple):
-    """Per body, between its kicks."""
+    """Per body, between looks at its contacts."""
 
     time: Floats  # [body_count], s, to which it was last moved
+    planned: Floats  # [body_count], s, when its pairs were planned
     velocity: Floats  # [body_count, 3], m/s, for which its pairs were planned
     momentum: Floats  # [body_count, 3], kg m2/s, the same
+    force: Floats  # [body_count, 3], N, of its contacts, the same; of a held body, the one that its rest balances
+    torque: Floats  # [body_count, 3], N m, the same
     slack: Floats  # [body_count], m/s, change of the speed of its surface for which the plans hold
+    surge: Floats  # [body_count], m/s2, change of the acceleration of its surface for which they do
+    touching: Integers  # [body_count], contacts that push it
     turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
     mass: Floats  # [part_count], kg, smallest that a contact meets
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
     held: Flags  # [body_count], see holding.py
-    held_velocity: Floats  # [body_count, 3], m/s, with which a held body will go on
-    held_momentum: Floats  # [body_count, 3], kg m2/s, the same
     fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
     resolved_speed: Floats  # [1], m/s, of collisions that take all steps; slower ones take fewer
 
@@ -64,43 +67,85 @@ def surface_speed(bodies: Bodies, flight: Flight, body: int) -> float:
 
 
 @kernel
+def acceleration_of(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> Vector:
+    """Return the acceleration of a body under gravity and its contacts as they were last looked at [m/s2]."""
+    if flight.held[body]:
+        return (0.0, 0.0, 0.0)
+    return plus(rules.gravity, scaled(bodies.inverse_mass[body], row(bodies.force, body)))
+
+
+@kernel
+def turning_rate(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on how fast contacts change the speed of a body's surface by its spin [m/s2]."""
+    torque = row(bodies.torque, body)
+    turning = bodies.turning_radius[body] * flight.turning[body]
+    return 0.0 if flight.held[body] else turning * dot(torque, torque) ** 0.5
+
+
+@kernel
+def surge_bound(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> float:
+    """Return a bound on the acceleration of a body's surface while its plans hold [m/s2]."""
+    along = acceleration_of(bodies, flight, body, rules)
+    return dot(along, along) ** 0.5 + turning_rate(bodies, flight, body) + flight.surge[body]
+
+
+@kernel
+def relative_surge(bodies: Bodies, flight: Flight, first: int, second: int, rules: Rules) -> float:
+    """Return a bound on the acceleration of two surfaces against each other while their plans hold [m/s2]."""
+    along = acceleration_of(bodies, flight, first, rules)
+    bound = turning_rate(bodies, flight, first) + flight.surge[first]
+    if second >= 0:
+        along = minus(along, acceleration_of(bodies, flight, second, rules))
+        bound += turning_rate(bodies, flight, second) + flight.surge[second]
+    return bound + dot(along, along) ** 0.5
+
+
+@kernel
 def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> None:
-    """Move a body in free flight to an instant [s]. Writes to bodies and flight."""
+    """Move a body under the steady forces of its contacts to an instant [s]. Writes to bodies and flight."""
     time = now - flight.time[body]
     if time <= 0.0:
         return
     flight.time[body] = now
     if flight.held[body]:
         return
-    before = row(bodies.velocity, body)
-    after = fall(bodies, body, before, time, rules)
-    spin = spin_bound(bodies, flight, body)
+    before, spin = row(bodies.velocity, body), spin_bound(bodies, flight, body)
+    after = fall(bodies, body, before, time, acceleration_of(bodies, flight, body, rules), rules.drag)
+    # Under a steady torque the angular momentum moves on a straight line, as the velocity does.
+    half = scaled(0.5 * time, row(bodies.torque, body))
+    add(bodies.angular_momentum, body, 1.0, half)
     # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
     fastest = max(dot(before, before), dot(after, after)) ** 0.5
-    bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
-    parts = 1 + int(spin * time / LARGEST_TURN)
+    middle = spin_bound(bodies, flight, body)
+    parts = 1 + int(middle * time / LARGEST_TURN)
     for _ in range(parts):
         turn_freely(bodies, body, time / parts)
+    add(bodies.angular_momentum, body, 1.0, half)
+    spin = max(spin, spin_bound(bodies, flight, body))
+    bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
 
 
 @kernel
-def fall(bodies: Bodies, body: int, before: Vector, time: float, rules: Rules) -> Vector:
-    """Move a body for a time [s] under gravity and drag, exactly; return its velocity then. Writes to bodies."""
-    if rules.drag == 0.0:
-        after = plus(before, scaled(time, rules.gravity))
-        add(bodies.position, body, time, plus(before, scaled(0.5 * time, rules.gravity)))
+def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, drag: float) -> Vector:
+    """Move a body for a time [s] under an acceleration [m/s2] and a drag [1/s], exactly; return its velocity then.
+
+    Writes to bodies.
+    """
+    if drag == 0.0:
+        after = plus(before, scaled(time, along))
+        add(bodies.position, body, time, plus(before, scaled(0.5 * time, along)))
     else:
-        kept = np.exp(-rules.drag * time)
+        kept = np.exp(-drag * time)
         # What drag and gravity come to in the end.
-        last = scaled(1.0 / rules.drag, rules.gravity)
+        last = scaled(1.0 / drag, along)
         after = plus(last, scaled(kept, minus(before, last)))
-        way = plus(scaled(time, last), scaled((1.0 - kept) / rules.drag, minus(before, last)))
+        way = plus(scaled(time, last), scaled((1.0 - kept) / drag, minus(before, last)))
         add(bodies.position, body, 1.0, way)
         momentum = row(bodies.angular_momentum, body)
         # The motion is exact; the ledger takes the mean of the losses at both ends.
         turning = dot(momentum, spin_of(bodies, body)) * (1.0 + kept * kept)
         moving = bodies.mass[body] * (dot(before, before) + dot(after, after))
-        bodies.dragged[body] += 0.5 * rules.drag * time * (moving + turning)
+        bodies.dragged[body] += 0.5 * drag * time * (moving + turning)
         put(bodies.angular_momentum, body, scaled(kept, momentum))
     put(bodies.velocity, body, after)
     return after
@@ -125,15 +170,16 @@ def fly_all_to(bodies: Bodies, flight: Flight, now: float, rules: Rules) -> None
 
 @kernel
 def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) -> Vector:
-    """Return where a body will be at an instant [s] unless it is kicked before [m]."""
+    """Return where a body will be at an instant [s] unless its forces change before [m]."""
     if flight.held[body]:
         return row(bodies.position, body)
     time = now - flight.time[body]
     way, drop = time, 0.5 * time * time
-    if rules.drag > 0.0:
-        way = (1.0 - np.exp(-rules.drag * time)) / rules.drag
-        drop = (time - way) / rules.drag
-    moved = plus(scaled(way, row(bodies.velocity, body)), scaled(drop, rules.gravity))
+    drag = rules.drag
+    if drag > 0.0:
+        way = (1.0 - np.exp(-drag * time)) / drag
+        drop = (time - way) / drag
+    moved = plus(scaled(way, row(bodies.velocity, body)), scaled(drop, acceleration_of(bodies, flight, body, rules)))
     return plus(row(bodies.position, body), moved)
 
 
@@ -185,7 +231,7 @@ def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int
     In the frame of a face: the fall, the turning of either's points, and what the turning of the face adds.
     """
     spin = spin_bound(bodies, flight, first)
-    acceleration = relative_weight(flight, first, second, rules)
+    acceleration = relative_surge(bodies, flight, first, second, rules)
     acceleration += 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
     if second < 0:
         return acceleration

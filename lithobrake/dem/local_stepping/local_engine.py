@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Bodies, Pairs, Reactions, Step
+from lithobrake.dem.bodies.arrays import Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
+from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules
@@ -41,9 +42,10 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     never = np.full((n, 3), np.nan)
     stamp = np.full(len(mass) + len(engine.planes.offset), -1)
     return Flight(
-        np.full(n, time), never, np.zeros((n, 3)), np.zeros(n), turning, mass, np.full(n, -1), stamp,
-        held=np.zeros(n, np.bool_), held_velocity=np.zeros((n, 3)), held_momentum=np.zeros((n, 3)),
-        fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
+        time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
+        force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
+        touching=np.zeros(n, np.int64), turning=turning, mass=mass, head=np.full(n, -1), stamp=stamp,
+        held=np.zeros(n, np.bool_), fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
     )  # fmt: skip
 
 
@@ -58,18 +60,6 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
     )  # fmt: skip
 
 
-def sum_forces(bodies: Bodies, pairs: Pairs, reactions: Reactions) -> None:
-    """Sum up what the contacts did to every body when they were last looked at. Writes to bodies."""
-    touching = np.flatnonzero(pairs.overlap > 0.0)
-    members = np.column_stack([pairs.first, pairs.second])[touching]
-    # Sums run in the order of the pairs, of each the first body before the second; a plane takes none.
-    moved, force = members >= 0, reactions.force[touching]
-    torque, other_torque = reactions.first_torque[touching], reactions.second_torque[touching]
-    bodies.force[:], bodies.torque[:] = 0.0, 0.0
-    np.add.at(bodies.force, members[moved], np.stack([-force, force], axis=1)[moved])
-    np.add.at(bodies.torque, members[moved], np.stack([-torque, other_torque], axis=1)[moved])
-
-
 class LocalEngine:
     """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
@@ -80,10 +70,11 @@ class LocalEngine:
         self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
         self.cells = cells_of(engine.bodies, engine.skin)
         self.record = new_record()
-        self.summed = True  # the forces on each body stand in the engine's arrays
         self.plans: Plans
         self.agenda: Agenda
         engine.list_neighbours()
+        # Contacts push from their first look on.
+        engine.bodies.force[:], engine.bodies.torque[:] = 0.0, 0.0
         count = len(engine.pairs.first)
         self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
         self._enter(np.concatenate([np.full(len(bodies), -np.inf), np.full(count, time)]))
@@ -137,14 +128,29 @@ class LocalEngine:
             else:
                 break
         self.time = end
-        self.summed = False
         return reason == LISTED and bool(np.isfinite(engine.bodies.travel).all())
 
-    def sum_forces(self) -> None:
-        """Let the engine's arrays have the forces that the contacts had when they were last looked at."""
-        if not self.summed:
-            sum_forces(self.engine.bodies, self.pairs, self.reactions)
-            self.summed = True
+    def work_since_looks(self) -> float:
+        """Return what contacts have done to their bodies since they were last looked at [J], as steady forces."""
+        bodies, pairs, plans, reactions = self.engine.bodies, self.pairs, self.plans, self.reactions
+        pair = np.flatnonzero((pairs.first >= 0) & (pairs.overlap > 0.0))
+        time = self.time - plans.last[pair]
+        first, second = pairs.first[pair], pairs.second[pair]
+        is_body = (second >= 0)[:, None]
+        apart = np.where(is_body, bodies.position[second], 0.0) - bodies.position[first]
+        # Bodies move by less than half a period between two looks, whichever image the last one took.
+        moved = folded(apart - plans.apart[pair], bodies.period)
+        spins = np.einsum("bij,bj->bi", bodies.inverse_inertia, bodies.angular_momentum)
+        work = (reactions.force[pair] * moved).sum(axis=1)
+        for torque, at, body, sign in (
+            (reactions.first_torque, 0, first, -1.0), (reactions.second_torque, 1, second, 1.0),
+        ):  # fmt: skip
+            mean = 0.5 * (plans.spin[pair, at] + spins[body])
+            turned = np.where(is_body | (at == 0), mean, 0.0) * time[:, None]
+            work += sign * (torque[pair] * turned).sum(axis=1)
+        # What waits has not moved, however long ago it was looked at.
+        waits = np.isinf(self.agenda.due[len(self.flight.time) + pair])
+        return float(work[~waits].sum())
 
     def slow_down(self, resolved_speed: float) -> None:
         """Take all steps of collisions at this speed [m/s] and above; of slower ones fewer, in proportion."""
@@ -154,15 +160,14 @@ class LocalEngine:
         """Hold what is slower than a limit [m/s] and beyond a reach [m] of the watched body, and let go the rest."""
         if limit > 0.0 or self.flight.held.any():
             hold_what_is_slow(
-                self.engine.bodies, self.pairs, self.reactions, self.flight, self.plans, self.agenda,
-                self.setting.watched, limit, reach, self.time, self.rules,
+                self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched,
+                limit, reach, self.time, self.rules,
             )  # fmt: skip
 
     def give_back(self) -> None:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
         self.hold(0.0, 0.0)
-        self.sum_forces()
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         # Slots were filled as pairs were met; sums of forces at common steps run in the order of the bodies.

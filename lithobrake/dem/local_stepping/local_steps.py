@@ -1,16 +1,17 @@
-"""Every contact at steps of its own: bodies fly freely between the instants at which contacts of theirs are due.
+"""Every contact at steps of its own: bodies move under steady forces between the instants at which contacts are due.
 
-A contact kicks its two bodies at its own instants, each time by its force over half the interval before and half the
-one after: momentum is kept to the last bit, and one contact alone is stepped as by the leapfrog of motion.py. Its
-intervals follow from its own collision, so that a slow one takes few steps while a fast one takes many beside it; what
-cannot touch yet is not looked at.
+A contact is looked at at its own instants, and its force is steady in between. At a look the force changes, and half of
+the change is counted for the time since the last one, so that one contact alone is stepped by velocity Verlet, which is
+the leapfrog of motion.py, and what is at rest stays at rest. Momentum is kept to the last bit. Intervals follow from
+the collision of each contact, so that a slow one takes few steps while a fast one takes many beside it; what cannot
+touch yet is not looked at.
 
-Source: [Lew-2003], asynchronous variational integrators.
+Source: [Lew-2003] for contacts at instants of their own.
 """
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, Reactions, Step, contact_radii
-from lithobrake.dem.bodies.vectors import minus, plus, put, row, scaled, times, way_between
+from lithobrake.dem.bodies.vectors import add, minus, plus, put, row, scaled, way_between
 from lithobrake.dem.local_stepping.agenda import (
     LONGER,
     SHORTER,
@@ -34,7 +35,7 @@ from lithobrake.dem.local_stepping.free_motion import (
     fly_to,
     spin_of,
 )
-from lithobrake.dem.local_stepping.holding import give_impulse, is_stirred, let_go
+from lithobrake.dem.local_stepping.holding import is_stirred, let_go
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, enter_all, search_neighbours
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
@@ -46,7 +47,7 @@ from lithobrake.vocabulary.array_types import Floats, Vector
 NO_ROOM = 3
 # Steps of motion for which what is near and does not touch is listed; narrowest part of the widest margin.
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
-# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py; kicks follow each other, so each must be stable alone.
+# Largest c dt + (w dt)^2 / 4 of one contact, see stability.py: several may push one body.
 STABLE_PART = 0.6
 
 
@@ -92,23 +93,18 @@ def note_motion(pair: int, bodies: Bodies, pairs: Pairs, plans: Plans) -> None:
 
 
 @kernel
-def predict(bodies: Bodies, body: int, force: Vector, torque: Vector, half: float) -> None:
-    """Write the velocities now, to which the kick at the last look has come but half: the rest is still to come.
-
-    Writes to bodies.
-    """
-    gain = scaled(half * bodies.inverse_mass[body], force)
-    put(bodies.velocity_predicted, body, plus(row(bodies.velocity, body), gain))
-    momentum = plus(row(bodies.angular_momentum, body), scaled(half, torque))
-    put(bodies.spin_predicted, body, times(bodies.inverse_inertia, body, momentum))
+def predict(bodies: Bodies, body: int) -> None:
+    """Write the velocities at this instant where contact laws read them. Writes to bodies."""
+    put(bodies.velocity_predicted, body, row(bodies.velocity, body))
+    put(bodies.spin_predicted, body, spin_of(bodies, body))
     put(bodies.half_spin, body, spin_of(bodies, body))
 
 
 @kernel
 def force_after(pair: int, system: System, step: Step, plans: Plans) -> float:
-    """Compute the contact force after a step in which others may have kicked the members; return its rate.
+    """Compute the contact force after a step in which others may have moved the members; return its rate.
 
-    A contact slips by the way of its bodies since the last look, whoever kicked them: taken from the velocities at hand
+    A contact slips by the way of its bodies since the last look, whatever moved them: taken from the velocities at hand
     alone, it would gain energy. Writes to system.
     """
     bodies, pairs = system.bodies, system.pairs
@@ -152,7 +148,7 @@ def next_step(
 
 @kernel
 def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: Rules) -> float:
-    """Compute a contact, kick its bodies, and return the interval [s] until it is due again; 0 where it has ended.
+    """Compute a contact, push its bodies, and return the interval [s] until it is due again; 0 where it has ended.
 
     passed: since the last look [s]. Writes to system and schedule.
     """
@@ -164,29 +160,54 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     if planned > 0.0:
         force, torque = row(reactions.force, pair), row(reactions.first_torque, pair)
         other_torque = row(reactions.second_torque, pair)
-    # A held body stands still, whatever kicks it has been given.
-    predict(bodies, first, force, torque, 0.0 if flight.held[first] else -0.5 * passed)
+    predict(bodies, first)
     if second >= 0:
-        predict(bodies, second, force, other_torque, 0.0 if flight.held[second] else 0.5 * passed)
+        predict(bodies, second)
     step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
     rate = force_after(pair, system, step, plans)
-    # The last kick reached over half of the interval that was planned; it may have been cut short.
-    cut = 0.5 * (passed - planned) if planned > 0.0 else 0.0
-    impulse, moment, other_moment = scaled(cut, force), scaled(cut, torque), scaled(cut, other_torque)
-    interval = 0.0
+    interval, change = 0.0, scaled(-1.0, force)
+    moment, other_moment = scaled(-1.0, torque), scaled(-1.0, other_torque)
     if pairs.overlap[pair] > 0.0:
         interval = next_step(pair, bodies, planes, pairs, laws, flight, plans, planned, rate, rules)
-        # What passed before a contact begins was flight: at most half of the coming interval counts of it.
-        time = 0.5 * (interval + (passed if planned > 0.0 else min(passed, interval)))
-        impulse = plus(impulse, scaled(time, row(reactions.force, pair)))
-        moment = plus(moment, scaled(time, row(reactions.first_torque, pair)))
-        other_moment = plus(other_moment, scaled(time, row(reactions.second_torque, pair)))
-    give_impulse(bodies, flight, first, -1.0, impulse, moment)
+        change = plus(change, row(reactions.force, pair))
+        moment = plus(moment, row(reactions.first_torque, pair))
+        other_moment = plus(other_moment, row(reactions.second_torque, pair))
+    # The force has pushed as it was at the last look: half of its change belongs to the time since.
+    # What passed before a contact begins was flight: at most half of the coming interval counts of it.
+    time = 0.5 * (passed if planned > 0.0 else min(passed, interval))
+    push(bodies, flight, first, -1.0, time, change, moment)
+    count_contact(bodies, flight, first, planned, interval)
     if second >= 0:
-        give_impulse(bodies, flight, second, 1.0, impulse, other_moment)
+        push(bodies, flight, second, 1.0, time, change, other_moment)
+        count_contact(bodies, flight, second, planned, interval)
     plans.interval[pair] = interval
     note_motion(pair, bodies, pairs, plans)
     return interval
+
+
+@kernel
+def push(bodies: Bodies, flight: Flight, body: int, sign: float, time: float, force: Vector, torque: Vector) -> None:
+    """Change the force and torque on a body, from a time [s] ago on in the mean. Writes to bodies."""
+    add(bodies.force, body, sign, force)
+    add(bodies.torque, body, sign, torque)
+    if not flight.held[body]:
+        add(bodies.velocity, body, sign * time * bodies.inverse_mass[body], force)
+        add(bodies.angular_momentum, body, sign * time, torque)
+
+
+@kernel
+def count_contact(bodies: Bodies, flight: Flight, body: int, planned: float, interval: float) -> None:
+    """Count a contact that has begun or ended; what touches nothing feels exactly nothing.
+
+    Writes to bodies and flight.
+    """
+    if planned == 0.0 and interval > 0.0:
+        flight.touching[body] += 1
+    elif planned > 0.0 and interval == 0.0:
+        flight.touching[body] -= 1
+        if flight.touching[body] == 0:
+            put(bodies.force, body, (0.0, 0.0, 0.0))
+            put(bodies.torque, body, (0.0, 0.0, 0.0))
 
 
 @kernel
@@ -195,7 +216,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
 
     Writes to system and schedule.
     """
-    bodies, cores, planes, pairs, _, scratch, reactions = system
+    bodies, cores, planes, pairs, _, scratch, _ = system
     flight, plans, agenda, _ = schedule
     for member in (pairs.first[pair], pairs.second[pair]):
         if member >= 0:
@@ -225,11 +246,11 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
         if member < 0:
             continue
         if flight.held[member]:
-            if is_stirred(bodies, flight, member):
-                let_go(bodies, pairs, reactions, flight, plans, agenda, member, now, rules)
+            if is_stirred(pair, bodies, pairs, flight, plans, member, rules):
+                let_go(bodies, pairs, flight, plans, agenda, member, now, rules)
                 # It turns from now on, as the next look at this pair has to know.
                 note_motion(pair, bodies, pairs, plans)
-        elif (touched and interval == 0.0) or has_changed(bodies, flight, member):
+        elif (touched and interval == 0.0) or has_changed(bodies, flight, member, now, rules):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
     return True
 

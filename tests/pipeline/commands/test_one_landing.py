@@ -189,13 +189,17 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
     assert [int(line[0]) for line in lines] == list(range(len(found.landings)))
     for line, made in zip(lines, found.landings, strict=True):
         assert float(line[2]) == pytest.approx(made.values["impact.speed"], rel=5e-3)
-    # A lander that came down again has its way over the ground: on the bed, and in a flight that is highest in between,
-    # so that it is nowhere faster than at the faster of its ends.
+    # A lander that came down again has its way over the ground, as on a ball: on the bed, and in a flight that is highest
+    # in between, so that it is nowhere faster than at the faster of its ends.
+    shape = found.journeys.landers.body.shape
     rows = zip(pairwise(lines), pairwise(touchdowns(found)), found.landings[:-1], strict=True)
     for (line, after), (one, another), made in rows:
+        here, there = (shape.surface_point(row["latitude_deg"], row["longitude_deg"]) for row in (one, another))
+        angle = math.acos(here @ there / np.linalg.norm(here) / np.linalg.norm(there))
+        assert float(line[6]) == pytest.approx(track.radius * angle, rel=6e-3)
         on_bed = math.hypot(made.outcome.outputs["displacement_x"], made.outcome.outputs["displacement_y"])
         fastest = max(float(line[4]), float(after[2]))
-        assert 0.0 < float(line[6]) < on_bed + fastest * (another["begin_s"] - one["end_s"])
+        assert 0.0 < np.linalg.norm(there - here) < on_bed + fastest * (another["begin_s"] - one["end_s"])
     assert track.end == JourneyEnd.AT_REST
     assert lines[-1][4] == "at rest"
     assert f"in {len(lines)} touchdowns, at latitude {track.end_place[0]:.3f}" in track.end_words
