@@ -1,6 +1,6 @@
 """First touchdowns of a study to rest: what they cost, and how they end, by the engine of one checkout and of another.
 
-    python benchmarks/first_touchdowns.py scenarios/quick.toml BED_FOLDER --way NAME --numbers 0 96 --out FILE
+    python benchmarks/first_touchdowns.py scenarios/one_ground.toml BED_FOLDER --way NAME --numbers 0 96 --out FILE
 
 BED_FOLDER holds the beds of the study, bed_0.h5 and so on; poured by one engine they serve for both. --numbers: the
 first touchdown, and the one before which it ends, which may be beyond those of the study. FILE_NAME_0.csv, with the

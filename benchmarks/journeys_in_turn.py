@@ -1,7 +1,7 @@
 """The same journeys by two checkouts of the project: what they cost, and whether they end alike.
 
     git worktree add OLD fb506b9
-    python benchmarks/journeys_in_turn.py OLD . --work FOLDER --study scenarios/quick.toml --out FILE
+    python benchmarks/journeys_in_turn.py OLD . --work FOLDER --study scenarios/one_ground.toml --out FILE
 
 Either checkout makes the study in a folder of its own below --work, where one that was stopped goes on and one that is
 complete is only read; with --run they are first run, one after the other. FILE.csv gets a row a journey and checkout.

@@ -1,6 +1,6 @@
 """Where the time of touchdowns that go on to rest is spent: in low hops, in contact, in waiting for rest.
 
-    lithobrake run scenarios/quick.toml --out FOLDER
+    lithobrake run scenarios/one_ground.toml --out FOLDER
     python benchmarks/touchdown_phases.py FOLDER --every 5 --out FILE.json
 
 Lands again every so many of a study's journeys, with the code that made them. The CPU time between two looks at the

@@ -48,7 +48,7 @@ ROOMS = {
         *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "statements": (
-        *("estimates", "labels", "ends", "captions", "touchdowns", "journeys", "expansion", "limits"),
+        *("estimates", "labels", "ends", "captions", "touchdowns", "journeys", "grounds", "expansion", "limits"),
         *("comparison", "sites", "notes", "answers"),
     ),
     "report": ("content", "tables", "figures", "live", "pages", "study_plots", "plotted_study", "reports"),

@@ -2,8 +2,8 @@
 
     python validation/emulated_journeys.py [--work FOLDER] [--cases NAME ...]
 
-Each case changes some keys of scenarios/quick.toml: lander, soil, arrival, site. It has 32 journeys on 8 beds, in a
-folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
+Each case changes some keys of scenarios/one_ground.toml: lander, soil, arrival, site. It has 32 journeys on 8 beds,
+in a folder below --work, where a case that was stopped goes on. Writes emulated_journeys.json, a row a finished case.
 """
 
 import sys
@@ -22,7 +22,7 @@ JOURNEYS, BEDS = 32, 8
 
 
 CASES: dict[str, dict[str, Any]] = {
-    "as the quick study": {},
+    "on one ground": {},
     "8 to 12 cm/s": {"delivery": {"speed": between(0.08, 0.12)}},
     "12 to 20 cm/s": {"delivery": {"speed": between(0.12, 0.20)}},
     "stiff soil": {
@@ -82,7 +82,7 @@ def main() -> None:
     for number, (name, changes) in enumerate(CASES.items()):
         if name in given.cases:
             folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
-            tables = study_tables(SCENARIOS / "quick.toml", few, changes, seed=100 + number)
+            tables = study_tables(SCENARIOS / "one_ground.toml", few, changes, seed=100 + number)
             found[name] = compared(lithobrake.run(tables, folder, report=False))
             print(name, found[name], flush=True)
             in_order = {one: found[one] for one in CASES if one in found}

@@ -2,8 +2,9 @@
 
     python validation/journey_breadth.py --shapes FOLDER [--work FOLDER] [--cases NAME ...]
 
-FOLDER holds bennu_2692.obj and itokawa_5430.obj. Each case changes some keys of scenarios/quick.toml, on 4 beds with 8
-journeys, in a folder below --work, where a case that was stopped goes on. Writes journey_breadth.json, a row a case.
+FOLDER holds bennu_2692.obj and itokawa_5430.obj. Each case changes some keys of scenarios/one_ground.toml, on 4 beds
+with 8 journeys, in a folder below --work, where a case that was stopped goes on. Writes journey_breadth.json, a row a
+case.
 """
 
 import sys
@@ -88,7 +89,7 @@ def main() -> None:
         if given.cases and name not in given.cases:
             continue
         folder = given.work / "".join(letter if letter.isalnum() else "_" for letter in name)
-        tables = study_tables(SCENARIOS / "quick.toml", few, changes)
+        tables = study_tables(SCENARIOS / "one_ground.toml", few, changes)
         found[name] = ended(lithobrake.run(tables, folder, report=False))
         print(name, found[name], flush=True)
     document = {**origin("validation/journey_breadth.py --shapes FOLDER"), "journeys": JOURNEYS, "cases": found}

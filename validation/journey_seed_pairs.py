@@ -3,10 +3,10 @@
     python validation/journey_seed_pairs.py [--work FOLDER] [--settings 10]
     python validation/journey_seed_pairs.py --page    the tables of interval_coverage.md, from what was made
 
-Each setting changes some keys of scenarios/quick.toml, with 32 journeys on 8 beds of 110 grains. No two studies have a
-seed in common, so none has a bed of another. journey_seed_pairs.csv gets a row a study as it ends; a study that stands
-in it is not made again, and one that was stopped goes on in its folder below --work. Then the .json beside it counts
-the pairs that agree: those where the interval of the difference holds 0.
+Each setting changes some keys of scenarios/one_ground.toml, with 32 journeys on 8 beds of 110 grains. No two studies
+have a seed in common, so none has a bed of another. journey_seed_pairs.csv gets a row a study as it ends; a study
+that stands in it is not made again, and one that was stopped goes on in its folder below --work. Then the .json
+beside it counts the pairs that agree: those where the interval of the difference holds 0.
 """
 
 import math
@@ -28,7 +28,7 @@ from page import table
 
 TABLE = Path(__file__).with_suffix(".csv")
 JOURNEYS, BEDS, FIRST_SEED = 32, 8, 201
-# A little wider than the bed of the quick study: among the grains of twenty studies some are longer than in one.
+# A little wider than the bed of one ground: among the grains of twenty studies some are longer than in one.
 BED = {"bed_count": BEDS, "grain_count": 110, "width": [0.6, 0.6]}
 WORDS = {
     "at_rest": "fraction at rest", "time_s": "time to rest, median", "contacts": "contacts, median",
@@ -60,7 +60,7 @@ SETTINGS: dict[str, dict[str, Row]] = {
         **arrival((0.08, 0.2), (0.0, 70.0), latitude_deg=0.0, longitude_deg=90.0), "grain": SOFT,
     },
     "75 deg south": {**arrival((0.08, 0.2), (0.0, 70.0), latitude_deg=-75.0, longitude_deg=20.0), "grain": SOFT},
-    "the quick study": {},
+    "one ground": {},
 }  # fmt: skip
 
 
@@ -96,7 +96,7 @@ def make(work: Path, setting_count: int) -> None:
             if (name, seed) in done:
                 continue
             few = {"journey": {"count": JOURNEYS}, "bed": BED}
-            tables = study_tables(SCENARIOS / "quick.toml", few, changes, seed=seed)
+            tables = study_tables(SCENARIOS / "one_ground.toml", few, changes, seed=seed)
             results = lithobrake.run(tables, work / str(seed), workers=1, report=False)
             row = {"setting": name, "seed": seed, "journeys": JOURNEYS, "beds": BEDS, **found(results)}
             add_row(TABLE, row, digits=5)

@@ -66,7 +66,7 @@ def soil(lower: float, upper: float, **more: Any) -> Row:
 
 
 BALL = {"shape": "sphere", "edges": None, "diameter": 0.15, "mass": 3.0}
-# Keys that differ from scenarios/quick.toml or scenarios/first_bounce.toml; one that is None is left out.
+# Keys that differ from scenarios/one_ground.toml or scenarios/first_bounce.toml; one that is None is left out.
 JOURNEYS: dict[str, dict[str, Row]] = {
     "ball, 8 to 25 cm/s": {
         "delivery": {"speed": between(0.08, 0.25), "incidence_deg": between(0.0, 60.0)},
@@ -100,9 +100,9 @@ JOURNEY_COUNT, LANDING_COUNT, FIRST_SEED = 60, 240, 501
 def tables(name: str, seed: int) -> Row:
     follows = name in JOURNEYS
     count = {"journey": {"count": JOURNEY_COUNT}} if follows else {"design": {"run_count": LANDING_COUNT}}
-    # A little wider than the bed of the quick study, so that no grain of so many beds is too long for it.
+    # A little wider than the bed of one ground, so that no grain of so many beds is too long for it.
     bed = {"bed": {"bed_count": None, "grain_count": 120, "width": [0.62, 0.62]}}
-    path = SCENARIOS / ("quick.toml" if follows else "first_bounce.toml")
+    path = SCENARIOS / ("one_ground.toml" if follows else "first_bounce.toml")
     return study_tables(path, count, bed, (JOURNEYS | LANDINGS)[name], seed=seed)
 
 
@@ -175,7 +175,7 @@ def after(study: Study, values: np.ndarray, bed: np.ndarray, count: int) -> Half
 
 def quick(journeys: int, beds: int) -> Study:
     changes = {"journey": {"count": journeys}, "bed": {"bed_count": beds}}
-    return check_tables(study_tables(SCENARIOS / "quick.toml", changes), SCENARIOS)
+    return check_tables(study_tables(SCENARIOS / "one_ground.toml", changes), SCENARIOS)
 
 
 def row_of(group: str, name: str, study: Study, share: float, half_width: float, runs: Row | None = None) -> Row:

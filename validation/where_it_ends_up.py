@@ -1,9 +1,9 @@
-"""Where does the CubeSat of the quick study end up: after the first bounce and at rest, on soil and on hard ground?
+"""Where does the CubeSat of one ground end up: after the first bounce and at rest, on soil and on hard ground?
 
     python validation/where_it_ends_up.py FOLDER
 
-FOLDER: of the finished study, made by `lithobrake run scenarios/quick.toml --out FOLDER`. The same deliveries on hard
-ground with restitutions of hard_ground.py are followed in a folder of their own, within seconds. Writes
+FOLDER: of the finished study, made by `lithobrake run scenarios/one_ground.toml --out FOLDER`. The same deliveries on
+hard ground with restitutions of hard_ground.py are followed in a folder of their own, within seconds. Writes
 where_it_ends_up.json and the figure of docs/where_it_ends_up.md, and prints its table.
 """
 
@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import command_line, origin, write_document
 from page import two_digits
 
-SCENARIO = Path(__file__).parents[1] / "scenarios" / "quick.toml"
+SCENARIO = Path(__file__).parents[1] / "scenarios" / "one_ground.toml"
 RESTITUTIONS = (0.1, 0.3, 0.6, 0.9)
 FIGURE = Path(__file__).parents[1] / "docs" / "where_it_ends_up.png"
 REGION = ("share", "area_m2", "largest_extent_m")

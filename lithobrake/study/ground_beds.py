@@ -32,7 +32,7 @@ ROUNDING = 1e-6
 DRAWN = ("kind", "size", "ratio")
 
 
-class Ground(NamedTuple):
+class BedGround(NamedTuple):
     """The ground of a bed. number: of the kind, from 0, in the order of the file; size, mean diameter of its grains
     [m]; ratio: of the largest to the smallest."""
 
@@ -42,7 +42,7 @@ class Ground(NamedTuple):
     ratio: float
 
 
-def grounds(study: Study) -> list[Ground]:
+def grounds(study: Study) -> list[BedGround]:
     """The ground of each bed, by its number; another number of beds changes none. Empty without [ground]."""
     if study.ground is None:
         return []
@@ -53,7 +53,7 @@ def grounds(study: Study) -> list[Ground]:
     return [_drawn(study, *point) for point in points.tolist()]
 
 
-def _drawn(study: Study, kind: float, size: float, ratio: float) -> Ground:
+def _drawn(study: Study, kind: float, size: float, ratio: float) -> BedGround:
     """The ground that three numbers between 0 and 1 draw."""
     assert study.ground is not None
     names = list(study.ground.kind)
@@ -61,7 +61,7 @@ def _drawn(study: Study, kind: float, size: float, ratio: float) -> Ground:
     number = min(int(np.searchsorted(below, kind, side="right")), len(names) - 1)
     one = study.ground.kind[names[number]]
     drawn = max(_at(grain_size(study, one), size), finest(study))
-    return Ground(names[number], number, drawn, _at(one.size_ratio, ratio))
+    return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio))
 
 
 def _at(value: Scalar, part: float) -> float:
@@ -101,7 +101,7 @@ def on_ground(study: Study, bed: int) -> Study:
     return study if study.ground is None else of_ground(study, grounds(study)[bed])
 
 
-def of_ground(study: Study, ground: Ground) -> Study:
+def of_ground(study: Study, ground: BedGround) -> Study:
     assert study.ground is not None
     kind = study.ground.kind[ground.kind]
     own = {} if kind.grain is None else kind.grain.values()
@@ -116,10 +116,10 @@ def typical(study: Study) -> Study:
     name = max(kinds, key=lambda one: kinds[one].weight)
     number, kind = list(kinds).index(name), kinds[name]
     size = max(median(grain_size(study, kind)), finest(study))
-    return of_ground(study, Ground(name, number, size, median(kind.size_ratio)))
+    return of_ground(study, BedGround(name, number, size, median(kind.size_ratio)))
 
 
-def _bed(study: Study, kind: GroundKind, ground: Ground) -> BedSection:
+def _bed(study: Study, kind: GroundKind, ground: BedGround) -> BedSection:
     """The bed that grains ask for: as wide as lander and grains need before the ground repeats, and as deep."""
     smallest = 2.0 * ground.size / (1.0 + ground.ratio)
     sizes: Constant | Between = Constant(distribution="constant", value=ground.size)
@@ -184,7 +184,7 @@ def _kind_problems(study: Study, name: str, kind: GroundKind) -> Iterator[str]:
             "m, the largest diameter of the lander; raise it, or write rock = false"
         )
     for size in sorted({smallest, most}):
-        ground = Ground(name, 0, size, usual_reach(kind.size_ratio)[1])
+        ground = BedGround(name, 0, size, usual_reach(kind.size_ratio)[1])
         found = of_ground(study, ground)
         if found.bed.grain_count > MOST_GRAINS:
             yield (

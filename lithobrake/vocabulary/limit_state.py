@@ -14,6 +14,8 @@ from lithobrake.vocabulary.outcomes import FATES
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import TOUCHDOWN
 
+# How like a name has to be to be meant: a place, say, is no displacement.
+ALIKE = 0.6
 # A condition that a person wrote; a longer one would overflow the parser.
 LONGEST = 500
 SIGNS: dict[type, str] = {ast.Gt: ">", ast.GtE: ">=", ast.Lt: "<", ast.LtE: "<="}
@@ -113,7 +115,7 @@ def _condition(node: ast.expr, text: str) -> Condition:
                 raise NoLimitStateError(f"{name} is a number: compare it, as in {name} > 0.1")
             if name not in FATES:
                 raise NoLimitStateError(
-                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN))}; it describes one touchdown"
+                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN), ALIKE)}; it describes one touchdown"
                 )
             return Word(name, True)
     words = ast.get_source_segment(text, node)
@@ -147,7 +149,7 @@ def _side(node: ast.expr, text: str) -> str | float:
         if node.id in FATES:
             raise NoLimitStateError(f"{node.id} is true or false, and no number: write {node.id}, or not {node.id}")
         if node.id not in TOUCHDOWN:
-            near = closest(node.id, TOUCHDOWN)
+            near = closest(node.id, TOUCHDOWN, ALIKE)
             raise NoLimitStateError(f"{node.id} is no output{near}; of a touchdown there are {', '.join(TOUCHDOWN)}")
         return node.id
     number = _number(node)

@@ -55,10 +55,10 @@ def one_line(text: str, at_most: int) -> str:
     return line if len(line) <= at_most else f"{line[: at_most - 3]}..."
 
 
-def closest(word: object, known: Iterable[str]) -> str:
+def closest(word: object, known: Iterable[str], likeness: float = 0.5) -> str:
     """Ask back with the nearest known word, all of which are of small letters, or say nothing when none is near."""
     text = word if isinstance(word, str) else show(word)
-    near = difflib.get_close_matches(text.lower(), list(known), n=1, cutoff=0.6)
+    near = difflib.get_close_matches(text.lower(), list(known), n=1, cutoff=likeness)
     return f"; did you mean {near[0]}?" if near else ""
 
 

@@ -330,7 +330,7 @@ def test_scripts_that_are_named_exist() -> None:
 
 # Tables whose keys are names of the author's own.
 AUTHORS_NAMES = ("solver.inputs", "limit_states", "aim.grid")
-NAMED_TABLES = ("lander.part", "soil")
+NAMED_TABLES = ("lander.part", "soil", "ground.kind")
 
 
 def key_paths(tables: dict[str, object], above: str = "") -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
 from lithobrake.study import Study
-from lithobrake.study.ground_beds import Ground, finer_share, finest
+from lithobrake.study.ground_beds import BedGround, finer_share, finest
 from lithobrake.vocabulary.number_words import MEDIAN
 
 # Beds of fewer grounds show no curve.
@@ -65,7 +65,7 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
     )
 
 
-def _bed(ground: Ground, table: JourneyTable) -> GroundBed:
+def _bed(ground: BedGround, table: JourneyTable) -> GroundBed:
     """The journeys on a bed of this ground."""
     rests = table.rests
     time = float(np.median(table.numbers["time_s"][rests])) if rests.any() else None

@@ -12,7 +12,7 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.arrivals import STEEPEST_DEG, Interval, place_region
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
-from lithobrake.study.ground_beds import Ground, grounds, of_ground
+from lithobrake.study.ground_beds import BedGround, grounds, of_ground
 from lithobrake.study.quantity import Uncertain
 from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, PLACE, Row
 
@@ -31,7 +31,7 @@ class BedGrounds:
     inputs: "Mapping[str, Distribution]"
 
     @cached_property
-    def each(self) -> list[Ground]:
+    def each(self) -> list[BedGround]:
         """The ground of each bed, by its number; empty where all beds have one."""
         return grounds(self.site.study)
 

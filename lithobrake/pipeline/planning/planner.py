@@ -91,7 +91,6 @@ def plan_of(
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_time.expected_bytes(largest, runs[-1], soil), _free(folder.path)
-    room = _no_room(sum(sizes.values()), free) if stale else []
     return Plan(
         study=name,
         folder=str(folder.path),
@@ -105,7 +104,7 @@ def plan_of(
         basis=expected_time.basis(made, soil, ended),
         bytes=sizes,
         free_bytes=free,
-        warnings=(*room, *study_warnings(design, soil)),
+        warnings=(*(_no_room(sum(sizes.values()), free) if stale else ()), *study_warnings(design, soil)),
         site_slope_deg=design.site.slope_deg,
         runs_a_bed=runs_a_bed(study, soil, ended),
         grains=planned_grains(study),

@@ -67,7 +67,7 @@ def soft(**changes: dict[str, Any]) -> Study:
 
 
 def journeys(roughness_deg: float) -> Study:
-    tables = with_keys(load_tables(SCENARIOS / "quick.toml"), {"site": {"roughness_deg": roughness_deg}})
+    tables = with_keys(load_tables(SCENARIOS / "one_ground.toml"), {"site": {"roughness_deg": roughness_deg}})
     return check_tables(tables, SCENARIOS)
 
 
@@ -178,7 +178,7 @@ def test_a_folder_that_a_run_refuses_is_refused_by_its_plan(tmp_path: Path) -> N
 
 def test_journeys_that_go_on_are_to_be_made_as_those_that_have_not_begun(tmp_path: Path) -> None:
     """Of nine one has failed, one has ended at rest, one aloft; four go on after one touchdown, two have none."""
-    few = with_keys(load_tables(SCENARIOS / "quick.toml"), {"journey": {"count": 9}, "bed": {"bed_count": 9}})
+    few = with_keys(load_tables(SCENARIOS / "one_ground.toml"), {"journey": {"count": 9}, "bed": {"bed_count": 9}})
     study = with_site_gravity(check_tables(few, SCENARIOS))
     design, folder = DrawnDesign(study), StudyFolder.only_read(tmp_path)
     later = [(f"later {one}", {**design.rows[one], "touchdown": 1.0, "impact.speed": 0.01}, 1, 0) for one in range(4)]
@@ -379,7 +379,9 @@ def test_a_plan_says_the_half_width_to_expect_and_what_that_stands_on(tmp_path: 
 
 
 def test_journeys_are_promised_a_half_width_for_each_fraction_at_rest(tmp_path: Path) -> None:
-    plan = plan_for(with_site_gravity(read_study(SCENARIOS / "quick.toml")), StudyFolder.only_read(tmp_path / "out"), 2)
+    plan = plan_for(
+        with_site_gravity(read_study(SCENARIOS / "one_ground.toml")), StudyFolder.only_read(tmp_path / "out"), 2
+    )
     found, beds = plan.half_width, plan.runs_a_bed
     assert list(found.by_fraction) == ["100 %", "95 %", "80 %", "50 %"]
     # All at rest: the limit of an event that no bed of 24 has met; half of them: t(23) at 0.95 is 1.714.
