@@ -4,7 +4,7 @@ import contextlib
 import shlex
 import shutil
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -180,10 +180,21 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
         # where the schema has nothing to refuse.
         study = Study.model_validate(_absolute(tables, folder)).with_function(function).of_file(name)
     except ValidationError as error:
-        raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
+        raise StudyError([f"{name}: {text}" for text in sentences(_once(error.errors()), known_keys())]) from error
     if found := [study.said(text) for text in problems(study)]:
         raise StudyError(found)
     return study
+
+
+def _once(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The errors of the schema without those of a key of [delivery] in the table that it stands for."""
+    told = [(error["loc"], error.get("input")) for error in errors]
+    return [
+        error
+        for error in errors
+        if error["loc"][0] not in ("impact", "site")
+        or (("delivery", *error["loc"][1:]), error.get("input")) not in told
+    ]
 
 
 def known_keys() -> dict[str, tuple[str, ...]]:

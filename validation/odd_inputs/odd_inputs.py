@@ -1,0 +1,74 @@
+"""Odd inputs, each made by chance from a seed: studies, files and options; what becomes of them is counted by class.
+
+right: it is done. refused: a sentence says what to do. silent: what can never be valid is taken, a number of the result
+is not finite, or a warning of NumPy reaches the user. late: `plan` accepts it, and the study ends because of it.
+traceback: an error without a sentence. endless: no end within a minute. The last four should be none: each such case is
+printed, and makes the exit code 1. The counts go to odd_inputs.json beside this script.
+
+    python validation/odd_inputs/odd_inputs.py --studies 700 --files 200 --options 200 --seed 1
+"""
+
+import os
+import random
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+# Threads of linear algebra on arrays of this size would wait for one another.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "benchmarks")]
+from harness import Row, command_line, origin, revision, write_document
+from judge import FAULTS, LONGEST, REFUSED, RIGHT, Case, judged
+from odd_files import file_cases
+from odd_options import option_cases
+from odd_studies import study_cases
+
+RESULTS = Path(__file__).with_suffix(".json")
+
+
+def cases(counts: dict[str, int], seed: int, folder: Path) -> Iterator[tuple[str, Case]]:
+    """The cases of a seed by what they are of; folder: for finished studies, whose files and folders are made odd."""
+    makers = {
+        "studies": study_cases,
+        "files": lambda chance, count: file_cases(chance, count, folder),
+        "options": lambda chance, count: option_cases(chance, count, folder),
+    }
+    for name, make in makers.items():
+        if counts[name]:
+            yield from ((name, case) for case in make(random.Random(f"{seed} {name}"), counts[name]))
+
+
+def counted(counts: dict[str, int], seed: int, longest: float = LONGEST) -> Row:
+    """Judge the cases of a seed: how many are in each class, by what they are of and by kind; prints the faults."""
+    by_source: dict[str, Counter[str]] = {}
+    by_kind: dict[str, Counter[str]] = {}
+    with tempfile.TemporaryDirectory() as studies:
+        for number, (source, case) in enumerate(cases(counts, seed, Path(studies)), start=1):
+            with tempfile.TemporaryDirectory() as folder:
+                found = judged(case, Path(folder), longest)
+            by_source.setdefault(source, Counter())[found.name] += 1
+            by_kind.setdefault(f"{source}, {case.kind}", Counter())[found.name] += 1
+            if found.name in FAULTS:
+                print(f"{found.name}: {source} {number}, {case.kind}: {case.words}\n  {found.words}", flush=True)
+    whole = sum(by_source.values(), Counter[str]())
+    classes = {name: whole[name] for name in (RIGHT, REFUSED, *FAULTS)}
+    return {"cases": whole.total(), "classes": classes, "sources": by_source, "kinds": dict(sorted(by_kind.items()))}
+
+
+def main() -> int:
+    asked = command_line(__doc__, studies=700, files=200, options=200, seed=1, longest=float(LONGEST))
+    given = asked.parse_args()
+    start = time.process_time()
+    counts = {name: getattr(given, name) for name in ("studies", "files", "options")}
+    found = counted(counts, given.seed, given.longest)
+    print(", ".join(f"{count} {name}" for name, count in found["classes"].items()))
+    made = {"seed": given.seed, "cpu_s": round(time.process_time() - start), "commit": revision()}
+    write_document(RESULTS, origin(" ".join(["validation/odd_inputs/odd_inputs.py", *sys.argv[1:]])) | made | found)
+    return int(any(found["classes"][name] for name in FAULTS))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
