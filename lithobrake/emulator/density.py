@@ -205,7 +205,13 @@ def observed_density(
     blur = slope * [errors.get(name, 0.0) for name in observed] / scale
     left = standard - bed.mean @ kernels.root[places].T
     chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
-    found = kernels.log_density(places, left, blur, chances, bed.spread)
+    try:
+        found = kernels.log_density(places, left, blur, chances, bed.spread)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            f"{', '.join(observed)} have no density together: in the runs some of them follow from the others to the "
+            "last digit; leave such outputs out, or give each an error"
+        ) from error
     steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
