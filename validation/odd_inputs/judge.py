@@ -15,8 +15,8 @@ from typing import Any
 # What a user may meet; those of FAULTS should never be.
 RIGHT, REFUSED = "right", "refused"
 SILENT, LATE, TRACEBACK, ENDLESS = FAULTS = ("silent", "late", "traceback", "endless")
-# Longest refusal or plan, and longest run of a few landers [s].
-LONGEST = 60
+# Longest refusal, plan, or run of a few landers, on a machine that has other work [s].
+LONGEST = 180
 
 
 class TooLong(BaseException):

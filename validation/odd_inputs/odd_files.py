@@ -20,6 +20,7 @@ READ = {
 }  # fmt: skip
 # Of these what is left of a file that was cut within its last lines is whole again, and says nothing of it.
 OPEN_ENDED = ("states.csv", "states.oem", "facets.txt", "orbiter.csv", "program.py", "study.toml", "body.tpc")
+STATES = ("states.csv", "states.oem", "orbiter.csv")
 WAYS = ("cut", "damaged", "swapped", "empty", "folder", "mark", "utf-16", "crlf", "twice", "zeros")
 # Pages, and what programs were given and wrote: nothing is read from them again.
 UNREAD = ("report", "solver")
@@ -49,7 +50,9 @@ def file_cases(chance: random.Random, count: int, folder: Path) -> Iterator[Case
 
 def _of_study(chance: random.Random, way: str, name: str) -> Case:
     seed = chance.getrandbits(32)
-    others = [other for other in READ if Path(other).suffix != Path(name).suffix and other != "program.py"]
+    # States are read from either of their formats.
+    taken = {Path(name).suffix, ".py", *((".csv", ".oem") if name in STATES else ())}
+    others = [other for other in READ if Path(other).suffix not in taken]
     other = chance.choice(others)
 
     def plan(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 right: it is done. refused: a sentence says what to do. silent: what can never be valid is taken, a number of the result
 is not finite, or a warning of NumPy reaches the user. late: `plan` accepts it, and the study ends because of it.
-traceback: an error without a sentence. endless: no end within a minute. The last four should be none: each such case is
+traceback: an error without a sentence. endless: no end within three minutes. The last four should be none: each such case is
 printed, and makes the exit code 1. The counts go to odd_inputs.json beside this script.
 
     python validation/odd_inputs/odd_inputs.py --studies 700 --files 200 --options 200 --seed 1
