@@ -41,13 +41,16 @@ def file_cases(chance: random.Random, count: int, folder: Path) -> Iterator[Case
         if path.is_file() and path.suffix != ".lock" and path.relative_to(folder / study).parts[0] not in UNREAD
     ]
     said = {study: _said(folder, study) for study in (FIRST, JOURNEYS)}
-    for number in range(count):
-        way = chance.choice(WAYS)
-        if number % 2:
-            yield _of_study(chance, way, chance.choice(list(READ)))
-        else:
-            study, path = chance.choice(own)
-            yield _of_folder(chance, way, finished, study, path, said[study])
+    yield from input_cases(chance, count // 2)
+    for _ in range(count - count // 2):
+        study, path = chance.choice(own)
+        yield _of_folder(chance, chance.choice(WAYS), finished, study, path, said[study])
+
+
+def input_cases(chance: random.Random, count: int) -> Iterator[Case]:
+    """So many studies of which one of the files that they read is odd."""
+    for _ in range(count):
+        yield _of_study(chance, chance.choice(WAYS), chance.choice(list(READ)))
 
 
 def _of_study(chance: random.Random, way: str, name: str) -> Case:
