@@ -108,7 +108,9 @@ def refuse(value: object, allowed: object, remedy: str) -> PydanticCustomError:
 def _refuse_size(value: object, allowed: object, *numbers: float) -> None:
     """Refuse a value with a number that arithmetic cannot carry; allowed: what the value may be."""
     if any(abs(one) > LARGEST or 0.0 < abs(one) < LEAST for one in numbers):
-        raise refuse(value, f"{allowed}, and 0 or from {LEAST:g} to {LARGEST:g} in size", "write a number of such a size")
+        raise refuse(
+            value, f"{allowed}, and 0 or from {LEAST:g} to {LARGEST:g} in size", "write a number of such a size"
+        )
 
 
 @dataclass(frozen=True)

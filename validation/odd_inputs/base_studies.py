@@ -63,7 +63,8 @@ ADDED: dict[str, tuple[str, Tables]] = {
     "correlated": ("quick", {"delivery": {"correlations": [["north_error", "east_error", 0.5]],
                                           "orientation": [1.0, 0.0, 0.0, 0.0], "pointing_error_deg": 10.0}}),
     "sized": ("quick", {"bed": {
-        "diameter": {"distribution": "power_law", "value": None, "cumulative_exponent": 2.6, "lower": 0.08, "upper": 0.11},
+        "diameter": {"distribution": "power_law", "value": None, "cumulative_exponent": 2.6, "lower": 0.08,
+                     "upper": 0.11},
         "boulders": {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1, "cover": [-0.1, 0.0]},
         "width": [1.2, 1.2], "grain_count": 600}}),
     "asked": ("first_bounce", {
@@ -81,7 +82,8 @@ ADDED: dict[str, tuple[str, Tables]] = {
                       "kept_outputs": ["speed_out"]}}),
     "programmed": ("first_bounce", {"solver": {"command": "python3 -S program.py", "answer": "outputs.json",
                                                "templates": ["program.py"], "inputs": {"plate_tilt": 1.0}}}),
-    "options": ("aim", {"aim": {"grid": {"delivery.latitude_deg": None}, "sides": ["z"], "within": ["distance_p95 < 100", "at_rest > 0.5"], "lander_count": 2},
+    "options": ("aim", {"aim": {"grid": {"delivery.latitude_deg": None}, "sides": ["z"],
+                                "within": ["distance_p95 < 100", "at_rest > 0.5"], "lander_count": 2},
                         "contact": {"steps_per_contact": 25.0, "resolved_speed": 0.3, "held_speed": 0.03},
                         "landing": {"time_limit": 600.0}}),
 }  # fmt: skip
@@ -156,7 +158,9 @@ def write_files(folder: Path) -> None:
     (folder / "states.oem").write_text(f"CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2027-01-01T00:00:00\n{meta}"
                                        + "".join(states))  # fmt: skip
     turn = np.linspace(0.0, 2.0 * np.pi, 12)
-    orbiter = [f"{1000.0 * row},{2000 * np.cos(angle)},{2000 * np.sin(angle)},0,0,0,0" for row, angle in enumerate(turn)]
+    orbiter = [
+        f"{1000.0 * row},{2000 * np.cos(angle)},{2000 * np.sin(angle)},0,0,0,0" for row, angle in enumerate(turn)
+    ]
     (folder / "orbiter.csv").write_text("\n".join([titles, *orbiter]) + "\n")
     (folder / "body.tpc").write_text(
         "KPL/PCK\n\\begindata\nBODY920065803_POLE_RA = ( 69.327 0. 0. )\nBODY920065803_POLE_DEC = ( -72.725 0. 0. )\n"

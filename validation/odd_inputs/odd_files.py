@@ -1,4 +1,4 @@
-"""Odd files: what a study reads, and what its folder holds, cut short, damaged, swapped, emptied or encoded otherwise."""
+"""Odd files: what a study reads, and what its folder holds, cut short, damaged, swapped, or encoded otherwise."""
 
 import contextlib
 import random
@@ -139,9 +139,10 @@ def spoil(path: Path, way: str, chance: random.Random, other: Path) -> None:
         path.mkdir()
         return
     place = chance.randrange(max(1, len(content)))
+    byte = bytes([content[place] ^ chance.randrange(1, 256)]) if content else b"x"
     made = {
         "cut": content[:place],
-        "damaged": content[:place] + bytes([content[place] ^ chance.randrange(1, 256)] if content else b"x") + content[place + 1 :],
+        "damaged": content[:place] + byte + content[place + 1 :],
         "swapped": other.read_bytes(),
         "empty": b"",
         "mark": b"\xef\xbb\xbf" + content,

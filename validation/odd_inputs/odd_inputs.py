@@ -2,13 +2,12 @@
 
 right: it is done. refused: a sentence says what to do. silent: what can never be valid is taken, a number of the result
 is not finite, or a warning of NumPy reaches the user. late: `plan` accepts it, and the study ends because of it.
-traceback: an error without a sentence. endless: no end within three minutes. The last four should be none: each such case is
-printed, and makes the exit code 1. The counts go to odd_inputs.json beside this script.
+traceback: an error without a sentence. endless: no end within three minutes. The last four should be none: each such
+case is printed, and makes the exit code 1. The counts go to odd_inputs.json beside this script.
 
     python validation/odd_inputs/odd_inputs.py --studies 700 --files 200 --options 200 --seed 1
 """
 
-import os
 import random
 import sys
 import tempfile
@@ -17,9 +16,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-# Threads of linear algebra on arrays of this size would wait for one another.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[2] / "benchmarks")]
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import Row, command_line, origin, revision, write_document
 from judge import FAULTS, LONGEST, REFUSED, RIGHT, Case, judged
 from odd_files import file_cases

@@ -73,7 +73,7 @@ def _case(chance: random.Random, finished: Finished, asked: Any) -> Case:
             words.append(one.opts[0])
         else:
             # "=" keeps a value that begins with a dash apart from options.
-            words = _without(words, one) + [f"{one.opts[0]}={value}"]
+            words = [*_without(words, one), f"{one.opts[0]}={value}"]
     return Case(f"{name}", f"lithobrake {name} {' '.join(map(_short, words))}", never, _given(finished, name, words))
 
 
