@@ -26,18 +26,19 @@ OF_STUDY = ("first.toml", "--out", "first", "--workers", "1")
 NOT_FINITE = ("nan", "inf", "-inf", "NaN")
 NUMBERS = ("0", "-1", "1e300", "-1e300", "1e-300", "5e-324", "", "x", "1_0", "٣", "0x10", "1e3", "9" * 30, "1,5", "5 m",
            "2", "0.5", " 3", *NOT_FINITE)  # fmt: skip
-PATHS = ("", " ", "ä 名.csv", "none/such/file", "/dev/null", "/dev/zero", ".", "..", "a\nb.csv", "x" * 300, "\u202ex.csv",
-         "%s", "first", "first.toml", "first/runs.sqlite", "states.csv", "journeys/keys.json", "body.obj", "x.mp4",
+PATHS = ("", " ", "ä 名.csv", "none/such/file", "/dev/null", "/dev/zero", ".", "..", "a\nb.csv", "x" * 300,
+         "\u202ex.csv", "%s", "first", "first.toml", "first/runs.sqlite", "states.csv", "journeys/keys.json", "body.obj", "x.mp4",
          "x.png", "x.html", "x.h5", "x.csv")  # fmt: skip
 WORDS: dict[str, tuple[str, ...]] = {
-    "change": ("grain.friction=nan", "x=1", "grain.friction=", "impact.speed=1e300", "seed=2", "=", "", "grain.friction=0.4",
-               "impact.speed=ä", "impact.speed=0.1=0.2", "grain=1", "impact.speed=-1"),
+    "change": ("grain.friction=nan", "x=1", "grain.friction=", "impact.speed=1e300", "seed=2", "=", "",
+               "grain.friction=0.4", "impact.speed=ä", "impact.speed=0.1=0.2", "grain=1", "impact.speed=-1"),
     "at": ("nan,nan", "91,0", "1e300,0", "1", ",", "1,2,3", "ä,1", "0,inf", " 1 , 2 "),
     "scheduler": ("x", "tcp://x:99999", "", "tcp://", "http://127.0.0.1:1"),
     "host": ("", "256.1.1.1", "x y", "ä", "\x00"),
     "to": ("oem", "aem", "spk", "czml", "plates", "facets", "geotiff", "vtkhdf", "sheet", "x", "", "OEM"),
     "frame": ("fixed", "icrf", "x", "", "Inertial"),
-    "epoch": ("2027-02-30T00:00:00", "x", "", "2026-11-22T12:00:00", "0001-01-01T00:00:00", "9999-12-31T23:59:60", "nan"),
+    "epoch": ("2027-02-30T00:00:00", "x", "", "2026-11-22T12:00:00", "0001-01-01T00:00:00", "9999-12-31T23:59:60",
+              "nan"),
     "body": ("Bennu", "x", "", "ä", "dimorphos", "Phobos"),
     "lander": ("0U", "1U", "13U", "x", "", "-1U", "nanU", "1e300U"),
     "run": ("0", "-1", "x", "", "999999", "٣", "0" * 64, "nan"),

@@ -14,8 +14,8 @@ SIZES = (
 )
 NEVER_SIZES = (math.nan, math.inf, -math.inf)
 UNITS = (1e3, 1e-3, math.pi / 180.0, 180.0 / math.pi, 3600.0, 1e6)
-SCRIPTS = ("Ünïcode 名前 🚀", "\u202e\u2066x", "a\nb\tc", "\x00", " ", "", "x" * 20_000, "{{ x }}", "../..", "<b>&amp;", "CON",
-           "%s%n", "１２", "-1", "٣")  # fmt: skip
+SCRIPTS = ("Ünïcode 名前 🚀", "\u202e\u2066x", "a\nb\tc", "\x00", " ", "", "x" * 20_000, "{{ x }}", "../..", "<b>&amp;",
+           "CON", "%s%n", "１２", "-1", "٣")  # fmt: skip
 
 
 def kinds_of(old: Any, allowed: Number | None) -> list[str]:
@@ -127,7 +127,7 @@ def _other_type(chance: random.Random, old: Any) -> tuple[Any, bool]:
     elif isinstance(old, str):
         others += [1, 1.5, True, [old]]
     elif isinstance(old, list):
-        others += ["x", True, dict([(f"k{place}", value) for place, value in enumerate(old)])]
+        others += ["x", True, {f"k{place}": value for place, value in enumerate(old)}]
     else:
         others += ["x", 1]
     return chance.choice(others), not isinstance(old, dict)
