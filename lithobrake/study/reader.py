@@ -211,7 +211,11 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
     for name, field in model.model_fields.items():
         for kind in (field.annotation, *get_args(field.annotation)):
             if isinstance(kind, type) and issubclass(kind, BaseModel):
-                yield from _tables(f"{path}.{name}".lstrip("."), kind)
+                inner = f"{path}.{name}".lstrip(".")
+                yield from _tables(inner, kind)
+                if "distribution" in kind.model_fields:
+                    # Of a table of several kinds, the keys of each.
+                    yield f"{inner}.{get_args(kind.model_fields['distribution'].annotation)[0]}", (*kind.model_fields,)
 
 
 def _with_file(table: Any, folder: Path, key: str = "file") -> Any:

@@ -48,6 +48,18 @@ def test_a_key_of_the_delivery_is_refused_once() -> None:
     assert keys == ["delivery.east_error", "delivery.speed", "impact.incidence_deg"]
 
 
+@pytest.mark.parametrize(("sizes", "said"), [
+    (table("power_law", exponent=2.0, lower=0.05, upper=0.1, value=0.1),
+     "value is not a known key; allowed: distribution, exponent, cumulative_exponent, lower, upper"),
+    (table("constant", value=-1.0), "value is -1; allowed: above 0 [m]"),
+    (table("constant"), "value is missing"),
+])  # fmt: skip
+def test_keys_of_sizes_are_those_of_their_distribution(sizes: dict[str, Any], said: str) -> None:
+    boulders = {"diameter": sizes, "coverage": 0.1}
+    assert f"study.toml: bed.diameter.{said}" in problems({"bed.diameter": sizes})[0]
+    assert f"study.toml: bed.boulders.diameter.{said}" in problems({"bed.boulders": boulders})[0]
+
+
 def test_a_spin_that_the_contact_carries_is_no_problem() -> None:
     assert problems({"impact.spin_x": table("uniform", lower=-0.1, upper=0.1)}) == []
 

@@ -27,8 +27,8 @@ NOT_FINITE = ("nan", "inf", "-inf", "NaN")
 NUMBERS = ("0", "-1", "1e300", "-1e300", "1e-300", "5e-324", "", "x", "1_0", "٣", "0x10", "1e3", "9" * 30, "1,5", "5 m",
            "2", "0.5", " 3", *NOT_FINITE)  # fmt: skip
 PATHS = ("", " ", "ä 名.csv", "none/such/file", "/dev/null", "/dev/zero", ".", "..", "a\nb.csv", "x" * 300,
-         "\u202ex.csv", "%s", "first", "first.toml", "first/runs.sqlite", "states.csv", "journeys/keys.json", "body.obj", "x.mp4",
-         "x.png", "x.html", "x.h5", "x.csv")  # fmt: skip
+         "\u202ex.csv", "%s", "first", "first.toml", "first/runs.sqlite", "states.csv", "journeys/keys.json",
+         "body.obj", "x.mp4", "x.png", "x.html", "x.h5", "x.csv")  # fmt: skip
 WORDS: dict[str, tuple[str, ...]] = {
     "change": ("grain.friction=nan", "x=1", "grain.friction=", "impact.speed=1e300", "seed=2", "=", "",
                "grain.friction=0.4", "impact.speed=ä", "impact.speed=0.1=0.2", "grain=1", "impact.speed=-1"),
