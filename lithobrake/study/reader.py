@@ -13,11 +13,12 @@ from pydantic import BaseModel, ValidationError
 
 from lithobrake.files.reading import open_regular
 from lithobrake.study.checks import problems
+from lithobrake.study.ground_sections import SIZES
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
-from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.plain_text import closest, visible
 
 STUDIES, EXAMPLES = "scenarios", "examples"
 # What an example needs beside itself, in the same folder.
@@ -29,6 +30,10 @@ BESIDE = {
     "notebook_reading_a_study": ("notebook_first_study.py", "ball_on_plate.py"),
     "philae": ("philae_bounce.csv",),
 }
+
+
+# The tables that are one of several distributions of sizes.
+SIZED = ("bed.diameter", "bed.boulders.diameter")
 
 
 @dataclass(frozen=True)
@@ -114,8 +119,9 @@ class StudyError(ValueError):
     """A study file that is refused; `problems` has one sentence for each thing wrong."""
 
     def __init__(self, problems: list[str]) -> None:
-        super().__init__("\n".join(problems))
-        self.problems = problems
+        # A name of the user's own may hold anything, line breaks among it.
+        self.problems = [visible(problem) for problem in problems]
+        super().__init__("\n".join(self.problems))
 
 
 def read_study(path: Path) -> Study:
@@ -180,10 +186,17 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
         # where the schema has nothing to refuse.
         study = Study.model_validate(_absolute(tables, folder)).with_function(function).of_file(name)
     except ValidationError as error:
-        raise StudyError([f"{name}: {text}" for text in sentences(_once(error.errors()), known_keys())]) from error
+        found = [f"{name}: {text}" for text in sentences(_once(error.errors()), known_keys() | _keys_of_sizes())]
+        raise StudyError(found) from error
     if found := [study.said(text) for text in problems(study)]:
         raise StudyError(found)
     return study
+
+
+def _keys_of_sizes() -> dict[str, tuple[str, ...]]:
+    """The keys of each distribution of sizes, by the dotted name of the table and the distribution."""
+    kinds = {get_args(kind.model_fields["distribution"].annotation)[0]: (*kind.model_fields,) for kind in SIZES}
+    return {f"{path}.{name}": keys for path in SIZED for name, keys in kinds.items()}
 
 
 def _once(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
@@ -211,11 +224,7 @@ def _tables(path: str, model: type[BaseModel]) -> Iterator[tuple[str, tuple[str,
     for name, field in model.model_fields.items():
         for kind in (field.annotation, *get_args(field.annotation)):
             if isinstance(kind, type) and issubclass(kind, BaseModel):
-                inner = f"{path}.{name}".lstrip(".")
-                yield from _tables(inner, kind)
-                if "distribution" in kind.model_fields:
-                    # Of a table of several kinds, the keys of each.
-                    yield f"{inner}.{get_args(kind.model_fields['distribution'].annotation)[0]}", (*kind.model_fields,)
+                yield from _tables(f"{path}.{name}".lstrip("."), kind)
 
 
 def _with_file(table: Any, folder: Path, key: str = "file") -> Any:

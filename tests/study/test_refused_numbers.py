@@ -12,6 +12,8 @@ from .test_study import problems, table
 
 REGION = {"latitude_deg": [0.0, 90.0], "grain": {"friction": 0.4}}
 PART = {"shape": "box", "edges": [0.1, 0.1, 0.1], "mass": 0.1, "centre": [0.0, 0.0, 0.1]}
+ORBIT = {"eccentricity": 0.0, "inclination_deg": 0.0, "node_deg": 0.0, "perihelion_deg": 0.0, "mean_anomaly_deg": 0.0,
+         "epoch": "2026-06-09T00:00:00"}  # fmt: skip
 MANY = [1.0 + 1e-3 * number for number in range(1500)]
 
 
@@ -25,6 +27,22 @@ MANY = [1.0 + 1e-3 * number for number in range(1500)]
     ({"soil.a": {**REGION, "grain": {"surface_energy": 1e6}}}, ["soil.a: grain.surface_energy reaches 1e+06 J/m2"]),
     ({"soil.a": {**REGION, "grain": {"young_modulus": 1e15}}}, ["soil.a: grain.young_modulus reaches 1e+15 Pa"]),
     ({"grain.young_modulus": table("log_uniform", lower=2e5, upper=1e40)}, ["grain.young_modulus reaches 1e+40 Pa"]),
+    ({"grain.young_modulus": 1e14}, ["grain.young_modulus reaches 1e+14 Pa; allowed: at most 1e+13 Pa"]),
+    ({"bed.width": [5.5, 5.5]}, ["5.5 x 5.5 m, of which 150 grains cover 2.5 %; allowed: at most 7.54 m2"]),
+    ({"campaign": {"wall_limit": 1e-9}}, ["campaign.wall_limit is 1e-09; allowed: at least 0.1 [s]"]),
+    ({"campaign": {"memory_limit": 4.0}}, ["campaign.memory_limit is 4; allowed: at least 1e+06 [bytes]"]),
+    ({"journey.duration": 1e13}, ["journey.duration is 1e+13; allowed: above 0 and at most 1e+12 [s]"]),
+    ({"flight": {"duration": 1e13}}, ["flight.duration is 1e+13; allowed: above 0 and at most 1e+12 [s]"]),
+    ({"landing.time_limit": 1e13}, ["landing.time_limit is 1e+13; allowed: above 0 and at most 1e+12 [s]"]),
+    ({"sky": {"orbit": {**ORBIT, "semi_major_axis_au": 2.4e11}}}, ["allowed: at least 0.01 and at most 100000"]),
+    ({"bed.pour_gravity": 1e45}, ["bed.pour_gravity is 1e+45; allowed: above 0 and at most 1000 [m/s2]"]),
+    ({"journey": {"hop_height": 1e9}}, ["journey.hop_height is 1e+09; allowed: at least 0 and at most 1000 [m]"]),
+    ({"expansion": None, "design": {"run_count": 40, "side_runs": True, "twin_shift": 3.0}},
+     ["design.twin_shift is 3 m; allowed: at most 0.08 m, the smallest grain"]),
+    ({"expansion": {"kept_outputs": ["speed_out", "speed_out"]}}, ["kept_outputs", "each once"]),
+    ({"aim.within": ["distance_p95 < 1e999"], "aim.grid": {"delivery.speed": [0.1, 0.2]}}, ["with a finite number"]),
+    ({"soil": {"a\nb": {"latitude_deg": [0.0, 1.0], "grain": {"friction": 0.4}}}}, ["soil.a\\nb is no name"]),
+    ({"bed": {"wi\x1bdth": 1.0}}, ["bed.wi\\x1bdth is not a known key"]),
     ({"grain.density": 2e306}, ["2e+306", "1e-50 to 1e+50 in size"]),
     ({"bed.width": [1e-323, 1e-323]}, ["bed.width is [", "1e-50 to 1e+50 in size"]),
     ({"bed.diameter": table("constant", value=5e-324)}, ["bed.diameter.value is", "1e-50 to 1e+50 in size"]),
