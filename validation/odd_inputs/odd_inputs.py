@@ -24,22 +24,26 @@ from odd_options import option_cases
 from odd_studies import study_cases
 
 RESULTS = Path(__file__).with_suffix(".json")
+# Cases after which the counts are written.
+OFTEN = 20
 
 
 def cases(counts: dict[str, int], seed: int, folder: Path) -> Iterator[tuple[str, Case]]:
     """The cases of a seed by what they are of; folder: for finished studies, whose files and folders are made odd."""
     makers = {
-        "studies": study_cases,
         "files": lambda chance, count: file_cases(chance, count, folder),
         "options": lambda chance, count: option_cases(chance, count, folder),
+        "studies": study_cases,
     }
     for name, make in makers.items():
         if counts[name]:
             yield from ((name, case) for case in make(random.Random(f"{seed} {name}"), counts[name]))
 
 
-def counted(counts: dict[str, int], seed: int, longest: float = LONGEST) -> Row:
-    """Judge the cases of a seed: how many are in each class, by what they are of and by kind; prints the faults."""
+def counted(counts: dict[str, int], seed: int, longest: float = LONGEST) -> Iterator[Row]:
+    """Judge the cases of a seed, and give after each how many are in each class, by what they are of and by kind;
+    prints the faults.
+    """
     by_source: dict[str, Counter[str]] = {}
     by_kind: dict[str, Counter[str]] = {}
     with tempfile.TemporaryDirectory() as studies:
@@ -50,21 +54,26 @@ def counted(counts: dict[str, int], seed: int, longest: float = LONGEST) -> Row:
             by_kind.setdefault(f"{source}, {case.kind}", Counter())[found.name] += 1
             if found.name in FAULTS:
                 print(f"{found.name}: {source} {number}, {case.kind}: {case.words}\n  {found.words}", flush=True)
-    whole = sum(by_source.values(), Counter[str]())
-    classes = {name: whole[name] for name in (RIGHT, REFUSED, *FAULTS)}
-    return {"cases": whole.total(), "classes": classes, "sources": by_source, "kinds": dict(sorted(by_kind.items()))}
+            whole = sum(by_source.values(), Counter[str]())
+            classes = {name: whole[name] for name in (RIGHT, REFUSED, *FAULTS)}
+            kinds = dict(sorted(by_kind.items()))
+            yield {"cases": number, "classes": classes, "sources": by_source, "kinds": kinds}
 
 
 def main() -> int:
     asked = command_line(__doc__, studies=700, files=200, options=200, seed=1, longest=float(LONGEST))
     given = asked.parse_args()
-    start = time.process_time()
-    counts = {name: getattr(given, name) for name in ("studies", "files", "options")}
-    found = counted(counts, given.seed, given.longest)
+    counts = {name: getattr(given, name) for name in ("files", "options", "studies")}
+    how = origin(" ".join(["validation/odd_inputs/odd_inputs.py", *sys.argv[1:]]))
+    how |= {"seed": given.seed, "commit": revision()}
+    found: Row = {"cases": 0, "classes": {}}
+    for found in counted(counts, given.seed, given.longest):
+        # As they come: a run that is stopped keeps what it has counted.
+        if found["cases"] % OFTEN == 0:
+            write_document(RESULTS, how | {"cpu_s": round(time.process_time())} | found)
+    write_document(RESULTS, how | {"cpu_s": round(time.process_time())} | found)
     print(", ".join(f"{count} {name}" for name, count in found["classes"].items()))
-    made = {"seed": given.seed, "cpu_s": round(time.process_time() - start), "commit": revision()}
-    write_document(RESULTS, origin(" ".join(["validation/odd_inputs/odd_inputs.py", *sys.argv[1:]])) | made | found)
-    return int(any(found["classes"][name] for name in FAULTS))
+    return int(any(found["classes"].get(name) for name in FAULTS))
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from lithobrake.study.units import limits
 
 Path_ = tuple[str, ...]
 # Of those that can be planned, one in so many is run; of those that change the physics one in fewer.
-RUN_ONE_IN, RUN_PHYSICS_ONE_IN = 8, 2
+RUN_ONE_IN, RUN_PHYSICS_ONE_IN = 40, 10
 # Keys of how much is made: a study that asks for more takes longer, which is no fault.
 LONG = re.compile(r"count|level|degree\b|half_width|memory|wall_limit")
 # One in so many studies has a second odd key, whose value is of the type that it takes.
