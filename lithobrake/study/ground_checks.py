@@ -36,7 +36,7 @@ LEAST_FRICTION = 0.4
 # The stiffest grains [Pa].
 STIFFEST = 1e13
 # Part of the ground on which grains lie one beside the other, at least.
-LEAST_COVER = 0.1
+LEAST_COVER = 0.01
 
 
 def size_problems(study: Study, radius: float) -> Iterator[str]:
@@ -229,8 +229,8 @@ def cover_problems(study: Study) -> Iterator[str]:
     if area < LEAST_COVER * here:
         yield (
             f"bed.width is {study.bed.width[0]:g} x {study.bed.width[1]:g} m, of which {study.bed.grain_count} grains "
-            f"cover {100.0 * area / here:.2g} %; allowed: at most {area / LEAST_COVER:.3g} m2, a tenth of which they "
-            "cover; narrow the bed, or raise bed.grain_count"
+            f"cover {100.0 * area / here:.2g} %; allowed: at most {area / LEAST_COVER:.3g} m2, a hundredth of which "
+            "they cover; narrow the bed, or raise bed.grain_count"
         )
 
 

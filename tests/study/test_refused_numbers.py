@@ -28,7 +28,7 @@ MANY = [1.0 + 1e-3 * number for number in range(1500)]
     ({"soil.a": {**REGION, "grain": {"young_modulus": 1e15}}}, ["soil.a: grain.young_modulus reaches 1e+15 Pa"]),
     ({"grain.young_modulus": table("log_uniform", lower=2e5, upper=1e40)}, ["grain.young_modulus reaches 1e+40 Pa"]),
     ({"grain.young_modulus": 1e14}, ["grain.young_modulus reaches 1e+14 Pa; allowed: at most 1e+13 Pa"]),
-    ({"bed.width": [5.5, 5.5]}, ["5.5 x 5.5 m, of which 150 grains cover 2.5 %; allowed: at most 7.54 m2"]),
+    ({"bed.width": [20.0, 20.0]}, ["20 x 20 m, of which 150 grains cover 0.19 %; allowed: at most 75.4 m2"]),
     ({"campaign": {"wall_limit": 1e-9}}, ["campaign.wall_limit is 1e-09; allowed: at least 0.1 [s]"]),
     ({"campaign": {"memory_limit": 4.0}}, ["campaign.memory_limit is 4; allowed: at least 1e+06 [bytes]"]),
     ({"journey.duration": 1e13}, ["journey.duration is 1e+13; allowed: above 0 and at most 1e+12 [s]"]),

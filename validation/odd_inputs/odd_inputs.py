@@ -31,9 +31,9 @@ OFTEN = 20
 def cases(counts: dict[str, int], seed: int, folder: Path) -> Iterator[tuple[str, Case]]:
     """The cases of a seed by what they are of; folder: for finished studies, whose files and folders are made odd."""
     makers = {
-        "files": lambda chance, count: file_cases(chance, count, folder),
-        "options": lambda chance, count: option_cases(chance, count, folder),
         "studies": study_cases,
+        "options": lambda chance, count: option_cases(chance, count, folder),
+        "files": lambda chance, count: file_cases(chance, count, folder),
     }
     for name, make in makers.items():
         if counts[name]:
@@ -63,7 +63,7 @@ def counted(counts: dict[str, int], seed: int, longest: float = LONGEST) -> Iter
 def main() -> int:
     asked = command_line(__doc__, studies=700, files=200, options=200, seed=1, longest=float(LONGEST))
     given = asked.parse_args()
-    counts = {name: getattr(given, name) for name in ("files", "options", "studies")}
+    counts = {name: getattr(given, name) for name in ("studies", "options", "files")}
     how = origin(" ".join(["validation/odd_inputs/odd_inputs.py", *sys.argv[1:]]))
     how |= {"seed": given.seed, "commit": revision()}
     found: Row = {"cases": 0, "classes": {}}
